@@ -1,0 +1,58 @@
+"""Local adjustment where sigma is not yet below epsilon (paper, sec. 3.3): nothing outside a support moves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.chart import Chart
+from geofit.errors import FitError
+from geofit.net import Net
+from geofit.skin import least_change
+
+__all__ = ["adjust"]
+
+Floats = NDArray[np.float64]
+
+#: Share of the squared residuals that one step takes away.
+SHARE = 0.7
+
+
+def adjust(net: Net, chart: Chart, movable: NDArray[np.bool_], residuals: Floats) -> Net | None:
+    """Pull the surface to the points that contribute most to sigma.
+
+    Parameters
+    ----------
+    net : Net
+        The surface.
+    chart : Chart
+        Places and values of all points.
+    movable : (n,) array of bool
+        Points that the surface may be pulled to: honoured, and not in the core.
+    residuals : (n,) array
+        Distances of all points, metres.
+
+    Returns
+    -------
+    Net or None
+        The adjusted surface; the core's control points stay. None if no point can be pulled.
+    """
+    candidates = np.flatnonzero(movable)
+    squares = residuals[candidates] ** 2
+    order = np.argsort(-squares, kind="stable")
+    enough = int(np.searchsorted(np.cumsum(squares[order]), SHARE * squares.sum())) + 1
+    worst = candidates[order[:enough]]
+    worst = worst[np.abs(residuals[worst]) > 1e-9]
+    while len(worst):
+        matrix = net.space.matrix(*(chart.plane[worst] / net.unit).T)
+        misfit = chart.values[worst] - matrix @ net.coefficients
+        try:
+            change = least_change(matrix, misfit, ~net.frozen)
+        except FitError:
+            # Some of these hang on the core's control points, or on each other's: take the worst half.
+            worst = worst[: len(worst) // 2]
+            continue
+        return replace(net, coefficients=net.coefficients + change)
+    return None

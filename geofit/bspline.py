@@ -1,0 +1,149 @@
+"""B-spline bases, their knots, and the energies of derivatives. Pure functions over arrays.
+
+Knot vectors are clamped: the first and last knot stand ``degree + 1`` times.
+Source of the recurrences: L. Piegl, W. Tiller, *The NURBS Book*, 2nd ed. 1997, chapters 2 and 5.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["basis", "clamped_knots", "collocation", "energy_matrix", "greville", "insertion_matrix", "spans"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+def clamped_knots(breaks: ArrayLike, degree: int, multiplicity: ArrayLike = 1) -> Floats:
+    """Return the clamped knot vector of strictly ascending ``breaks``.
+
+    Parameters
+    ----------
+    breaks : (k,) array_like
+        Ends of the spans, ascending.
+    degree : int
+        Degree of the spline.
+    multiplicity : int or (k - 2,) array_like of int
+        How often each inner break stands.
+
+    Examples
+    --------
+    >>> clamped_knots([0, 1, 2], 2).tolist()
+    [0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 2.0]
+    """
+    breaks = np.asarray(breaks, float)
+    inner = np.repeat(breaks[1:-1], np.broadcast_to(multiplicity, (len(breaks) - 2,)))
+    return np.concatenate([np.repeat(breaks[0], degree + 1), inner, np.repeat(breaks[-1], degree + 1)])
+
+
+def spans(knots: Floats, degree: int, x: Floats) -> Ints:
+    """Return the index k of the span with knots[k] <= x < knots[k + 1]; the last span holds its right end."""
+    count = len(knots) - degree - 1
+    return np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1).astype(np.int64)
+
+
+def basis(knots: Floats, degree: int, x: ArrayLike, derivative: int = 0) -> tuple[Ints, Floats]:
+    """Evaluate the basis functions that do not vanish at ``x``.
+
+    Outside the knots the first and last polynomial are continued.
+
+    Parameters
+    ----------
+    knots : (m,) array
+        Clamped knot vector.
+    degree : int
+        Degree of the spline.
+    x : (n,) array_like
+        Parameters.
+    derivative : int
+        Order of the derivative.
+
+    Returns
+    -------
+    first : (n,) array of int
+        Index of the first function that does not vanish.
+    values : (n, degree + 1) array
+        Their values (A2.2), or derivatives (eq. 2.7 applied ``derivative`` times).
+    """
+    x = np.asarray(x, float)
+    span = spans(knots, degree, x)
+    first = span - degree
+    if derivative > degree:
+        return first, np.zeros((len(x), degree + 1))
+    low = degree - derivative
+    values = np.ones((len(x), 1))
+    for p in range(1, degree + 1):
+        # One degree up: N_{i,p} from N_{i,p-1}; i runs over the p + 1 functions of the span.
+        left = np.stack([knots[span + 1 + j - p] for j in range(p)], axis=1)
+        right = np.stack([knots[span + 1 + j] for j in range(p)], axis=1)
+        width = right - left
+        ratio = np.divide(values, width, out=np.zeros_like(values), where=width > 0)
+        raised = np.zeros((len(x), p + 1))
+        if p <= low:
+            raised[:, :-1] += ratio * (right - x[:, None])
+            raised[:, 1:] += ratio * (x[:, None] - left)
+        else:
+            raised[:, :-1] -= p * ratio
+            raised[:, 1:] += p * ratio
+        values = raised
+    return first, values
+
+
+def collocation(knots: Floats, degree: int, x: ArrayLike, derivative: int = 0) -> Floats:
+    """Return the dense (n, count) matrix of all basis functions at ``x``."""
+    first, values = basis(knots, degree, x, derivative)
+    matrix = np.zeros((len(first), len(knots) - degree - 1))
+    np.put_along_axis(matrix, first[:, None] + np.arange(degree + 1), values, axis=1)
+    return matrix
+
+
+def greville(knots: Floats, degree: int) -> Floats:
+    """Return the Greville abscissae: the control points of the identity (x(u) = u)."""
+    count = len(knots) - degree - 1
+    return np.mean([knots[1 + j : 1 + j + count] for j in range(degree)], axis=0)
+
+
+def energy_matrix(knots: Floats, degree: int, order: int) -> Floats:
+    """Return the (count, count) Gram matrix of the derivatives: c @ G @ c is the integral of (s^(order))^2.
+
+    Gauss points are taken so that the integral is exact on each span.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
+    breaks = np.unique(knots)
+    half = np.diff(breaks) / 2
+    x = (breaks[:-1] + half)[:, None] + half[:, None] * nodes
+    w = np.sqrt(half[:, None] * weights)
+    matrix = collocation(knots, degree, x.ravel(), order) * w.reshape(-1, 1)
+    return matrix.T @ matrix
+
+
+def insertion_matrix(coarse: Floats, fine: Floats, degree: int) -> Floats:
+    """Return T with c_fine = T @ c_coarse for a knot vector ``fine`` that contains ``coarse``.
+
+    Source: Boehm's knot insertion, *The NURBS Book*, A5.1, one knot after the other.
+    """
+    matrix = np.eye(len(coarse) - degree - 1)
+    knots = coarse
+    for knot in _missing(coarse, fine):
+        k = int(spans(knots, degree, np.array([knot]))[0])
+        count = len(knots) - degree - 1
+        step = np.zeros((count + 1, count))
+        i = np.arange(count + 1)
+        alpha = np.where(i <= k - degree, 1.0, 0.0)
+        inside = (i > k - degree) & (i <= k)
+        width = knots[i[inside] + degree] - knots[i[inside]]
+        alpha[inside] = (knot - knots[i[inside]]) / width
+        step[i[:-1], i[:-1]] = alpha[:-1]
+        step[i[1:], i[:-1]] = 1 - alpha[1:]
+        matrix = step @ matrix
+        knots = np.insert(knots, k + 1, knot)
+    return matrix
+
+
+def _missing(coarse: Floats, fine: Floats) -> list[float]:
+    have = {float(v): int(c) for v, c in zip(*np.unique(coarse, return_counts=True), strict=True)}
+    missing: list[float] = []
+    for value, count in zip(*np.unique(fine, return_counts=True), strict=True):
+        missing += [float(value)] * (int(count) - have.get(float(value), 0))
+    return missing

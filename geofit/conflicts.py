@@ -1,0 +1,68 @@
+"""Points that cannot both lie on one surface: found before the fit, settled by accuracy, listed."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from geofit.accuracy import Conflict
+from geofit.points import PointSet
+
+__all__ = ["settle"]
+
+#: Where the sources state no accuracy, the one that was measured nearer to the rock is kept.
+_TRUST = {"borehole": 0, "adit": 1, "outcrop": 2, "point": 3, "map": 4, "section": 5, "geophysics": 6}
+
+
+def settle(
+    points: PointSet, place: NDArray[np.float64], height: NDArray[np.float64], distance: float
+) -> tuple[NDArray[np.bool_], tuple[Conflict, ...]]:
+    """Choose one point at each place.
+
+    Parameters
+    ----------
+    points : PointSet
+        All points.
+    place : (n, k) array
+        Where each point stands on the surface: in-plane coordinates, or map coordinates of a folded surface.
+    height : (n,) array
+        What the surface must take there.
+    distance : float
+        Points nearer than this many metres stand at one place.
+
+    Returns
+    -------
+    kept : (n,) array of bool
+        The points that the fit honours.
+    conflicts : tuple of Conflict
+        One for each point that gives way, exact duplicates included.
+    """
+    kept = np.ones(len(points), dtype=bool)
+    pairs = KDTree(place).query_pairs(distance, output_type="ndarray")
+    if not len(pairs):
+        return kept, ()
+    accuracy = np.where(np.isnan(points.accuracy), np.inf, points.accuracy)
+    trust = np.array([_TRUST.get(kind, 3) for kind in points.kind])
+    rank = np.empty(len(points), dtype=int)
+    rank[np.lexsort((np.arange(len(points)), trust, accuracy))] = np.arange(len(points))
+    better = np.where(rank[pairs[:, 0]] < rank[pairs[:, 1]], pairs[:, 0], pairs[:, 1])
+    worse = pairs.sum(axis=1) - better
+    conflicts = []
+    for i in np.argsort(rank[better], kind="stable"):
+        winner, loser = int(better[i]), int(worse[i])
+        if kept[winner] and kept[loser]:
+            kept[loser] = False
+            conflicts.append(_describe(points, winner, loser, float(height[loser] - height[winner])))
+    return kept, tuple(conflicts)
+
+
+def _describe(points: PointSet, winner: int, loser: int, difference: float) -> Conflict:
+    names = points.describe(winner), points.describe(loser)
+    if difference == 0:
+        text = f"{names[1]} repeats {names[0]}"
+    else:
+        stated = not np.isnan(points.accuracy[[winner, loser]]).all()
+        reason = "the better stated accuracy" if stated else "the source nearer to the rock, or the first"
+        text = f"{names[1]} differs by {difference:+.3f} m from {names[0]} at one place; kept: {reason}"
+    return Conflict(winner, loser, difference, text)

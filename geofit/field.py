@@ -1,0 +1,206 @@
+"""The regional field: the smooth surface that the data support, and how noisy they are.
+
+A penalised least-squares spline, the sum of w_i d_i^2 + lambda * energy. Lengths are counted in units of the
+spacing of the sparse points, so that one range of lambda serves every site. Two energies are offered:
+
+========= ============================================ ====================================================
+name      energy                                       where it wins
+========= ============================================ ====================================================
+"smooth"  third derivatives + second derivatives       gentle horizons: half the error of a thin plate
+"rough"   second derivatives + 1/4 first derivatives   rugged horizons, where third derivatives overshoot
+========= ============================================ ====================================================
+
+Below one spacing the first term rules, above it the second, which calms the surface where no data are. For
+each energy lambda comes from restricted maximum likelihood (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36);
+of the two the one with the lower generalised cross-validation score (G. Wahba, *Spline Models for
+Observational Data*, 1990, eq. 4.3.1) is taken.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from geofit.errors import FitError
+from geofit.tensor import Factor, TensorSpace, band_times
+
+__all__ = ["Field", "cell_weights", "choose", "energy_band", "plane_trend", "smooth"]
+
+Floats = NDArray[np.float64]
+
+#: Weights of the derivative orders in each energy, and the dimension of what it leaves free.
+ENERGIES: dict[str, tuple[dict[int, float], int]] = {
+    "smooth": ({3: 1.0, 2: 1.0}, 3),
+    "rough": ({2: 1.0, 1: 0.25}, 1),
+    "flat": ({1: 1.0}, 1),
+}
+#: Range of log10(lambda) in units of the spacing.
+_LOG_RANGE = (-9.0, 3.0)
+#: No elevation is known better than this, metres: keeps the likelihood finite on exact planes.
+_FINEST = 1e-4
+#: Stands for the likelihood of a lambda whose system has no solution; finite, for Brent's method.
+_UNSOLVABLE = 1e12
+
+
+@dataclass(frozen=True)
+class Field:
+    """What was chosen: energy, lambda, and the noise (1 sigma, metres) of a point of weight one."""
+
+    energy: str
+    smoothing: float
+    noise: float
+    score: float
+
+
+def energy_band(space: TensorSpace, name: str) -> Floats:
+    """Return the band of a named energy on a space, (bandwidth + 1, size)."""
+    orders, _ = ENERGIES[name]
+    return sum((factor * space.energy(order) for order, factor in orders.items()), start=np.zeros(1))
+
+
+def plane_trend(u: Floats, v: Floats, z: Floats, weight: Floats) -> Floats:
+    """Return (3,) or (3, k) coefficients of the plane 1, u, v of weighted least squares, least slope first.
+
+    Collinear points leave the slope across them at zero.
+    """
+    root = np.sqrt(weight)[:, None]
+    centre = np.array([np.average(u, weights=weight), np.average(v, weights=weight)])
+    matrix = np.column_stack([np.ones(len(u)), u - centre[0], v - centre[1]]) * root
+    solution: Floats = np.linalg.lstsq(matrix, z.reshape(len(z), -1) * root, rcond=1e-9)[0]
+    solution[0] -= centre @ solution[1:]
+    return solution.reshape(3, *z.shape[1:])
+
+
+def cell_weights(space: TensorSpace, u: Floats, v: Floats, accuracy: Floats) -> Floats:
+    """Return the weight of each point: relative accuracy, shared among the points of one knot cell.
+
+    Points nearer to each other than the knots say one thing together; sharing keeps one dense section from
+    deciding how noisy and how rough the whole area is. Points without a stated accuracy take the median.
+    """
+    stated = np.isfinite(accuracy)
+    relative = np.ones(len(u))
+    if stated.any():
+        middle = float(np.median(accuracy[stated]))
+        relative[stated] = np.clip(middle / accuracy[stated], 0.1, 10.0) ** 2
+    index, _ = space.rows(u, v)
+    _, cell, count = np.unique(index[:, 0], return_inverse=True, return_counts=True)
+    return np.asarray(relative / count[cell])
+
+
+def choose(
+    space: TensorSpace, u: Floats, v: Floats, z: Floats, weight: Floats, smoothing: float | None = None
+) -> Field:
+    """Choose the energy and lambda for data about their trend.
+
+    Parameters
+    ----------
+    space : TensorSpace
+        A space with a few knots a spacing; the choice holds for finer ones.
+    u, v : (n,) arrays
+        Places, in units of the spacing.
+    z : (n,) or (n, k) array
+        Heights (or coordinates) in metres, trend removed.
+    weight : (n,) array
+        Weights.
+    smoothing : float, optional
+        Take this lambda; only the energy is chosen.
+
+    Raises
+    ------
+    FitError
+        If no lambda gives a solvable system.
+    """
+    band, right = space.normal_equations(u, v, z, weight)
+    square = float((weight @ (z.reshape(len(z), -1) ** 2)).sum())
+    names = {3: ("smooth", "rough"), 2: ("rough",)}.get(space.degree, ("flat",))
+    fields = []
+    for name in names:
+        likelihood = _Likelihood(space, name, band, right, square, len(u))
+        fields.append(likelihood.best() if smoothing is None else likelihood.at(math.log10(smoothing)))
+    best = min(fields, key=lambda field: field.score)
+    if not math.isfinite(best.score):
+        raise FitError(
+            f"No smoothing makes the system of {len(u)} points and {space.size} control points solvable: the "
+            "points lie on too few places. Give more points, or a larger conflict_distance."
+        )
+    return best
+
+
+class _Likelihood:
+    """Restricted likelihood of lambda for one energy; each value costs one factorisation."""
+
+    def __init__(
+        self, space: TensorSpace, name: str, band: Floats, right: Floats, square: float, n: int
+    ) -> None:
+        self.name, self.space, self.band, self.right, self.square = name, space, band, right, square
+        self.energy = energy_band(space, name)
+        self.columns = 1 if right.ndim == 1 else right.shape[1]
+        self.n, self.free = n, ENERGIES[name][1]
+        self.floor = n * self.columns * _FINEST**2
+
+    def _solve(self, log: float) -> tuple[Factor, Floats, float]:
+        factor = Factor(self.band + 10.0**log * self.energy)
+        coefficients = factor.solve(self.right)
+        penalised = self.square - float((coefficients * self.right).sum())
+        return factor, coefficients, max(penalised, self.floor)
+
+    def __call__(self, log: float) -> float:
+        """Return -2 log of the restricted likelihood, but for a constant."""
+        try:
+            factor, _, penalised = self._solve(log)
+        except FitError:
+            return _UNSOLVABLE
+        degrees = max(self.n - self.free, 1)
+        return self.columns * (
+            degrees * math.log(penalised / (degrees * self.columns))
+            + factor.logdet
+            - (self.space.size - self.free) * log * math.log(10)
+        )
+
+    def best(self) -> Field:
+        """Search lambda: a coarse scan, then Brent's method between the neighbours of its best."""
+        grid = np.linspace(*_LOG_RANGE, 7)
+        values = [self(log) for log in grid]
+        k = int(np.argmin(values))
+        if values[k] >= _UNSOLVABLE:
+            return Field(self.name, math.nan, math.nan, math.inf)
+        low, high = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
+        found = minimize_scalar(self, bounds=(low, high), method="bounded", options={"xatol": 0.15})
+        return self.at(float(found.x) if found.fun <= values[k] else float(grid[k]))
+
+    def at(self, log: float) -> Field:
+        """Return the field at one lambda, with its noise and its score of generalised cross-validation."""
+        try:
+            factor, coefficients, penalised = self._solve(log)
+            step = 0.1
+            up, down = self._solve(log + step)[0].logdet, self._solve(log - step)[0].logdet
+        except FitError:
+            return Field(self.name, math.nan, math.nan, math.inf)
+        # d log det(G + lambda E) / d log lambda = trace of lambda E K^-1 = size - effective parameters.
+        effective = self.space.size - (up - down) / (2 * step * math.log(10))
+        bending = 10.0**log * float((coefficients * band_times(self.energy, coefficients)).sum())
+        residual = max(penalised - bending, self.floor) / self.columns
+        left = max(self.n - effective, 0.01 * self.n, 1e-3)
+        noise = math.sqrt(penalised / (max(self.n - self.free, 1) * self.columns))
+        return Field(self.name, 10.0**log, noise, math.sqrt(self.n * residual) / left)
+
+
+def smooth(
+    space: TensorSpace, field: Field, u: Floats, v: Floats, z: Floats, weight: Floats
+) -> tuple[Floats, Floats]:
+    """Solve for the coefficients of a chosen field on any space.
+
+    Returns
+    -------
+    coefficients : (size,) or (size, k) array
+        Heights of the control points, metres.
+    energy : (bandwidth + 1, size) array
+        Band of lambda times the energy, for what follows on the same space.
+    """
+    band, right = space.normal_equations(u, v, z, weight)
+    energy = field.smoothing * energy_band(space, field.energy)
+    return Factor(band + energy).solve(right), energy

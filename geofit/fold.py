@@ -1,0 +1,126 @@
+"""Overturned folds: section curves that turn back, one parametrisation for all of them (METHOD, sec. 8).
+
+Each section is an ordered line of points. Along it v is the chord length; the hinges, where the line turns
+back, are given the same v on every section, so that limb is joined to limb. Across the sections u is the
+distance of their lines in plan.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.frame import Frame
+from geofit.points import PointSet
+
+__all__ = ["Loft", "backtracking", "loft"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Loft:
+    """Parameters: ``plane`` (n, 2) metres, ``on_line`` (n,) bool: points of a curve, ``u`` (k,) of the curves."""
+
+    plane: Floats
+    on_line: NDArray[np.bool_]
+    u: Floats
+    notes: tuple[str, ...]
+
+
+def _curves(points: PointSet) -> dict[str, NDArray[np.int64]]:
+    names = dict.fromkeys(points.section[points.section != ""].tolist())
+    curves = {name: np.flatnonzero(points.section == name) for name in names}
+    return {name: index for name, index in curves.items() if len(index) >= 3}
+
+
+def backtracking(points: PointSet, frame: Frame) -> float:
+    """Return the share of the sections' length in the frame's plane that runs backwards.
+
+    Each section's points are taken in their order and projected on the line between its ends' halves; zero
+    for sections that go one way, whatever their direction.
+    """
+    back = total = 0.0
+    for index in _curves(points).values():
+        plane = frame.to_local(points.xyz[index])[:, :2]
+        centred = plane - plane.mean(axis=0)
+        direction = np.linalg.svd(centred, full_matrices=False)[2][0]
+        steps = np.diff(centred @ direction)
+        forward, backward = steps[steps > 0].sum(), -steps[steps < 0].sum()
+        back += min(forward, backward)
+        # A steep section has next to no length in plan: measure against its length in space.
+        total += max(forward + backward, 0.2 * np.linalg.norm(np.diff(points.xyz[index], axis=0), axis=1).sum())
+    return back / total if total > 0 else 0.0
+
+
+def loft(points: PointSet) -> Loft:
+    """Place the points of the sections on the surface that their curves span.
+
+    Points off the sections get no place here (zeros): the fit projects them on the surface through the
+    sections, and corrects their places as it changes (J. Hoschek, CAGD 5, 1988, 27-31).
+    """
+    curves = _curves(points)
+    plane = np.zeros((len(points), 2))
+    if len(curves) < 2:
+        return Loft(plane, np.zeros(len(points), bool), np.zeros(len(curves)), ())
+    offset = _offsets(points, curves)
+    order = np.argsort(offset, kind="stable")
+    indices = [list(curves.values())[k] for k in order]
+    u = offset[order]
+    parameters = _aligned([points.xyz[index] for index in indices])
+    length = float(np.mean([_chords(points.xyz[index])[-1] for index in indices]))
+    on_line = np.zeros(len(points), bool)
+    for line, index, v in zip(u, indices, parameters, strict=True):
+        plane[index] = np.column_stack([np.full(len(index), line), v * length])
+        on_line[index] = True
+    note = f"{len(u)} section curves over {u[-1] - u[0]:.0f} m, {(~on_line).sum()} points between them"
+    return Loft(plane, on_line, u, (note,))
+
+
+def _offsets(points: PointSet, curves: dict[str, NDArray[np.int64]]) -> Floats:
+    """Return the distance of each section along the common normal of their lines in plan."""
+    doubled = 0j
+    for index in curves.values():
+        centred = points.xyz[index, :2] - points.xyz[index, :2].mean(axis=0)
+        direction = np.linalg.svd(centred, full_matrices=False)[2][0]
+        doubled += np.exp(2j * np.arctan2(direction[1], direction[0]))
+    angle = np.angle(doubled) / 2
+    normal = np.array([np.sin(angle), -np.cos(angle)])
+    centre = points.xyz[:, :2].mean(axis=0)
+    return np.array([((points.xyz[index, :2] - centre) @ normal).mean() for index in curves.values()])
+
+
+def _chords(xyz: Floats) -> Floats:
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(xyz, axis=0), axis=1))])
+
+
+def _aligned(lines: list[Floats]) -> list[Floats]:
+    """Return v in 0..1 for each point of each line: one sense, chord length, hinges at one v."""
+    parameters = []
+    reference: Floats | None = None
+    for xyz in lines:
+        chord = _chords(xyz)
+        v = chord / chord[-1]
+        shape = np.column_stack([np.interp(np.linspace(0, 1, 50), v, xyz[:, k]) for k in range(3)])
+        if reference is not None and np.linalg.norm(shape - reference) > np.linalg.norm(shape[::-1] - reference):
+            v, shape = 1 - v, shape[::-1]
+        reference = shape
+        parameters.append(v)
+    hinges = [_hinge(xyz, v) for xyz, v in zip(lines, parameters, strict=True)]
+    known = [h for h in hinges if h is not None]
+    if len(known) < len(lines):
+        return parameters
+    middle = float(np.mean(known))
+    return [np.interp(v, [0.0, h, 1.0], [0.0, middle, 1.0]) for v, h in zip(parameters, known, strict=True)]
+
+
+def _hinge(xyz: Floats, v: Floats) -> float | None:
+    """Return v where the line turns back the most: the turning point farthest from the chord of its ends."""
+    plan = xyz[:, :2] - xyz[:, :2].mean(axis=0)
+    along = plan @ np.linalg.svd(plan, full_matrices=False)[2][0]
+    ends = np.interp(v, [v[0], v[-1]], [along[0], along[-1]])
+    k = int(np.argmax(np.abs(along - ends)))
+    turned = 0 < k < len(v) - 1 and (along[k] - along[0]) * (along[k] - along[-1]) > 0
+    return float(v[k]) if turned else None

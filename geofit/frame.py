@@ -1,0 +1,101 @@
+"""Local frames: where a surface is a height field, and where the numbers keep their digits (METHOD, sec. 8)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.points import PointSet
+
+__all__ = ["Frame", "best_plane_frame", "map_frame", "section_azimuth"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """A right-handed frame: ``local = axes @ (world - origin)``.
+
+    Parameters
+    ----------
+    origin : (3,) array
+        Map coordinates of the local origin, metres.
+    axes : (3, 3) array
+        Rows are the unit vectors of u, v and the height w.
+    kind : str
+        "map", "best-plane" or "sections".
+    """
+
+    origin: Floats
+    axes: Floats
+    kind: str
+
+    def to_local(self, xyz: ArrayLike) -> Floats:
+        """Return (n, 3) local coordinates of (n, 3) map coordinates."""
+        return (np.asarray(xyz, float) - self.origin) @ self.axes.T
+
+    def turn_back(self, local: ArrayLike) -> Floats:
+        """Return local coordinates (..., 3) turned to the map's axes, still about the origin."""
+        return np.asarray(local, float) @ self.axes
+
+    def plan(self, xy: ArrayLike) -> Floats:
+        """Return (n, 2) in-plane coordinates of (n, 2) map coordinates; for the map frame only."""
+        xy = np.asarray(xy, float)
+        return (xy - self.origin[:2]) @ self.axes[:2, :2].T
+
+
+def section_azimuth(points: PointSet) -> float | None:
+    """Return the direction that most sections run in, radians anticlockwise from east, or None.
+
+    The axial mean of the sections' principal directions, each weighted by its number of points; None where
+    no section has three points in a line, or the sections run every way.
+    """
+    doubled, total = 0j, 0.0
+    for name in np.unique(points.section[points.section != ""]):
+        plan = points.xyz[points.section == name, :2]
+        if len(plan) < 3:
+            continue
+        centred = plan - plan.mean(axis=0)
+        _, extent, directions = np.linalg.svd(centred, full_matrices=False)
+        if extent[0] > 0 and extent[1] < 0.2 * extent[0]:
+            angle = np.arctan2(directions[0, 1], directions[0, 0])
+            doubled += len(plan) * np.exp(2j * angle)
+            total += len(plan)
+    if total == 0 or abs(doubled) < 0.3 * total:
+        return None
+    return float(np.angle(doubled) / 2)
+
+
+def map_frame(points: PointSet, along: float | None = None) -> Frame:
+    """Return a height-field frame over the map, its v axis along ``along`` (radians from east).
+
+    Without a direction the axes stay east and north. A direction within 45 degrees of east makes u the
+    section direction's normal all the same: v always runs along the sections.
+    """
+    v = np.array([0.0, 1.0]) if along is None else np.array([np.cos(along), np.sin(along)])
+    if v[1] < -1e-9 or (abs(v[1]) <= 1e-9 and v[0] < 0):
+        v = -v
+    v[np.abs(v) < 1e-12] = 0.0
+    axes = np.array([[v[1], -v[0], 0.0], [v[0], v[1], 0.0], [0.0, 0.0, 1.0]])
+    return Frame(_origin(points.xyz), axes, "map")
+
+
+def best_plane_frame(points: PointSet) -> Frame:
+    """Return a frame over the plane of least squares: u along the strike, v up the dip, w upwards."""
+    xyz = points.xyz - points.xyz.mean(axis=0)
+    normal = np.linalg.svd(xyz, full_matrices=False)[2][2]
+    if normal[2] < 0:
+        normal = -normal
+    strike = np.cross([0.0, 0.0, 1.0], normal)
+    if np.linalg.norm(strike) < 1e-9:
+        strike = np.array([1.0, 0.0, 0.0])
+    strike /= np.linalg.norm(strike)
+    return Frame(_origin(points.xyz), np.array([strike, np.cross(normal, strike), normal]), "best-plane")
+
+
+def _origin(xyz: Floats) -> Floats:
+    """Whole metres near the centre: exact in the STEP file, and easy to read there."""
+    low, high = xyz.min(axis=0), xyz.max(axis=0)
+    return np.round((low + high) / 2)

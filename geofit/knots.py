@@ -1,0 +1,82 @@
+"""Where knots go: as fine as the data need, and no finer (METHOD, sec. 4: knots must follow the data)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import Delaunay, QhullError
+
+__all__ = ["graded_breaks", "neighbour_pairs", "pair_sizes"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: How fast the spans may grow with the distance from a fine place.
+GROWTH = 0.5
+_SAMPLES = 4000
+
+
+def neighbour_pairs(plane: Floats) -> Ints:
+    """Return (m, 2) indices of points that are neighbours in the Delaunay triangulation.
+
+    Collinear points are neighbours of the next along their line.
+    """
+    try:
+        triangles = Delaunay(plane).simplices
+    except (QhullError, ValueError):
+        centred = plane - plane.mean(axis=0)
+        along = centred @ np.linalg.svd(centred, full_matrices=False)[2][0]
+        order = np.argsort(along, kind="stable")
+        return np.column_stack([order[:-1], order[1:]])
+    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
+    return np.unique(np.sort(edges, axis=1), axis=0)
+
+
+def pair_sizes(plane: Floats, pairs: Ints, axis: int, factor: float) -> Floats:
+    """Return (m, 3) rows (low, high, size): between two neighbours, spans no longer than ``factor`` x their gap.
+
+    A pair asks this of the direction in which it is farther apart: two points of a section lie beside each
+    other along it, two points of neighbouring sections across it.
+    """
+    first, second = plane[pairs[:, 0]], plane[pairs[:, 1]]
+    gap = np.abs(second - first)
+    mine = gap[:, axis] > gap[:, 1 - axis]
+    low = np.minimum(first[mine, axis], second[mine, axis])
+    return np.column_stack([low, low + gap[mine, axis], factor * gap[mine, axis]])
+
+
+def graded_breaks(required: ArrayLike, largest: float, sizes: Floats, smallest: float = 0.0) -> Floats:
+    """Return ascending breaks through the ``required`` ones, their spans following a size function.
+
+    Parameters
+    ----------
+    required : (k,) array_like
+        Breaks that must stand: the ends, the seams, the section lines.
+    largest : float
+        Longest span.
+    sizes : (m, 3) array
+        Rows (low, high, size): the spans between low and high are at most ``size`` long.
+    smallest : float
+        No span is asked to be shorter than this.
+    """
+    required = np.unique(np.asarray(required, float))
+    x = np.linspace(required[0], required[-1], _SAMPLES + 1)
+    step = x[1] - x[0]
+    size = np.full(_SAMPLES, largest)
+    middle = (x[1:] + x[:-1]) / 2
+    for low, high, limit in sizes:
+        first, last = np.searchsorted(middle, (low, high))
+        size[max(first - 1, 0) : last + 1] = np.minimum(size[max(first - 1, 0) : last + 1], limit)
+    size = np.maximum(size, smallest)
+    for i in range(1, _SAMPLES):
+        size[i] = min(size[i], size[i - 1] + GROWTH * step)
+    for i in range(_SAMPLES - 2, -1, -1):
+        size[i] = min(size[i], size[i + 1] + GROWTH * step)
+    spent = np.concatenate([[0.0], np.cumsum(step / size)])
+    breaks = [required[:1]]
+    for low, high in zip(required[:-1], required[1:], strict=True):
+        start, end = np.interp((low, high), x, spent)
+        count = max(int(np.ceil(end - start - 1e-6)), 1)
+        inner = np.interp(np.linspace(start, end, count + 1)[1:-1], spent, x)
+        breaks += [inner, np.array([high])]
+    return np.concatenate(breaks)

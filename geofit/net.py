@@ -1,0 +1,383 @@
+"""The control net: from points on a chart to the coefficients of one tensor-product surface.
+
+The steps: choose the regional field on a coarse space; lay knots that follow the core's points; solve the field
+there; let the core pass through its points; approximate the periphery with what it borrows from the core.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit import bspline
+from geofit.assemble import multiply_knots
+from geofit.chart import Chart
+from geofit.field import Field, cell_weights, choose, energy_band, plane_trend, smooth
+from geofit.knots import graded_breaks, neighbour_pairs, pair_sizes
+from geofit.partition import Split
+from geofit.periphery import approximate, borrowed
+from geofit.points import PointSet
+from geofit.settings import FitSettings
+from geofit.skin import Lines, least_change, ruled, section_lines, separate
+from geofit.tensor import CELLWISE, TensorSpace
+
+__all__ = ["Net", "approximate_all", "fit_with_core"]
+
+Floats = NDArray[np.float64]
+Rectangle = tuple[float, float, float, float]
+Stage = Callable[[str, float], None]
+
+#: Longest span beside a core, and of a surface without one, in units of the spacing of the sparse points.
+LONGEST, EVEN = 0.8, 0.6
+#: Spans between neighbours of one section, and of neighbouring sections, as a share of their distance.
+ALONG, ACROSS = 1.8, 1.0
+#: Control points of the space on which the field is chosen.
+COARSE = 1_600
+#: Noise above this share of the values' own spread (and three tolerances) contradicts a tolerance below it.
+CONTRADICTION = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Net:
+    """A fitted surface before it is cut into patches; lengths in u and v are counted in ``unit`` metres.
+
+    ``coefficients`` (size,) heights or (size, 3) coordinates, metres; ``frozen`` (size,) marks the control
+    points that act on the core; ``lines`` are the section lines of a core that is linear across them.
+    """
+
+    space: TensorSpace
+    coefficients: Floats
+    frozen: NDArray[np.bool_]
+    core: Rectangle | None
+    lines: Floats | None
+    unit: float
+    field: Field
+    rounds: int
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Data:
+    """The points that the fit honours, in units, about their trend."""
+
+    plane: Floats
+    value: Floats
+    accuracy: Floats
+    area: Rectangle
+    unit: float
+    trend: Floats
+
+    def over_trend(self, space: TensorSpace) -> Floats:
+        """Return the trend's coefficients on a space."""
+        u = bspline.greville(space.knots_u, space.degree)
+        v = bspline.greville(space.knots_v, space.degree)
+        plane = np.stack([np.ones(space.shape), *np.meshgrid(u, v, indexing="ij")], axis=-1)
+        trend: Floats = plane.reshape(space.size, 3) @ self.trend
+        return trend
+
+
+def _data(points: PointSet, chart: Chart, kept: NDArray[np.bool_], split: Split | None) -> _Data:
+    area = chart.area
+    size, n = (area[1] - area[0]) * (area[3] - area[2]), int(kept.sum())
+    sparse = int((~split.inside & kept).sum()) if split is not None else 0
+    if split is not None and split.core is not None and sparse >= 10:
+        c = split.core
+        size, n = size - (c[1] - c[0]) * (c[3] - c[2]), sparse
+    unit = float(np.sqrt(size / n))
+    plane, value = chart.plane[kept] / unit, chart.values[kept]
+    trend = plane_trend(*plane.T, value, np.ones(len(plane)))
+    base = np.column_stack([np.ones(len(plane)), plane]) @ trend
+    scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
+    return _Data(plane, value - base, points.accuracy[kept], scaled, unit, trend)
+
+
+def _degree(n: int) -> int:
+    """Fewer than 16 points cannot hold a bicubic patch."""
+    return 3 if n >= 16 else 2 if n >= 6 else 1
+
+
+def _uniform(area: Rectangle, span: float, degree: int) -> TensorSpace:
+    """Return a space of even spans no longer than ``span``."""
+    counts = [max(int(np.ceil((area[k + 1] - area[k]) / span - 1e-9)), 1) for k in (0, 2)]
+    return TensorSpace(
+        bspline.clamped_knots(np.linspace(area[0], area[1], counts[0] + 1), degree),
+        bspline.clamped_knots(np.linspace(area[2], area[3], counts[1] + 1), degree),
+        degree,
+    )
+
+
+def _cap(settings: FitSettings, n: int) -> int:
+    return settings.max_control_points or int(np.clip(10 * n, 400, 60_000))
+
+
+def _span_for(area: Rectangle, control_points: float, degree: int) -> float:
+    """Return the span at which an even space has about so many control points."""
+    side = max(np.sqrt(control_points) - degree, 1.0)
+    return float(np.sqrt((area[1] - area[0]) * (area[3] - area[2])) / side)
+
+
+def _choose(data: _Data, degree: int, settings: FitSettings, most: int) -> Field:
+    span = max(EVEN, _span_for(data.area, min(COARSE, most), degree))
+    space = _uniform(data.area, span, degree)
+    weight = cell_weights(space, *data.plane.T, data.accuracy)
+    given = None if settings.smoothing == "auto" else float(settings.smoothing)
+    return choose(space, *data.plane.T, data.value, weight, given)
+
+
+def approximate_all(
+    points: PointSet, chart: Chart, kept: NDArray[np.bool_], settings: FitSettings, stage: Stage
+) -> Net:
+    """Fit a surface without a core: the smoothest one within the interior tolerance, as far as knots allow."""
+    data = _data(points, chart, kept, None)
+    n, degree = len(data.plane), _degree(len(data.plane))
+    most = _cap(settings, n)
+    stage("field", 0.25)
+    if n >= CELLWISE:
+        return _approximate_many(data, settings, most)
+    field = _choose(data, degree, settings, most)
+    span = max(EVEN, _span_for(data.area, most, degree))
+    space = _uniform(data.area, span, degree)
+    tolerance = np.full(n, 0.99 * settings.interior_tolerance)
+    rounds = _rounds(settings, field, data)
+    while True:
+        stage("periphery", 0.5)
+        weight = cell_weights(space, *data.plane.T, data.accuracy)
+        start, energy = smooth(space, field, *data.plane.T, data.value, weight)
+        free = np.zeros(space.size, bool)
+        result = approximate(
+            space, energy, start, free, data.plane, data.value, weight, tolerance, rounds
+        )
+        outside = result.misfit > tolerance
+        finer = _finer(space, data.plane[outside]) if outside.any() and rounds else space
+        if finer.size == space.size or finer.size > most:
+            break
+        space = finer
+    coefficients = result.coefficients + data.over_trend(space)
+    notes = _beyond(outside, result.misfit, settings, field)
+    return Net(space, coefficients, free, None, None, data.unit, field, result.rounds, notes)
+
+
+def _rounds(settings: FitSettings, field: Field, data: _Data) -> int:
+    """Return how often points outside the tolerance may gain weight.
+
+    Not at all where a smoothing is given, nor where the tolerance is finer than the data's own contradiction:
+    a surface that chased pure noise would swing far beyond it.
+    """
+    spread = float(np.std(data.value, axis=0).max())
+    if field.noise > max(3 * settings.interior_tolerance, CONTRADICTION * spread):
+        return 0
+    return settings.max_iterations if settings.smoothing == "auto" else 0
+
+
+def _finer(space: TensorSpace, plane: Floats) -> TensorSpace:
+    """Halve the spans that hold points outside their tolerance."""
+    knots = []
+    for x, vector in ((plane[:, 0], space.knots_u), (plane[:, 1], space.knots_v)):
+        breaks = np.unique(vector)
+        k = np.unique(np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(breaks) - 2))
+        middles = (breaks[k] + breaks[k + 1]) / 2
+        knots.append(bspline.clamped_knots(np.union1d(breaks, middles), space.degree))
+    return TensorSpace(knots[0], knots[1], space.degree)
+
+
+def _approximate_many(data: _Data, settings: FitSettings, most: int) -> Net:
+    """Approximate more points than any tolerance can hold one by one: refine while the fit gains by it."""
+    weight = np.ones(len(data.plane))
+    given = None if settings.smoothing == "auto" else float(settings.smoothing)
+    count, best = 1_000, None
+    while count <= most:
+        space = _uniform(data.area, _span_for(data.area, count, 3), 3)
+        field = choose(space, *data.plane.T, data.value, weight, given)
+        if best is not None and field.score > 0.98 * best[1].score:
+            break
+        best = (space, field)
+        count *= 4
+    assert best is not None
+    space, field = best
+    coefficients, _ = smooth(space, field, *data.plane.T, data.value, weight)
+    note = (
+        f"{len(data.plane)} points: the tolerance is judged by sigma, points are not pulled one by one; "
+        f"estimated noise {field.noise:.3f} m"
+    )
+    free = np.zeros(space.size, bool)
+    total = coefficients + data.over_trend(space)
+    return Net(space, total, free, None, None, data.unit, field, 1, (note,))
+
+
+def fit_with_core(
+    points: PointSet,
+    chart: Chart,
+    split: Split,
+    kept: NDArray[np.bool_],
+    settings: FitSettings,
+    stage: Stage,
+) -> Net:
+    """Fit a surface whose core passes through its points (paper, sec. 3.2)."""
+    assert split.core is not None
+    data = _data(points, chart, kept, split)
+    inside = split.inside[kept]
+    core = tuple(x / data.unit for x in split.core)
+    core = (core[0], core[1], core[2], core[3])
+    degree = _degree(len(data.plane))
+    most = _cap(settings, len(data.plane))
+    stage("field", 0.25)
+    field = _choose(data, degree, settings, most)
+    stage("core", 0.4)
+    section = points.section[kept][inside]
+    lines = section_lines(data.plane[inside], section, 0.5 * (core[1] - core[0]))
+    linear = settings.across == "linear" and degree == 3
+    notes: tuple[str, ...] = ()
+    if linear and not lines.straight:
+        linear = False
+        notes = ("across='linear' needs at least two straight, named sections; the core is cubic across",)
+    breaks = _breaks(data, core, inside, field, lines, linear, most, settings, degree)
+    space = TensorSpace(*(bspline.clamped_knots(b, degree) for b in breaks), degree)
+    weight = cell_weights(space, *data.plane.T, data.accuracy)
+    coefficients, _ = smooth(space, field, *data.plane.T, data.value, weight)
+    space, coefficients, rule = _open_seams(
+        space, coefficients, core, settings, data.plane[inside, 0] if linear else None, lines
+    )
+    coefficients = _skin(space, coefficients, core, data, inside, rule)
+    frozen = borrowed(space, core).ravel()
+    stage("periphery", 0.6)
+    outer = ~inside
+    if not outer.any() or frozen.all():
+        total = coefficients + data.over_trend(space)
+        cut = None if not outer.any() else core
+        return Net(space, total, frozen, cut, rule, data.unit, field, 0, notes)
+    energy = field.smoothing * energy_band(space, field.energy)
+    tolerance = np.full(int(outer.sum()), 0.99 * settings.interior_tolerance)
+    rounds = _rounds(settings, field, data)
+    result = approximate(
+        space, energy, coefficients, frozen, data.plane[outer], data.value[outer], weight[outer], tolerance, rounds
+    )
+    notes += _beyond(result.misfit > tolerance, result.misfit, settings, field)
+    total = result.coefficients + data.over_trend(space)
+    return Net(space, total, frozen, core, rule, data.unit, field, result.rounds, notes)
+
+
+def _breaks(
+    data: _Data,
+    core: Rectangle,
+    inside: NDArray[np.bool_],
+    field: Field,
+    lines: Lines,
+    linear: bool,
+    most: int,
+    settings: FitSettings,
+    degree: int,
+) -> tuple[Floats, Floats]:
+    """Lay breaks that follow the core's points, and split them where two points pull one control point apart."""
+    plane = data.plane[inside]
+    pairs = neighbour_pairs(plane)
+    area = data.area
+    required_u = np.concatenate([[area[0], core[0], core[1], area[1]], lines.u])
+    required_u = required_u[(required_u >= area[0]) & (required_u <= area[1])]
+    if linear:
+        required_u = np.concatenate([required_u, plane[:, 0]])
+    required_u = _apart(required_u, (area[0], core[0], core[1], area[1]), 1e-6)
+    required_v = np.array([area[2], core[2], core[3], area[3]])
+    sizes_u = np.empty((0, 3)) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
+    along = ALONG if lines.straight else ACROSS
+    sizes_v = pair_sizes(plane, pairs, 1, along)
+    coarse = _uniform(area, max(EVEN, _span_for(area, COARSE, degree)), degree)
+    weight = cell_weights(coarse, *data.plane.T, data.accuracy)
+    trial, _ = smooth(coarse, field, *data.plane.T, data.value, weight)
+    misfit = data.value[inside] - coarse.matrix(*plane.T) @ trial
+    stretch, smallest = 1.0, 0.0
+    while True:
+        scale = np.array([1.0, 1.0, stretch])
+        breaks_u = graded_breaks(required_u, LONGEST * stretch, sizes_u * scale, smallest)
+        breaks_v = graded_breaks(required_v, LONGEST * stretch, sizes_v * scale, smallest)
+        if (len(breaks_u) + degree - 1) * (len(breaks_v) + degree - 1) <= 0.9 * most:
+            break
+        stretch *= 1.15
+    if linear:
+        return breaks_u, breaks_v
+    return separate(
+        breaks_u, breaks_v, plane, misfit, degree=degree, most=most, rounds=max(settings.max_iterations, 1)
+    )
+
+
+def _apart(values: Floats, fixed: tuple[float, ...], least: float) -> Floats:
+    """Return ascending values without those that all but repeat a fixed one or each other."""
+    result = np.unique(fixed)
+    for value in np.unique(values):
+        if np.abs(result - value).min() > least:
+            result = np.sort(np.append(result, value))
+    return result
+
+
+def _open_seams(
+    space: TensorSpace,
+    coefficients: Floats,
+    core: Rectangle,
+    settings: FitSettings,
+    core_u: Floats | None,
+    lines: Lines,
+) -> tuple[TensorSpace, Floats, Floats | None]:
+    """Raise the knots at the seams as far as the joint asks, and at the lines of a ruled core.
+
+    Simple knots join patches with one tangent plane and one curvature; a ruled core, which has none across,
+    needs a double knot to join by its tangent plane; a full knot allows a break.
+    """
+    p = space.degree
+    inner_u = [x for x in core[:2] if space.knots_u[0] < x < space.knots_u[-1]]
+    inner_v = [x for x in core[2:] if space.knots_v[0] < x < space.knots_v[-1]]
+    ruled_core = core_u is not None
+    broken = settings.seam == "position"
+    at_u = dict.fromkeys(inner_u, p if broken else p - 1 if ruled_core else 1)
+    at_v = dict.fromkeys(inner_v, p if broken else 1)
+    rule = None
+    if ruled_core:
+        knots = np.unique(space.knots_u)
+        rule = knots[(knots >= core[0]) & (knots <= core[1])]
+        at_u.update(dict.fromkeys(rule[1:-1].tolist(), p))
+    space, coefficients = multiply_knots(space, coefficients, at_u, at_v)
+    return space, coefficients, rule
+
+
+def _skin(
+    space: TensorSpace,
+    coefficients: Floats,
+    core: Rectangle,
+    data: _Data,
+    inside: NDArray[np.bool_],
+    rule: Floats | None,
+) -> Floats:
+    """Let the surface pass through the core's points (eq. 2)."""
+    matrix = space.matrix(*data.plane[inside].T)
+    value = data.value[inside]
+    if rule is None:
+        return coefficients + least_change(matrix, value - matrix @ coefficients)
+    # The unknowns are the section curves; the rows of control points between them lie on straight lines.
+    rows = np.flatnonzero(borrowed(space, core).any(axis=1))
+    nv = space.shape[1]
+    net = coefficients.reshape(space.shape)
+    abscissa = bspline.greville(space.knots_u, space.degree)[rows]
+    curves = np.array([np.interp(line, abscissa, np.arange(len(rows))) for line in rule])
+    low = np.floor(curves).astype(int).clip(0, len(rows) - 2)
+    share = (curves - low)[:, None]
+    start = ((1 - share) * net[rows[low]] + share * net[rows[low + 1]]).ravel()
+    spread = ruled(space, rule, rows)
+    columns = (rows[:, None] * nv + np.arange(nv)).ravel()
+    acting = matrix[:, columns] @ spread
+    start = start + least_change(acting, value - acting @ start)
+    result = coefficients.copy()
+    held = borrowed(space, core)[rows].ravel()
+    result[columns[held]] = (spread @ start)[held]
+    return result
+
+
+def _beyond(
+    outside: NDArray[np.bool_], misfit: Floats, settings: FitSettings, field: Field
+) -> tuple[str, ...]:
+    if not outside.any():
+        return ()
+    return (
+        f"interior tolerance {settings.interior_tolerance:g} m not met at {outside.sum()} points, the worst "
+        f"{misfit.max():.3f} m; the data's own noise is about {field.noise:.3f} m",
+    )

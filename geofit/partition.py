@@ -1,0 +1,199 @@
+"""Dense core and sparse periphery: D = D1 + D2 + D3 + ... (paper, sec. 3.2, fig. 3a), by density."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+__all__ = ["Split", "split_all", "split_auto", "split_none", "split_rectangle"]
+
+Floats = NDArray[np.float64]
+Rectangle = tuple[float, float, float, float]
+
+#: Neighbours whose distance measures the spacing at a point: more than a section alone gives nearby.
+NEIGHBOURS = 8
+#: How many times denser than the rest a core must be, points an area; few points need more, since chance
+#: alone makes small clusters: CONTRAST + 10 / sqrt(points of the core).
+CONTRAST = 2.0
+#: Fewer points than these make no core worth a patch of its own.
+FEWEST = 20
+#: More points than these are not interpolated without being asked: they outnumber any sensible control net.
+MOST = 5_000
+
+
+@dataclass(frozen=True, eq=False)
+class Split:
+    """Core and periphery in the plane of the surface.
+
+    ``core`` is the rectangle (u0, u1, v0, v1), or None without a core; ``inside`` (n,) marks its points;
+    ``reason`` says in words what was chosen and why.
+    """
+
+    core: Rectangle | None
+    inside: NDArray[np.bool_]
+    reason: str
+
+
+def split_none(plane: Floats, reason: str) -> Split:
+    """Return the split without a core: approximation alone."""
+    return Split(None, np.zeros(len(plane), bool), reason)
+
+
+def split_all(plane: Floats, area: Rectangle, reason: str) -> Split:
+    """Return the split without a periphery: interpolation alone."""
+    return Split(area, np.ones(len(plane), bool), reason)
+
+
+def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: str) -> Split:
+    """Return the split by a given rectangle, widened to the area's edges where nothing lies beyond it."""
+    core = _widen(core, plane, area)
+    inside = _within(plane, core)
+    if not inside.any():
+        return split_none(plane, f"{reason}; no point lies inside, so all are approximated")
+    if inside.all():
+        return split_all(plane, area, f"{reason}; no point lies outside, so all are interpolated")
+    return Split(core, inside, f"{reason}: {inside.sum()} points inside, {(~inside).sum()} outside")
+
+
+def split_auto(plane: Floats, area: Rectangle) -> Split:
+    """Find a dense four-sided core by the spacing of the points.
+
+    The spacing of a point is its distance to the eighth neighbour. The threshold that best separates the
+    logarithms of the spacings (Otsu 1979) divides dense from sparse; the largest connected cluster of dense
+    points gives the rectangle, and the rectangle must be clearly denser than the rest (:data:`CONTRAST`).
+    """
+    n = len(plane)
+    if n < 2 * FEWEST:
+        return split_none(plane, f"{n} points are too few to tell a dense core from a periphery (40 are needed)")
+    spacing = KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0][:, -1]
+    limit = _otsu(np.log(np.maximum(spacing, 1e-9)))
+    if limit is None:
+        return _uniform(plane, area, "the points are spread evenly")
+    limit = float(np.exp(limit))
+    dense = np.flatnonzero(spacing <= limit)
+    cluster = dense[_largest_cluster(plane[dense], limit)]
+    if len(cluster) < FEWEST:
+        return _uniform(plane, area, "the dense places hold fewer than 20 points each")
+    low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
+    width, height = high - low
+    if min(width, height) < 0.08 * max(width, height):
+        return split_none(
+            plane,
+            f"the {len(cluster)} dense points lie along a line {max(width, height):.0f} m long and "
+            f"{min(width, height):.0f} m wide: one section makes no core, all points are approximated",
+        )
+    core = _widen((low[0], high[0], low[1], high[1]), plane, area)
+    inside = _within(plane, core)
+    if inside.all():
+        return _uniform(plane, area, "the dense points fill the area")
+    if inside.sum() > MOST:
+        return split_none(plane, _too_many(int(inside.sum())))
+    contrast = _density(inside.sum(), core) / _density((~inside).sum(), area, core)
+    if contrast < CONTRAST + 10 / np.sqrt(inside.sum()):
+        return _uniform(plane, area, f"the densest part is only {contrast:.1f} times as dense as the rest")
+    return Split(
+        core,
+        inside,
+        f"{inside.sum()} points with a spacing below {limit:.0f} m fill {core[1] - core[0]:.0f} m x "
+        f"{core[3] - core[2]:.0f} m, {contrast:.1f} times as dense as the other {(~inside).sum()} points",
+    )
+
+
+def _uniform(plane: Floats, area: Rectangle, reason: str) -> Split:
+    """No core stands out: the points are all sparse, and approximated."""
+    return split_none(plane, f"no dense core: {reason}; all points are approximated")
+
+
+def _too_many(n: int) -> str:
+    return (
+        f"{n} dense points would need more control points than data to be interpolated; all points are "
+        "approximated (name a smaller core to interpolate it)"
+    )
+
+
+def _otsu(values: Floats) -> float | None:
+    """Return the threshold with the largest variance between classes; None if the classes hardly differ."""
+    ordered = np.sort(values)
+    n = len(ordered)
+    below = np.arange(1, n)
+    mean_below = np.cumsum(ordered)[:-1] / below
+    mean_above = (ordered.sum() - np.cumsum(ordered)[:-1]) / (n - below)
+    between = below * (n - below) * (mean_below - mean_above) ** 2
+    best = int(np.argmax(between))
+    if mean_above[best] - mean_below[best] < np.log(1.4):
+        return None
+    return float((ordered[best] + ordered[best + 1]) / 2)
+
+
+def _largest_cluster(plane: Floats, reach: float) -> NDArray[np.bool_]:
+    pairs = KDTree(plane).query_pairs(reach, output_type="ndarray")
+    n = len(plane)
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    label = connected_components(graph, directed=False)[1]
+    result: NDArray[np.bool_] = label == np.argmax(np.bincount(label))
+    return result
+
+
+def _trimmed_box(plane: Floats, width: float) -> tuple[Floats, Floats]:
+    """Return the bounding box of a cluster, its edges drawn in past outliers.
+
+    An edge moves inwards while the strip next to it, ``width`` metres wide, is less than a third as dense as
+    the box.
+    """
+    low, high = plane.min(axis=0), plane.max(axis=0)
+    for _ in range(50):
+        moved = False
+        size = np.maximum(high - low, 1e-9)
+        within = ((plane >= low) & (plane <= high)).all(axis=1)
+        density = within.sum() / size.prod()
+        for axis in (0, 1):
+            strip = min(width, 0.2 * size[axis])
+            needed = density * strip * size[1 - axis] / 3
+            near_low = within & (plane[:, axis] < low[axis] + strip)
+            near_high = within & (plane[:, axis] > high[axis] - strip)
+            rest = plane[within, axis]
+            if near_low.sum() < needed and (rest >= low[axis] + strip).any():
+                low[axis] = rest[rest >= low[axis] + strip].min()
+                moved = True
+            elif near_high.sum() < needed and (rest <= high[axis] - strip).any():
+                high[axis] = rest[rest <= high[axis] - strip].max()
+                moved = True
+        if not moved:
+            break
+    return low, high
+
+
+def _widen(core: Rectangle, plane: Floats, area: Rectangle) -> Rectangle:
+    """Move each side to the area's edge if the strip between them is narrow and holds next to no points."""
+    sides = list(core)
+    inner = _within(plane, core)
+    density = max(inner.sum(), 1) / max((core[1] - core[0]) * (core[3] - core[2]), 1e-9)
+    for side in range(4):
+        axis = side // 2
+        strip = abs(sides[side] - area[side])
+        extent = core[2 * axis + 1] - core[2 * axis]
+        beyond = plane[:, axis] < sides[side] if side % 2 == 0 else plane[:, axis] > sides[side]
+        across = (plane[:, 1 - axis] >= core[2 - 2 * axis]) & (plane[:, 1 - axis] <= core[3 - 2 * axis])
+        expected = density * strip * (core[3 - 2 * axis] - core[2 - 2 * axis])
+        points = (beyond & across).sum()
+        if strip < 0.15 * extent and (not beyond.any() or points <= 2 or points > 0.5 * expected):
+            sides[side] = area[side]
+    return sides[0], sides[1], sides[2], sides[3]
+
+
+def _within(plane: Floats, core: Rectangle) -> NDArray[np.bool_]:
+    edge = 1e-9 * max(core[1] - core[0], core[3] - core[2], 1.0)
+    u, v = plane.T
+    return (u >= core[0] - edge) & (u <= core[1] + edge) & (v >= core[2] - edge) & (v <= core[3] + edge)
+
+
+def _density(count: int, area: Rectangle, hole: Rectangle | None = None) -> float:
+    size = (area[1] - area[0]) * (area[3] - area[2])
+    if hole is not None:
+        size -= (hole[1] - hole[0]) * (hole[3] - hole[2])
+    return float(count) / max(size, 1e-9)

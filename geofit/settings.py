@@ -1,0 +1,112 @@
+"""Settings of a fit: frozen, keyword-only, validated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geofit.errors import SettingsError
+
+__all__ = ["FitSettings"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitSettings:
+    """How a horizon is fitted and judged.
+
+    Parameters
+    ----------
+    epsilon : float
+        Control error in metres: the fit passes when sigma (eq. 3) is below it.
+    interior_tolerance : float
+        Largest distance in metres at which a peripheral point may lie from the surface (paper, sec. 3.2).
+    boundary_tolerance : float
+        Largest distance in metres between the edges of neighbouring patches (paper, sec. 3.2). The patches
+        share their edge control points, so the gap is zero up to the STEP file's digits.
+    across : {"cubic", "linear"}
+        Interpolation of the core across its sections. The paper usually chooses "linear"; "cubic" is
+        smoother, and on gentle horizons several times nearer to the rock between the sections.
+    seam : {"tangent", "position"}
+        Whether patches meet with one tangent plane, or at the edge only (a break is allowed).
+    core : "auto", "all", "none" or (k, 2) polygon
+        Region that is interpolated exactly: found by density; every point; no point; or the smallest
+        rectangle, along the polygon's longest side, around a polygon in map coordinates.
+    frame : {"auto", "map", "best-plane", "sections"}
+        Whether the surface is a height field over the map, over its best plane (steep faults), or a
+        parametric surface through ordered section lines (overturned folds).
+    smoothing : "auto" or float
+        Weight of the bending energy in the periphery: restricted maximum likelihood, or the ratio of noise
+        variance to field variance in m^2 per unit of energy.
+    max_iterations : int
+        Cap of the refinement and adjustment steps.
+    max_control_points : int or None
+        Cap of the number of control points; None: ten a data point, at least 400 and at most 60,000.
+    conflict_distance : float
+        Points nearer to each other in plan than this many metres count as one place: if their elevations
+        differ they are settled by accuracy, and listed.
+
+    Raises
+    ------
+    SettingsError
+        If a value is out of its range.
+
+    Examples
+    --------
+    >>> FitSettings(epsilon=0.25, seam="position").epsilon
+    0.25
+    """
+
+    epsilon: float = 0.5
+    interior_tolerance: float = 0.1
+    boundary_tolerance: float = 0.01
+    across: Literal["cubic", "linear"] = "cubic"
+    seam: Literal["tangent", "position"] = "tangent"
+    core: Literal["auto", "all", "none"] | tuple[tuple[float, float], ...] = "auto"
+    frame: Literal["auto", "map", "best-plane", "sections"] = "auto"
+    smoothing: Literal["auto"] | float = "auto"
+    max_iterations: int = 20
+    max_control_points: int | None = None
+    conflict_distance: float = 0.01
+
+    def __post_init__(self) -> None:
+        for name in ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance"):
+            _positive(name, getattr(self, name), "metres")
+        _one_of("across", self.across, ("cubic", "linear"))
+        _one_of("seam", self.seam, ("tangent", "position"))
+        _one_of("frame", self.frame, ("auto", "map", "best-plane", "sections"))
+        if isinstance(self.core, str):
+            _one_of("core", self.core, ("auto", "all", "none"), "or a polygon of map coordinates")
+        else:
+            object.__setattr__(self, "core", _polygon(self.core))
+        if self.smoothing != "auto":
+            _positive("smoothing", self.smoothing, "the auto value's unit, or the word 'auto'")
+        if not isinstance(self.max_iterations, int) or self.max_iterations < 0:
+            raise SettingsError(f"max_iterations is {self.max_iterations!r}; a whole number >= 0 is needed.")
+        if self.max_control_points is not None and self.max_control_points < 16:
+            raise SettingsError(f"max_control_points is {self.max_control_points}; at least 16 are needed.")
+
+
+def _positive(name: str, value: Any, unit: str) -> None:
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value) or value <= 0:
+        raise SettingsError(f"{name} is {value!r}; a finite number above 0 is needed ({unit}).")
+
+
+def _one_of(name: str, value: Any, words: tuple[str, ...], more: str = "") -> None:
+    if value not in words:
+        raise SettingsError(f"{name} is {value!r}; choose one of {', '.join(map(repr, words))} {more}".strip() + ".")
+
+
+def _polygon(value: ArrayLike) -> tuple[tuple[float, float], ...]:
+    try:
+        corners = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        corners = np.empty(0)
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
+        raise SettingsError(
+            f"core has shape {corners.shape}; a polygon of at least three (easting, northing) corners is needed."
+        )
+    return tuple((float(x), float(y)) for x, y in corners)

@@ -1,0 +1,1 @@
+"""Windows of geofit; they know everything below, and nothing knows them."""
