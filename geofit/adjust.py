@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.chart import Chart
-from geofit.errors import FitError
 from geofit.net import Net
-from geofit.skin import least_change
+from geofit.skin import damped_change
 
 __all__ = ["adjust"]
 
@@ -44,15 +43,9 @@ def adjust(net: Net, chart: Chart, movable: NDArray[np.bool_], residuals: Floats
     order = np.argsort(-squares, kind="stable")
     enough = int(np.searchsorted(np.cumsum(squares[order]), SHARE * squares.sum())) + 1
     worst = candidates[order[:enough]]
-    worst = worst[np.abs(residuals[worst]) > 1e-9]
-    while len(worst):
-        matrix = net.space.matrix(*(chart.plane[worst] / net.unit).T)
-        misfit = chart.values[worst] - matrix @ net.coefficients
-        try:
-            change = least_change(matrix, misfit, ~net.frozen)
-        except FitError:
-            # Some of these hang on the core's control points, or on each other's: take the worst half.
-            worst = worst[: len(worst) // 2]
-            continue
-        return replace(net, coefficients=net.coefficients + change)
-    return None
+    if not squares.any():
+        return None
+    matrix = net.space.matrix(chart.plane[worst] / net.unit)
+    misfit = chart.values[worst] - matrix @ net.coefficients
+    change = damped_change(matrix, misfit, ~net.frozen)
+    return replace(net, coefficients=net.coefficients + change)

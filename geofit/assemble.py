@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -70,15 +72,13 @@ def patches_of(
     p = space.degree
     seams_u = _inner(core[:2], space.knots_u) if core else []
     seams_v = _inner(core[2:], space.knots_v) if core else []
-    space, coefficients = multiply_knots(
-        space, coefficients, dict.fromkeys(seams_u, p), dict.fromkeys(seams_v, p)
-    )
+    space, coefficients = multiply_knots(space, coefficients, dict.fromkeys(seams_u, p), dict.fromkeys(seams_v, p))
     net = _control_points(space, coefficients, frame, unit)
     cuts_u = [space.knots_u[0], *seams_u, space.knots_u[-1]]
     cuts_v = [space.knots_v[0], *seams_v, space.knots_v[-1]]
     patches = []
-    for u0, u1 in zip(cuts_u[:-1], cuts_u[1:], strict=True):
-        for v0, v1 in zip(cuts_v[:-1], cuts_v[1:], strict=True):
+    for u0, u1 in itertools.pairwise(cuts_u):
+        for v0, v1 in itertools.pairwise(cuts_v):
             name = _name((u0, u1, v0, v1), core, frame, interpolated)
             rows, knots_u = _part(space.knots_u, p, u0, u1)
             columns, knots_v = _part(space.knots_v, p, v0, v1)

@@ -101,7 +101,8 @@ def collocation(knots: Floats, degree: int, x: ArrayLike, derivative: int = 0) -
 def greville(knots: Floats, degree: int) -> Floats:
     """Return the Greville abscissae: the control points of the identity (x(u) = u)."""
     count = len(knots) - degree - 1
-    return np.mean([knots[1 + j : 1 + j + count] for j in range(degree)], axis=0)
+    abscissae: Floats = np.mean([knots[1 + j : 1 + j + count] for j in range(degree)], axis=0)
+    return abscissae
 
 
 def energy_matrix(knots: Floats, degree: int, order: int) -> Floats:

@@ -79,10 +79,7 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
     kind, reason = _choose_kind(points, settings)
     if kind == "sections":
         return _section_chart(points, reason)
-    if kind == "best-plane":
-        frame = best_plane_frame(points)
-    else:
-        frame = map_frame(points, _direction(points, boundary))
+    frame = best_plane_frame(points) if kind == "best-plane" else map_frame(points, _direction(points, boundary))
     local = frame.to_local(points.xyz)
     places: Sequence[Floats] = [local[:, :2]]
     notes = [reason]

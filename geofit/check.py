@@ -36,9 +36,7 @@ def sigma(residuals: Floats) -> float:
     return float(np.sqrt(np.square(residuals).sum() / max(len(residuals) - 1, 1)))
 
 
-def check(
-    surface: HorizonSurface, conflicts: Sequence[Conflict] = (), notes: Sequence[str] = ()
-) -> Accuracy:
+def check(surface: HorizonSurface, conflicts: Sequence[Conflict] = (), notes: Sequence[str] = ()) -> Accuracy:
     """Measure every original point against the surface, and look at the surface itself.
 
     Parameters
@@ -95,25 +93,28 @@ def _groups(d: Floats, labels: NDArray[np.str_]) -> dict[str, Group]:
     return groups
 
 
-def _checks(
-    surface: HorizonSurface, d: Floats, found: tuple[Seam, ...], honoured: NDArray[np.bool_]
-) -> list[Check]:
+def _checks(surface: HorizonSurface, d: Floats, found: tuple[Seam, ...], honoured: NDArray[np.bool_]) -> list[Check]:
     settings = surface.settings
     checks = []
     exact = surface.core & honoured if len(surface.core) == len(d) else np.zeros(len(d), bool)
     if exact.any():
         worst = float(np.abs(d[exact]).max())
         checks.append(
-            Check("core", worst <= CORE_LIMIT, worst, CORE_LIMIT, "m", f"{exact.sum()} core points on the surface")
+            Check(
+                "core",
+                worst <= CORE_LIMIT,
+                worst,
+                CORE_LIMIT,
+                "m",
+                f"{exact.sum()} core points on the surface",
+            )
         )
     loose = ~exact
     if loose.any():
         worst = float(np.abs(d[loose]).max())
         count = int((np.abs(d[loose]) > settings.interior_tolerance).sum())
         text = f"{count} of {loose.sum()} approximated points beyond the interior tolerance"
-        checks.append(
-            Check("interior tolerance", count == 0, worst, settings.interior_tolerance, "m", text)
-        )
+        checks.append(Check("interior tolerance", count == 0, worst, settings.interior_tolerance, "m", text))
     if found:
         gap = max(seam.gap for seam in found)
         limit = min(GAP_LIMIT, settings.boundary_tolerance)
@@ -121,9 +122,7 @@ def _checks(
         angle = max(seam.angle for seam in found)
         tangent = settings.seam == "tangent"
         text = "largest angle at a seam" if tangent else "largest angle at a seam (breaks are allowed)"
-        checks.append(
-            Check("seam angle", angle <= ANGLE_LIMIT if tangent else None, angle, ANGLE_LIMIT, "deg", text)
-        )
+        checks.append(Check("seam angle", angle <= ANGLE_LIMIT if tangent else None, angle, ANGLE_LIMIT, "deg", text))
     checks += _shape_checks(surface)
     return checks
 
@@ -134,9 +133,7 @@ def _shape_checks(surface: HorizonSurface) -> list[Check]:
     normals = []
     for patch in surface.patches:
         u0, u1, v0, v1 = patch.domain
-        u, v = np.meshgrid(
-            np.linspace(u0, u1, _LATTICE + 1), np.linspace(v0, v1, _LATTICE + 1), indexing="ij"
-        )
+        u, v = np.meshgrid(np.linspace(u0, u1, _LATTICE + 1), np.linspace(v0, v1, _LATTICE + 1), indexing="ij")
         su, sv = patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1)
         lengths = np.linalg.norm(su, axis=-1) * np.linalg.norm(sv, axis=-1)
         normals.append((np.cross(su, sv) / np.maximum(lengths, 1e-300)[..., None]).reshape(-1, 3))
@@ -149,9 +146,7 @@ def _shape_checks(surface: HorizonSurface) -> list[Check]:
         # A fold that is meant turns its normals; anywhere else all of them look to one side.
         upward = np.array([0.0, 0.0, 1.0]) if surface.fit.get("frame") == "map" else normal.mean(axis=0)
         turned += int((normal @ upward < 0).sum())
-    checks = [
-        Check("normals", turned == 0, turned, 0, "places", f"{turned} of {total} places folded or degenerate")
-    ]
+    checks = [Check("normals", turned == 0, turned, 0, "places", f"{turned} of {total} places folded or degenerate")]
     z = surface.points.xyz[:, 2] - surface.origin[2]
     if len(z) and np.ptp(z) > 0:
         beyond = max(float(z.min()) - low, high - float(z.max()), 0.0)

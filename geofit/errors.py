@@ -97,5 +97,5 @@ class MissingDependencyError(GeofitError, ImportError):
     """An optional package is not installed."""
 
 
-class Cancelled(GeofitError):
+class Cancelled(GeofitError):  # noqa: N818 - what happened is no error of anybody's
     """The caller's progress function returned False."""

@@ -12,14 +12,14 @@ name      energy                                       where it wins
 
 Below one spacing the first term rules, above it the second, which calms the surface where no data are. For
 each energy lambda comes from restricted maximum likelihood (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36);
-of the two the one with the lower generalised cross-validation score (G. Wahba, *Spline Models for
-Observational Data*, 1990, eq. 4.3.1) is taken.
+"smooth" is taken where its generalised cross-validation score (G. Wahba, *Spline Models for Observational
+Data*, 1990, eq. 4.3.1) is clearly the lower one.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,10 @@ ENERGIES: dict[str, tuple[dict[int, float], int]] = {
 }
 #: Range of log10(lambda) in units of the spacing.
 _LOG_RANGE = (-9.0, 3.0)
+#: Noise above this share of the values' own spread contradicts any tolerance below it.
+CONTRADICTION = 0.5
+#: "rough" is the safer energy: a score this much above the least still takes it.
+CLEARLY = 1.015
 #: No elevation is known better than this, metres: keeps the likelihood finite on exact planes.
 _FINEST = 1e-4
 #: Stands for the likelihood of a lambda whose system has no solution; finite, for Brent's method.
@@ -48,12 +52,16 @@ _UNSOLVABLE = 1e12
 
 @dataclass(frozen=True)
 class Field:
-    """What was chosen: energy, lambda, and the noise (1 sigma, metres) of a point of weight one."""
+    """What was chosen: energy, lambda, and the noise (1 sigma, metres) that the likelihood finds.
+
+    ``contradictory`` says that the data are little else than noise.
+    """
 
     energy: str
     smoothing: float
     noise: float
     score: float
+    contradictory: bool = False
 
 
 def energy_band(space: TensorSpace, name: str) -> Floats:
@@ -62,37 +70,41 @@ def energy_band(space: TensorSpace, name: str) -> Floats:
     return sum((factor * space.energy(order) for order, factor in orders.items()), start=np.zeros(1))
 
 
-def plane_trend(u: Floats, v: Floats, z: Floats, weight: Floats) -> Floats:
+def plane_trend(plane: Floats, z: Floats, weight: Floats) -> Floats:
     """Return (3,) or (3, k) coefficients of the plane 1, u, v of weighted least squares, least slope first.
 
     Collinear points leave the slope across them at zero.
     """
     root = np.sqrt(weight)[:, None]
-    centre = np.array([np.average(u, weights=weight), np.average(v, weights=weight)])
-    matrix = np.column_stack([np.ones(len(u)), u - centre[0], v - centre[1]]) * root
+    centre = np.average(plane, axis=0, weights=weight)
+    matrix = np.column_stack([np.ones(len(plane)), plane - centre]) * root
     solution: Floats = np.linalg.lstsq(matrix, z.reshape(len(z), -1) * root, rcond=1e-9)[0]
     solution[0] -= centre @ solution[1:]
     return solution.reshape(3, *z.shape[1:])
 
 
-def cell_weights(space: TensorSpace, u: Floats, v: Floats, accuracy: Floats) -> Floats:
+def cell_weights(space: TensorSpace, plane: Floats, accuracy: Floats) -> Floats:
     """Return the weight of each point: relative accuracy, shared among the points of one knot cell.
 
     Points nearer to each other than the knots say one thing together; sharing keeps one dense section from
     deciding how noisy and how rough the whole area is. Points without a stated accuracy take the median.
     """
     stated = np.isfinite(accuracy)
-    relative = np.ones(len(u))
+    relative = np.ones(len(plane))
     if stated.any():
         middle = float(np.median(accuracy[stated]))
         relative[stated] = np.clip(middle / accuracy[stated], 0.1, 10.0) ** 2
-    index, _ = space.rows(u, v)
+    index, _ = space.rows(plane)
     _, cell, count = np.unique(index[:, 0], return_inverse=True, return_counts=True)
     return np.asarray(relative / count[cell])
 
 
 def choose(
-    space: TensorSpace, u: Floats, v: Floats, z: Floats, weight: Floats, smoothing: float | None = None
+    space: TensorSpace,
+    plane: Floats,
+    z: Floats,
+    weight: Floats,
+    smoothing: float | None = None,
 ) -> Field:
     """Choose the energy and lambda for data about their trend.
 
@@ -100,7 +112,7 @@ def choose(
     ----------
     space : TensorSpace
         A space with a few knots a spacing; the choice holds for finer ones.
-    u, v : (n,) arrays
+    plane : (n, 2) array
         Places, in units of the spacing.
     z : (n,) or (n, k) array
         Heights (or coordinates) in metres, trend removed.
@@ -114,28 +126,28 @@ def choose(
     FitError
         If no lambda gives a solvable system.
     """
-    band, right = space.normal_equations(u, v, z, weight)
+    band, right = space.normal_equations(plane, z, weight)
     square = float((weight @ (z.reshape(len(z), -1) ** 2)).sum())
     names = {3: ("smooth", "rough"), 2: ("rough",)}.get(space.degree, ("flat",))
     fields = []
     for name in names:
-        likelihood = _Likelihood(space, name, band, right, square, len(u))
-        fields.append(likelihood.best() if smoothing is None else likelihood.at(math.log10(smoothing)))
-    best = min(fields, key=lambda field: field.score)
+        likelihood = _Likelihood(space, name, band, right, square, len(plane))
+        fields.append(likelihood.at(likelihood.best() if smoothing is None else math.log10(smoothing)))
+    least = min(field.score for field in fields)
+    best = [field for field in fields if field.score <= CLEARLY * least][-1] if least < math.inf else fields[0]
     if not math.isfinite(best.score):
         raise FitError(
-            f"No smoothing makes the system of {len(u)} points and {space.size} control points solvable: the "
+            f"No smoothing makes the system of {len(plane)} points and {space.size} control points solvable: the "
             "points lie on too few places. Give more points, or a larger conflict_distance."
         )
-    return best
+    spread = float(np.std(z, axis=0).max())
+    return replace(best, contradictory=best.noise > CONTRADICTION * max(spread, _FINEST))
 
 
 class _Likelihood:
     """Restricted likelihood of lambda for one energy; each value costs one factorisation."""
 
-    def __init__(
-        self, space: TensorSpace, name: str, band: Floats, right: Floats, square: float, n: int
-    ) -> None:
+    def __init__(self, space: TensorSpace, name: str, band: Floats, right: Floats, square: float, n: int) -> None:
         self.name, self.space, self.band, self.right, self.square = name, space, band, right, square
         self.energy = energy_band(space, name)
         self.columns = 1 if right.ndim == 1 else right.shape[1]
@@ -155,27 +167,25 @@ class _Likelihood:
         except FitError:
             return _UNSOLVABLE
         degrees = max(self.n - self.free, 1)
-        return self.columns * (
-            degrees * math.log(penalised / (degrees * self.columns))
-            + factor.logdet
-            - (self.space.size - self.free) * log * math.log(10)
-        )
+        misfit = self.columns * degrees * math.log(penalised / (degrees * self.columns))
+        determinant = factor.logdet - (self.space.size - self.free) * log * math.log(10)
+        return misfit + self.columns * determinant
 
-    def best(self) -> Field:
-        """Search lambda: a coarse scan, then Brent's method between the neighbours of its best."""
+    def best(self) -> float:
+        """Search log10 lambda: a coarse scan, then Brent's method between the neighbours of its best."""
         grid = np.linspace(*_LOG_RANGE, 7)
         values = [self(log) for log in grid]
         k = int(np.argmin(values))
         if values[k] >= _UNSOLVABLE:
-            return Field(self.name, math.nan, math.nan, math.inf)
+            return float(grid[-1])
         low, high = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
         found = minimize_scalar(self, bounds=(low, high), method="bounded", options={"xatol": 0.15})
-        return self.at(float(found.x) if found.fun <= values[k] else float(grid[k]))
+        return float(found.x) if found.fun <= values[k] else float(grid[k])
 
     def at(self, log: float) -> Field:
         """Return the field at one lambda, with its noise and its score of generalised cross-validation."""
         try:
-            factor, coefficients, penalised = self._solve(log)
+            _, coefficients, penalised = self._solve(log)
             step = 0.1
             up, down = self._solve(log + step)[0].logdet, self._solve(log - step)[0].logdet
         except FitError:
@@ -189,9 +199,7 @@ class _Likelihood:
         return Field(self.name, 10.0**log, noise, math.sqrt(self.n * residual) / left)
 
 
-def smooth(
-    space: TensorSpace, field: Field, u: Floats, v: Floats, z: Floats, weight: Floats
-) -> tuple[Floats, Floats]:
+def smooth(space: TensorSpace, field: Field, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
     """Solve for the coefficients of a chosen field on any space.
 
     Returns
@@ -201,6 +209,6 @@ def smooth(
     energy : (bandwidth + 1, size) array
         Band of lambda times the energy, for what follows on the same space.
     """
-    band, right = space.normal_equations(u, v, z, weight)
+    band, right = space.normal_equations(plane, z, weight)
     energy = field.smoothing * energy_band(space, field.energy)
     return Factor(band + energy).solve(right), energy

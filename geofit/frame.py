@@ -98,4 +98,5 @@ def best_plane_frame(points: PointSet) -> Frame:
 def _origin(xyz: Floats) -> Floats:
     """Whole metres near the centre: exact in the STEP file, and easy to read there."""
     low, high = xyz.min(axis=0), xyz.max(axis=0)
-    return np.round((low + high) / 2)
+    middle: Floats = np.round((low + high) / 2)
+    return middle

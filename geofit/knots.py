@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Delaunay, QhullError
@@ -74,7 +76,7 @@ def graded_breaks(required: ArrayLike, largest: float, sizes: Floats, smallest: 
         size[i] = min(size[i], size[i + 1] + GROWTH * step)
     spent = np.concatenate([[0.0], np.cumsum(step / size)])
     breaks = [required[:1]]
-    for low, high in zip(required[:-1], required[1:], strict=True):
+    for low, high in itertools.pairwise(required):
         start, end = np.interp((low, high), x, spent)
         count = max(int(np.ceil(end - start - 1e-6)), 1)
         inner = np.interp(np.linspace(start, end, count + 1)[1:-1], spent, x)

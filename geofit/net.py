@@ -36,8 +36,6 @@ LONGEST, EVEN = 0.8, 0.6
 ALONG, ACROSS = 1.8, 1.0
 #: Control points of the space on which the field is chosen.
 COARSE = 1_600
-#: Noise above this share of the values' own spread (and three tolerances) contradicts a tolerance below it.
-CONTRADICTION = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +86,7 @@ def _data(points: PointSet, chart: Chart, kept: NDArray[np.bool_], split: Split 
         size, n = size - (c[1] - c[0]) * (c[3] - c[2]), sparse
     unit = float(np.sqrt(size / n))
     plane, value = chart.plane[kept] / unit, chart.values[kept]
-    trend = plane_trend(*plane.T, value, np.ones(len(plane)))
+    trend = plane_trend(plane, value, np.ones(len(plane)))
     base = np.column_stack([np.ones(len(plane)), plane]) @ trend
     scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
     return _Data(plane, value - base, points.accuracy[kept], scaled, unit, trend)
@@ -119,12 +117,10 @@ def _span_for(area: Rectangle, control_points: float, degree: int) -> float:
     return float(np.sqrt((area[1] - area[0]) * (area[3] - area[2])) / side)
 
 
-def _choose(data: _Data, degree: int, settings: FitSettings, most: int) -> Field:
-    span = max(EVEN, _span_for(data.area, min(COARSE, most), degree))
-    space = _uniform(data.area, span, degree)
-    weight = cell_weights(space, *data.plane.T, data.accuracy)
+def _choose(data: _Data, space: TensorSpace, settings: FitSettings) -> Field:
+    weight = cell_weights(space, data.plane, data.accuracy)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
-    return choose(space, *data.plane.T, data.value, weight, given)
+    return choose(space, data.plane, data.value, weight, given)
 
 
 def approximate_all(
@@ -137,19 +133,16 @@ def approximate_all(
     stage("field", 0.25)
     if n >= CELLWISE:
         return _approximate_many(data, settings, most)
-    field = _choose(data, degree, settings, most)
-    span = max(EVEN, _span_for(data.area, most, degree))
-    space = _uniform(data.area, span, degree)
-    tolerance = np.full(n, 0.99 * settings.interior_tolerance)
-    rounds = _rounds(settings, field, data)
+    space = _uniform(data.area, max(EVEN, _span_for(data.area, most, degree)), degree)
+    field = _choose(data, space, settings)
+    tolerance = settings.interior_tolerance
+    rounds = _rounds(settings, field)
     while True:
         stage("periphery", 0.5)
-        weight = cell_weights(space, *data.plane.T, data.accuracy)
-        start, energy = smooth(space, field, *data.plane.T, data.value, weight)
+        weight = cell_weights(space, data.plane, data.accuracy)
+        start, energy = smooth(space, field, data.plane, data.value, weight)
         free = np.zeros(space.size, bool)
-        result = approximate(
-            space, energy, start, free, data.plane, data.value, weight, tolerance, rounds
-        )
+        result = approximate(space, energy, start, free, data.plane, data.value, weight, tolerance, rounds)
         outside = result.misfit > tolerance
         finer = _finer(space, data.plane[outside]) if outside.any() and rounds else space
         if finer.size == space.size or finer.size > most:
@@ -160,16 +153,12 @@ def approximate_all(
     return Net(space, coefficients, free, None, None, data.unit, field, result.rounds, notes)
 
 
-def _rounds(settings: FitSettings, field: Field, data: _Data) -> int:
-    """Return how often points outside the tolerance may gain weight.
+def _rounds(settings: FitSettings, field: Field) -> int:
+    """Return how often points outside the tolerance may be pulled.
 
-    Not at all where a smoothing is given, nor where the tolerance is finer than the data's own contradiction:
-    a surface that chased pure noise would swing far beyond it.
+    Not at all where a smoothing is given, nor where the tolerance is finer than the data's own contradiction.
     """
-    spread = float(np.std(data.value, axis=0).max())
-    if field.noise > max(3 * settings.interior_tolerance, CONTRADICTION * spread):
-        return 0
-    return settings.max_iterations if settings.smoothing == "auto" else 0
+    return 0 if field.contradictory or settings.smoothing != "auto" else settings.max_iterations
 
 
 def _finer(space: TensorSpace, plane: Floats) -> TensorSpace:
@@ -190,14 +179,14 @@ def _approximate_many(data: _Data, settings: FitSettings, most: int) -> Net:
     count, best = 1_000, None
     while count <= most:
         space = _uniform(data.area, _span_for(data.area, count, 3), 3)
-        field = choose(space, *data.plane.T, data.value, weight, given)
+        field = choose(space, data.plane, data.value, weight, given)
         if best is not None and field.score > 0.98 * best[1].score:
             break
         best = (space, field)
         count *= 4
     assert best is not None
     space, field = best
-    coefficients, _ = smooth(space, field, *data.plane.T, data.value, weight)
+    coefficients, _ = smooth(space, field, data.plane, data.value, weight)
     note = (
         f"{len(data.plane)} points: the tolerance is judged by sigma, points are not pulled one by one; "
         f"estimated noise {field.noise:.3f} m"
@@ -224,7 +213,8 @@ def fit_with_core(
     degree = _degree(len(data.plane))
     most = _cap(settings, len(data.plane))
     stage("field", 0.25)
-    field = _choose(data, degree, settings, most)
+    coarse = _uniform(data.area, max(EVEN, _span_for(data.area, min(COARSE, most), degree)), degree)
+    field = _choose(data, coarse, settings)
     stage("core", 0.4)
     section = points.section[kept][inside]
     lines = section_lines(data.plane[inside], section, 0.5 * (core[1] - core[0]))
@@ -233,10 +223,11 @@ def fit_with_core(
     if linear and not lines.straight:
         linear = False
         notes = ("across='linear' needs at least two straight, named sections; the core is cubic across",)
-    breaks = _breaks(data, core, inside, field, lines, linear, most, settings, degree)
-    space = TensorSpace(*(bspline.clamped_knots(b, degree) for b in breaks), degree)
-    weight = cell_weights(space, *data.plane.T, data.accuracy)
-    coefficients, _ = smooth(space, field, *data.plane.T, data.value, weight)
+    breaks = _breaks(data, core, inside, field, coarse, lines, linear, most, settings)
+    knots = [bspline.clamped_knots(along, degree) for along in breaks]
+    space = TensorSpace(knots[0], knots[1], degree)
+    weight = cell_weights(space, data.plane, data.accuracy)
+    coefficients, _ = smooth(space, field, data.plane, data.value, weight)
     space, coefficients, rule = _open_seams(
         space, coefficients, core, settings, data.plane[inside, 0] if linear else None, lines
     )
@@ -249,10 +240,18 @@ def fit_with_core(
         cut = None if not outer.any() else core
         return Net(space, total, frozen, cut, rule, data.unit, field, 0, notes)
     energy = field.smoothing * energy_band(space, field.energy)
-    tolerance = np.full(int(outer.sum()), 0.99 * settings.interior_tolerance)
-    rounds = _rounds(settings, field, data)
+    tolerance = settings.interior_tolerance
+    rounds = _rounds(settings, field)
     result = approximate(
-        space, energy, coefficients, frozen, data.plane[outer], data.value[outer], weight[outer], tolerance, rounds
+        space,
+        energy,
+        coefficients,
+        frozen,
+        data.plane[outer],
+        data.value[outer],
+        weight[outer],
+        tolerance,
+        rounds,
     )
     notes += _beyond(result.misfit > tolerance, result.misfit, settings, field)
     total = result.coefficients + data.over_trend(space)
@@ -264,14 +263,14 @@ def _breaks(
     core: Rectangle,
     inside: NDArray[np.bool_],
     field: Field,
+    coarse: TensorSpace,
     lines: Lines,
     linear: bool,
     most: int,
     settings: FitSettings,
-    degree: int,
 ) -> tuple[Floats, Floats]:
     """Lay breaks that follow the core's points, and split them where two points pull one control point apart."""
-    plane = data.plane[inside]
+    plane, degree = data.plane[inside], coarse.degree
     pairs = neighbour_pairs(plane)
     area = data.area
     required_u = np.concatenate([[area[0], core[0], core[1], area[1]], lines.u])
@@ -283,10 +282,9 @@ def _breaks(
     sizes_u = np.empty((0, 3)) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
     along = ALONG if lines.straight else ACROSS
     sizes_v = pair_sizes(plane, pairs, 1, along)
-    coarse = _uniform(area, max(EVEN, _span_for(area, COARSE, degree)), degree)
-    weight = cell_weights(coarse, *data.plane.T, data.accuracy)
-    trial, _ = smooth(coarse, field, *data.plane.T, data.value, weight)
-    misfit = data.value[inside] - coarse.matrix(*plane.T) @ trial
+    weight = cell_weights(coarse, data.plane, data.accuracy)
+    trial, _ = smooth(coarse, field, data.plane, data.value, weight)
+    misfit = data.value[inside] - coarse.matrix(plane) @ trial
     stretch, smallest = 1.0, 0.0
     while True:
         scale = np.array([1.0, 1.0, stretch])
@@ -297,9 +295,7 @@ def _breaks(
         stretch *= 1.15
     if linear:
         return breaks_u, breaks_v
-    return separate(
-        breaks_u, breaks_v, plane, misfit, degree=degree, most=most, rounds=max(settings.max_iterations, 1)
-    )
+    return separate(breaks_u, breaks_v, plane, misfit, degree=degree, most=most, rounds=max(settings.max_iterations, 1))
 
 
 def _apart(values: Floats, fixed: tuple[float, ...], least: float) -> Floats:
@@ -349,7 +345,7 @@ def _skin(
     rule: Floats | None,
 ) -> Floats:
     """Let the surface pass through the core's points (eq. 2)."""
-    matrix = space.matrix(*data.plane[inside].T)
+    matrix = space.matrix(data.plane[inside])
     value = data.value[inside]
     if rule is None:
         return coefficients + least_change(matrix, value - matrix @ coefficients)
@@ -372,12 +368,13 @@ def _skin(
     return result
 
 
-def _beyond(
-    outside: NDArray[np.bool_], misfit: Floats, settings: FitSettings, field: Field
-) -> tuple[str, ...]:
+def _beyond(outside: NDArray[np.bool_], misfit: Floats, settings: FitSettings, field: Field) -> tuple[str, ...]:
     if not outside.any():
         return ()
+    reason = ""
+    if field.contradictory:
+        reason = f": the data contradict each other by about {field.noise:.2f} m, which was not chased"
     return (
         f"interior tolerance {settings.interior_tolerance:g} m not met at {outside.sum()} points, the worst "
-        f"{misfit.max():.3f} m; the data's own noise is about {field.noise:.3f} m",
+        f"{misfit.max():.3f} m{reason}",
     )

@@ -70,7 +70,7 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     n = len(plane)
     if n < 2 * FEWEST:
         return split_none(plane, f"{n} points are too few to tell a dense core from a periphery (40 are needed)")
-    spacing = KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0][:, -1]
+    spacing = np.asarray(KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0])[:, -1]
     limit = _otsu(np.log(np.maximum(spacing, 1e-9)))
     if limit is None:
         return _uniform(plane, area, "the points are spread evenly")
@@ -135,8 +135,8 @@ def _largest_cluster(plane: Floats, reach: float) -> NDArray[np.bool_]:
     n = len(plane)
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     label = connected_components(graph, directed=False)[1]
-    result: NDArray[np.bool_] = label == np.argmax(np.bincount(label))
-    return result
+    largest: NDArray[np.bool_] = label == np.argmax(np.bincount(label))
+    return largest
 
 
 def _trimmed_box(plane: Floats, width: float) -> tuple[Floats, Floats]:

@@ -1,5 +1,9 @@
 """The periphery: approximated within the tolerance, its boundary borrowed from the core (paper, sec. 3.2, step 2).
 
+The smoothest surface for the data's own noise comes first. Points that it leaves outside the tolerance are then
+met by the smallest change of the control points around them, as the core's points are: what lies between them
+stays the regional field's, where a surface bent as a whole would swing between points that disagree.
+
 The control points that act on the core stay as the core has them; they are eliminated from the unknowns, not
 penalised. Neighbouring patches therefore share their edge curve, and their tangent planes, to the last digit.
 """
@@ -10,15 +14,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
+from geofit.skin import damped_change
 from geofit.tensor import Factor, TensorSpace, band_times
 
 __all__ = ["Approximation", "approximate", "borrowed"]
 
 Floats = NDArray[np.float64]
 
-#: Pull towards the regional field where a break leaves control points free, relative to the system's diagonal.
+#: Pull towards the start where a break leaves control points free, relative to the energy's diagonal.
 _HOLD = 1e-7
+#: Where a pulled point comes to lie, as a share of the tolerance.
+RIM = 0.9
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,12 +57,10 @@ def approximate(
     plane: Floats,
     height: Floats,
     weight: Floats,
-    tolerance: Floats,
+    tolerance: float,
     rounds: int,
 ) -> Approximation:
-    """Fit the control points that are not frozen until every point lies within its tolerance.
-
-    Points outside their tolerance gain weight, round by round; the fit stays the smoothest one for its weights.
+    """Fit the control points that are not frozen, then bring every point within the tolerance.
 
     Parameters
     ----------
@@ -72,27 +78,28 @@ def approximate(
         Their heights (or coordinates), metres.
     weight : (m,) array
         Their weights.
-    tolerance : (m,) array
-        How far from the surface each may lie, metres.
+    tolerance : float
+        How far from the surface a point may lie, metres.
     rounds : int
-        Cap of the number of rounds.
+        Cap of the number of rounds; with none, points outside the tolerance stay there.
     """
-    matrix = space.matrix(*plane.T)
-    coefficients, best = start, start
-    misfit = _size(height - matrix @ start)
-    least = np.inf
+    matrix = space.matrix(plane)
+    best = _solve(space, energy, start, frozen, plane, height, weight)
+    misfit = height - matrix @ best
+    held = np.zeros(len(plane), bool)
     done = 0
-    for done in range(1, rounds + 2):
-        coefficients = _solve(space, energy, coefficients, frozen, plane, height, weight)
-        misfit = _size(height - matrix @ coefficients)
-        ratio = misfit / tolerance
-        over = float(np.maximum(ratio - 1, 0).sum())
-        if over < least:
-            best, least = coefficients, over
-        if over == 0 or done > rounds:
+    while done < rounds and (_size(misfit) > tolerance).any():
+        done += 1
+        held |= _size(misfit) > tolerance
+        # Points that are pulled once stay at the rim of their tolerance while their neighbours are pulled.
+        length = _size(misfit[held])
+        share = (1 - RIM * tolerance / np.maximum(length, RIM * tolerance)).reshape(-1, *[1] * (misfit.ndim - 1))
+        pulled = best + damped_change(csr_array(matrix[held]), share * misfit[held], ~frozen)
+        after = height - matrix @ pulled
+        if np.maximum(_size(after) - tolerance, 0).sum() >= 0.98 * np.maximum(_size(misfit) - tolerance, 0).sum():
             break
-        weight = weight * np.where(ratio > 1, np.clip(ratio**2, 2.0, 100.0), 1.0)
-    return Approximation(best, _size(height - matrix @ best), done)
+        best, misfit = pulled, after
+    return Approximation(best, _size(misfit), done)
 
 
 def _solve(
@@ -104,9 +111,9 @@ def _solve(
     height: Floats,
     weight: Floats,
 ) -> Floats:
-    band, right = space.normal_equations(*plane.T, height, weight)
+    band, right = space.normal_equations(plane, height, weight)
     band = band + energy
-    hold = _HOLD * float(np.median(band[0]))
+    hold = _HOLD * float(np.median(energy[0]))
     band[0] += hold
     right = right + hold * start
     if frozen.any():

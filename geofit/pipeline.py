@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,7 +23,7 @@ from geofit.partition import Split, split_all, split_auto, split_none, split_rec
 from geofit.points import PointSet
 from geofit.progress import Progress, tell
 from geofit.settings import FitSettings
-from geofit.surface import HorizonSurface, Partition
+from geofit.surface import HorizonSurface, Partition, Patch
 
 __all__ = ["fit_horizon"]
 
@@ -104,33 +104,125 @@ def _fit_horizon(
 ) -> HorizonSurface:
     clock.stage("conflicts", 0.0)
     chart = choose_chart(points, settings, corners)
-    kept, conflicts = _settle(points, chart, settings)
+    place = chart.values if chart.parametric else chart.plane
+    height = chart.values[:, 2] if chart.parametric else chart.values
+    kept, conflicts = settle(points, place, height, settings.conflict_distance)
 
     clock.stage("partition", 0.1)
-    split = _partition(chart, settings, kept, len(points))
+    split = _partition(chart, settings, kept)
+    job = _Job(points, settings, corners, chart, split, kept, conflicts, name)
 
     clock.stage("fit", 0.2)
-    net = _fit(points, chart, split, kept & chart.placed, settings, clock)
+    net = job.fit(kept & chart.placed, clock.stage)
     if not chart.placed.all():
-        chart, net = _correct(points, chart, split, kept, settings, clock, net)
+        job, net = _correct(job, net, clock)
 
     clock.stage("check", 0.8)
-    surface = _surface(points, chart, split, kept, settings, net, corners, name)
-    surface = _checked(surface, conflicts, chart, net, settings)
+    surface = job.checked(net)
 
     clock.stage("adjust", 0.9)
-    for _ in range(settings.max_iterations):
-        assert surface.accuracy is not None
-        if surface.accuracy.passed:
-            break
-        better = adjust(net, chart, kept & ~surface.core, surface.accuracy.residuals)
-        if better is None:
-            break
-        net = better
-        surface = _surface(points, chart, split, kept, settings, net, corners, name)
-        surface = _checked(surface, conflicts, chart, net, settings)
+    surface = _adjusted(job, net, surface)
     clock.stage("done", 1.0)
     return surface.with_(fit={**surface.fit, "seconds": dict(clock.seconds)})
+
+
+@dataclass(frozen=True, eq=False)
+class _Job:
+    """What stays the same while a horizon's control points are fitted and adjusted."""
+
+    points: PointSet
+    settings: FitSettings
+    boundary: Floats | None
+    chart: Chart
+    split: Split
+    kept: NDArray[np.bool_]
+    conflicts: tuple[Conflict, ...]
+    name: str
+
+    def fit(self, honoured: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Net:
+        """Return the control net that meets the core's and approximates the other honoured points."""
+        if self.split.core is None:
+            return approximate_all(self.points, self.chart, honoured, self.settings, stage)
+        return fit_with_core(self.points, self.chart, self.split, honoured, self.settings, stage)
+
+    def checked(self, net: Net) -> HorizonSurface:
+        """Return the surface of a control net, with its check."""
+        surface = HorizonSurface(
+            patches=self.patches(net),
+            origin=self.chart.frame.origin,
+            points=self.points,
+            settings=self.settings,
+            name=self.name,
+            outline=self.boundary if self.chart.frame.kind == "map" else None,
+            partition=self._partition(),
+            core=self.split.inside & self.kept,
+        )
+        figures = {
+            "frame": self.chart.frame.kind,
+            "energy": net.field.energy,
+            "smoothing": net.field.smoothing,
+            "noise": net.field.noise,
+            "spacing": net.unit,
+            "rounds": net.rounds,
+            "control_points": surface.control_points,
+        }
+        surface = surface.with_(fit=figures)
+        return surface.with_(accuracy=check(surface, self.conflicts, (*self.chart.notes, *net.notes)))
+
+    def patches(self, net: Net) -> tuple[Patch, ...]:
+        """Cut the surface into patches along the core's edges."""
+        interpolated = self.split.core is not None
+        return patches_of(net.space, net.coefficients, net.core, self.chart.frame, net.unit, net.lines, interpolated)
+
+    def _partition(self) -> Partition:
+        corners = None
+        if self.split.core is not None and not self.chart.parametric:
+            u0, u1, v0, v1 = self.split.core
+            local = np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]])
+            xyz = self.chart.frame.turn_back(local) + self.chart.frame.origin
+            corners = tuple((float(x), float(y)) for x, y in xyz[:, :2])
+        inside = int((self.split.inside & self.kept).sum())
+        return Partition(corners, inside, len(self.kept) - inside, self.split.reason)
+
+
+def _correct(job: _Job, net: Net, clock: _Clock) -> tuple[_Job, Net]:
+    """Project the points between the sections on the surface, and fit again with the parameters found."""
+    between = ~job.chart.placed
+    for _ in range(CORRECTIONS):
+        foot = project(job.patches(net), job.chart.frame.turn_back(job.chart.values[between]))
+        plane = job.chart.plane.copy()
+        moved = np.abs(plane[between] - np.column_stack([foot.u, foot.v])).max()
+        plane[between] = np.column_stack([foot.u, foot.v])
+        job = replace(job, chart=job.chart.with_plane(plane))
+        net = job.fit(job.kept, clock.stage)
+        if moved < 1e-3:
+            break
+    return job, net
+
+
+def _adjusted(job: _Job, net: Net, surface: HorizonSurface) -> HorizonSurface:
+    """Adjust locally until sigma is below epsilon or no step helps, and say which."""
+    for step in range(job.settings.max_iterations + 1):
+        accuracy = surface.accuracy
+        assert accuracy is not None
+        if accuracy.passed:
+            if step:
+                surface = _with_note(surface, f"sigma came below epsilon after {step} local adjustments")
+            break
+        better = adjust(net, job.chart, job.kept & ~surface.core, accuracy.residuals)
+        candidate = job.checked(better) if better is not None and step < job.settings.max_iterations else None
+        if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
+            words = f"sigma stays above epsilon: after {step} local adjustments no further step lowers it"
+            surface = _with_note(surface, words)
+            break
+        assert better is not None
+        net, surface = better, candidate
+    return surface
+
+
+def _with_note(surface: HorizonSurface, note: str) -> HorizonSurface:
+    assert surface.accuracy is not None
+    return surface.with_(accuracy=replace(surface.accuracy, notes=(*surface.accuracy.notes, note)))
 
 
 def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
@@ -151,15 +243,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     return corners
 
 
-def _settle(
-    points: PointSet, chart: Chart, settings: FitSettings
-) -> tuple[NDArray[np.bool_], tuple[Conflict, ...]]:
-    place = chart.values if chart.parametric else chart.plane
-    height = chart.values[:, 2] if chart.parametric else chart.values
-    return settle(points, place, height, settings.conflict_distance)
-
-
-def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_], n: int) -> Split:
+def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> Split:
     """Split the points that are honoured; one that gave way is in no core."""
     plane = chart.plane[kept]
     if chart.parametric:
@@ -183,99 +267,6 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_], n: 
             raise FitError("The core's polygon lies outside the study area. Check its coordinates and their order.")
         rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = split_rectangle(plane, rectangle, chart.area, "the core's polygon as drawn")
-    inside = np.zeros(n, bool)
+    inside = np.zeros(len(kept), bool)
     inside[kept] = found.inside
     return Split(found.core, inside, found.reason)
-
-
-def _fit(
-    points: PointSet, chart: Chart, split: Split, kept: NDArray[np.bool_], settings: FitSettings, clock: _Clock
-) -> Net:
-    if split.core is None:
-        return approximate_all(points, chart, kept, settings, clock.stage)
-    return fit_with_core(points, chart, split, kept, settings, clock.stage)
-
-
-def _correct(
-    points: PointSet,
-    chart: Chart,
-    split: Split,
-    kept: NDArray[np.bool_],
-    settings: FitSettings,
-    clock: _Clock,
-    net: Net,
-) -> tuple[Chart, Net]:
-    """Project the points between the sections on the surface, and fit again with the parameters found."""
-    between = ~chart.placed
-    for _ in range(CORRECTIONS):
-        patches = patches_of(net.space, net.coefficients, None, chart.frame, net.unit, None, True)
-        foot = project(patches, chart.frame.turn_back(chart.values[between]))
-        plane = chart.plane.copy()
-        moved = np.abs(plane[between] - np.column_stack([foot.u, foot.v])).max(initial=0.0)
-        plane[between] = np.column_stack([foot.u, foot.v])
-        chart = chart.with_plane(plane)
-        net = _fit(points, chart, split, kept, settings, clock)
-        if moved < 1e-3:
-            break
-    return chart, net
-
-
-def _surface(
-    points: PointSet,
-    chart: Chart,
-    split: Split,
-    kept: NDArray[np.bool_],
-    settings: FitSettings,
-    net: Net,
-    boundary: Floats | None,
-    name: str,
-) -> HorizonSurface:
-    patches = patches_of(
-        net.space, net.coefficients, net.core, chart.frame, net.unit, net.lines, split.core is not None
-    )
-    outline = boundary if chart.frame.kind == "map" else None
-    surface = HorizonSurface(
-        patches=patches,
-        origin=chart.frame.origin,
-        points=points,
-        settings=settings,
-        name=name,
-        outline=outline,
-        partition=_described(split, chart, kept),
-        core=split.inside & kept,
-        fit=_figures(chart, net),
-    )
-    return surface.with_(fit={**surface.fit, "control_points": surface.control_points})
-
-
-def _described(split: Split, chart: Chart, kept: NDArray[np.bool_]) -> Partition:
-    corners = None
-    if split.core is not None and not chart.parametric:
-        u0, u1, v0, v1 = split.core
-        local = np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]])
-        xyz = chart.frame.turn_back(local) + chart.frame.origin
-        corners = tuple((float(x), float(y)) for x, y in xyz[:, :2])
-    inside = int((split.inside & kept).sum())
-    return Partition(corners, inside, len(kept) - inside, split.reason)
-
-
-def _figures(chart: Chart, net: Net) -> dict[str, Any]:
-    return {
-        "frame": chart.frame.kind,
-        "energy": net.field.energy,
-        "smoothing": net.field.smoothing,
-        "noise": net.field.noise,
-        "spacing": net.unit,
-        "rounds": net.rounds,
-    }
-
-
-def _checked(
-    surface: HorizonSurface,
-    conflicts: tuple[Conflict, ...],
-    chart: Chart,
-    net: Net,
-    settings: FitSettings,
-) -> HorizonSurface:
-    accuracy = check(surface, conflicts, (*chart.notes, *net.notes))
-    return replace(surface, accuracy=accuracy)

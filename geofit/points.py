@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,6 +61,19 @@ class PointSet:
     row: Ints = 0  # type: ignore[assignment]
     file: Strings = ""  # type: ignore[assignment]
 
+    if TYPE_CHECKING:
+        # What may be given is wider than what is held.
+        def __init__(
+            self,
+            xyz: ArrayLike,
+            kind: ArrayLike = ...,
+            hole: ArrayLike = ...,
+            section: ArrayLike = ...,
+            accuracy: ArrayLike = ...,
+            row: ArrayLike = ...,
+            file: ArrayLike = ...,
+        ) -> None: ...
+
     def __post_init__(self) -> None:
         try:
             xyz = np.array(self.xyz, dtype=np.float64)
@@ -69,9 +82,7 @@ class PointSet:
         if xyz.size == 0:
             xyz = xyz.reshape(0, 3)
         if xyz.ndim != 2 or xyz.shape[1] != 3:
-            raise PointsError(
-                f"xyz has shape {xyz.shape}; an (n, 3) array of easting, northing, elevation is needed."
-            )
+            raise PointsError(f"xyz has shape {xyz.shape}; an (n, 3) array of easting, northing, elevation is needed.")
         bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         if bad.size:
             raise PointsError(
@@ -100,9 +111,10 @@ class PointSet:
 
     def __getitem__(self, index: Any) -> PointSet:
         """Return the points at an index array, a mask or a slice."""
-        return PointSet(**{f.name: np.atleast_1d(getattr(self, f.name)[index]) for f in fields(self)} | {
-            "xyz": np.atleast_2d(self.xyz[index])
-        })
+        return PointSet(
+            **{f.name: np.atleast_1d(getattr(self, f.name)[index]) for f in fields(self)}
+            | {"xyz": np.atleast_2d(self.xyz[index])}
+        )
 
     def with_(self, **changes: Any) -> PointSet:
         """Return a copy with some columns replaced."""
@@ -128,11 +140,11 @@ class PointSet:
 
 def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     try:
-        array = np.asarray(values, dtype=dtype)
+        array: NDArray[Any] = np.asarray(values, dtype=dtype)
     except (TypeError, ValueError) as error:
         raise PointsError(f"{name} cannot be read as {dtype.__name__}: {error}.") from None
     if array.ndim == 0:
-        return np.full(n, array)
+        return np.full(n, array, dtype=array.dtype)
     if array.shape != (n,):
         raise PointsError(f"{name} has shape {array.shape}; {n} points need shape ({n},) or one value for all.")
     return array.copy()

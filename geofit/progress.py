@@ -16,7 +16,9 @@ class Progress(Protocol):
     Returning ``False`` asks for a stop; any other value, ``None`` included, means go on.
     """
 
-    def __call__(self, stage: str, fraction: float, /) -> bool | None: ...
+    def __call__(self, stage: str, fraction: float, /) -> bool | None:
+        """Hear that the task stands at ``fraction`` of its whole, in ``stage``."""
+        ...
 
 
 def tell(progress: Progress | None, stage: str, fraction: float) -> None:

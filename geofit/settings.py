@@ -86,8 +86,9 @@ class FitSettings:
             _positive("smoothing", self.smoothing, "the auto value's unit, or the word 'auto'")
         if not isinstance(self.max_iterations, int) or self.max_iterations < 0:
             raise SettingsError(f"max_iterations is {self.max_iterations!r}; a whole number >= 0 is needed.")
-        if self.max_control_points is not None and self.max_control_points < 16:
-            raise SettingsError(f"max_control_points is {self.max_control_points}; at least 16 are needed.")
+        most = self.max_control_points
+        if most is not None and (not isinstance(most, int) or isinstance(most, bool) or most < 16):
+            raise SettingsError(f"max_control_points is {most!r}; a whole number of at least 16 is needed.")
 
 
 def _positive(name: str, value: Any, unit: str) -> None:

@@ -18,7 +18,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array, kron, eye_array
+from scipy.sparse import csr_array, eye_array, kron
 from scipy.sparse.linalg import splu
 
 from geofit import bspline
@@ -26,7 +26,7 @@ from geofit.errors import FitError
 from geofit.knots import neighbour_pairs
 from geofit.tensor import TensorSpace
 
-__all__ = ["Lines", "least_change", "ruled", "section_lines", "separate"]
+__all__ = ["Lines", "damped_change", "least_change", "ruled", "section_lines", "separate"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,6 +35,8 @@ Ints = NDArray[np.int64]
 OVERSHOOT = 10.0
 #: Largest distance at which the linear algebra may leave a core point from the surface, metres.
 EXACT = 1e-8
+#: Damping of changes that may leave a misfit, relative to the Gram matrix's largest diagonal.
+DAMPING = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,6 +100,19 @@ def least_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | No
     return np.asarray(change)
 
 
+def damped_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_]) -> Floats:
+    """Return a small change of the free control points that takes most of a misfit away.
+
+    Unlike :func:`least_change` it does not force points apart that share their control points: what they
+    contradict each other by is left. Parameters as there.
+    """
+    acting = csr_array(matrix * free.astype(float))
+    gram = (acting @ acting.T).tocsc()
+    diagonal = gram.diagonal()
+    gram.setdiag(diagonal + DAMPING * max(float(diagonal.max(initial=0.0)), 1e-12))
+    return np.asarray(acting.T @ splu(gram).solve(misfit))
+
+
 def _unmet(points: int, left: float) -> str:
     return (
         f"The control points cannot meet all {points} points exactly (misfit {left:.1e} m is left). "
@@ -129,9 +144,7 @@ def separate(
     pairs = neighbour_pairs(plane)
     limit = OVERSHOOT * max(float(np.abs(misfit).max(initial=0.0)), 1e-3)
     for _ in range(rounds):
-        space = TensorSpace(
-            bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree
-        )
+        space = TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)
         strain = _strain(space, plane, misfit)
         strained = np.flatnonzero(strain > limit)
         if not len(strained):
@@ -147,17 +160,15 @@ def separate(
 
 def _strain(space: TensorSpace, plane: Floats, misfit: Floats) -> Floats:
     """Return how far the control points near each point must move to meet all points."""
-    matrix = space.matrix(*plane.T)
+    matrix = space.matrix(plane)
     gram = (matrix @ matrix.T).tocsc()
     gram.setdiag(gram.diagonal() * (1 + 1e-10))
     change = np.abs(matrix.T @ splu(gram).solve(misfit)).reshape(space.size, -1).max(axis=1)
-    index, _ = space.rows(*plane.T)
+    index, _ = space.rows(plane)
     return np.asarray(change[index].max(axis=1))
 
 
-def _between(
-    pairs: Ints, strained: Ints, plane: Floats, breaks_u: Floats, breaks_v: Floats
-) -> tuple[Floats, Floats]:
+def _between(pairs: Ints, strained: Ints, plane: Floats, breaks_u: Floats, breaks_v: Floats) -> tuple[Floats, Floats]:
     """Return new breaks in the middle of the tightest pair at each strained point."""
     tight = np.isin(pairs, strained).any(axis=1)
     first, second = plane[pairs[tight, 0]], plane[pairs[tight, 1]]

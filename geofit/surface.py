@@ -73,9 +73,7 @@ class Patch:
         assert self.weights is not None
         homogeneous = np.concatenate([self.control * self.weights[..., None], self.weights[..., None]], axis=2)
         table: dict[tuple[int, int], Floats] = {}
-        parts = {
-            (a, b): self._sum(homogeneous, u, v, a, b) for a in range(du + 1) for b in range(dv + 1)
-        }
+        parts = {(a, b): self._sum(homogeneous, u, v, a, b) for a in range(du + 1) for b in range(dv + 1)}
         w = parts[0, 0][..., 3:]
         for a in range(du + 1):
             for b in range(dv + 1):

@@ -13,7 +13,7 @@ from math import comb
 
 import numpy as np
 from numpy.polynomial import legendre
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse import csr_array
 
@@ -61,29 +61,29 @@ class TensorSpace:
         """Half width of the band of its matrices."""
         return self.degree * self.shape[1] + self.degree
 
-    def rows(self, u: ArrayLike, v: ArrayLike) -> tuple[Ints, Floats]:
-        """Return the coefficients that act at each place and their basis values, both (n, (degree + 1)^2)."""
-        iu, bu = bspline.basis(self.knots_u, self.degree, u)
-        iv, bv = bspline.basis(self.knots_v, self.degree, v)
+    def rows(self, plane: Floats) -> tuple[Ints, Floats]:
+        """Return the coefficients that act at (n, 2) places and their basis values, both (n, (degree + 1)^2)."""
+        iu, bu = bspline.basis(self.knots_u, self.degree, plane[:, 0])
+        iv, bv = bspline.basis(self.knots_v, self.degree, plane[:, 1])
         step = np.arange(self.degree + 1)
         index = (iu[:, None] + step)[:, :, None] * self.shape[1] + (iv[:, None] + step)[:, None, :]
         count = (self.degree + 1) ** 2
         return index.reshape(-1, count), (bu[:, :, None] * bv[:, None, :]).reshape(-1, count)
 
-    def matrix(self, u: ArrayLike, v: ArrayLike) -> csr_array:
-        """Return the sparse (n, size) collocation matrix."""
-        index, values = self.rows(u, v)
+    def matrix(self, plane: Floats) -> csr_array:
+        """Return the sparse (n, size) collocation matrix of (n, 2) places."""
+        index, values = self.rows(plane)
         pointer = np.arange(len(index) + 1) * index.shape[1]
         return csr_array((values.ravel(), index.ravel(), pointer), shape=(len(index), self.size))
 
-    def normal_equations(self, u: Floats, v: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
+    def normal_equations(self, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
         """Return the band of X' W X, (bandwidth + 1, size), and X' W z, (size,) or (size, k)."""
-        if len(u) < CELLWISE or z.ndim > 1:
-            return self._by_points(u, v, z, weight)
-        return self._by_cells(u, v, z, weight)
+        if len(plane) < CELLWISE or z.ndim > 1:
+            return self._by_points(plane, z, weight)
+        return self._by_cells(plane, z, weight)
 
-    def _by_points(self, u: Floats, v: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
-        index, values = self.rows(u, v)
+    def _by_points(self, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
+        index, values = self.rows(plane)
         weighted = values * weight[:, None]
         blocks = weighted[:, :, None] * values[:, None, :]
         right = np.stack(
@@ -100,10 +100,10 @@ class TensorSpace:
         column = np.broadcast_to(index[:, None, :], below.shape)
         lower = below >= 0
         place = below[lower] * self.size + column[lower]
-        band = np.bincount(place, blocks[lower], minlength=(self.bandwidth + 1) * self.size)
+        band: Floats = np.bincount(place, blocks[lower], minlength=(self.bandwidth + 1) * self.size)
         return band.reshape(self.bandwidth + 1, self.size)
 
-    def _by_cells(self, u: Floats, v: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
+    def _by_cells(self, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
         """Sum Legendre moments in each cell, then turn them into the normal equations.
 
         On one cell each product of two basis functions is a polynomial of degree 2p in u and in v, so
@@ -114,7 +114,8 @@ class TensorSpace:
         count = (len(cells_u) - 1) * (len(cells_v) - 1)
         moments = np.zeros(((2 * p + 1) ** 2, count))
         right = np.zeros(((p + 1) ** 2, count))
-        for start in range(0, len(u), _CHUNK):
+        u, v = plane.T
+        for start in range(0, len(plane), _CHUNK):
             part = slice(start, start + _CHUNK)
             cu, pu = _legendre(cells_u, u[part], 2 * p)
             cv, pv = _legendre(cells_v, v[part], 2 * p)
@@ -155,9 +156,7 @@ class TensorSpace:
         Order 2 is the thin plate, the integral of z_uu^2 + 2 z_uv^2 + z_vv^2; in general the binomial sum
         that does not change when the axes turn.
         """
-        terms = [
-            (comb(order, k), self._grams_u[order - k], self._grams_v[k]) for k in range(order + 1)
-        ]
+        terms = [(comb(order, k), self._grams_u[order - k], self._grams_v[k]) for k in range(order + 1)]
         nu, nv = self.shape
         band = np.zeros((self.bandwidth + 1, nu, nv))
         for a in range(self.degree + 1):

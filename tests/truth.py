@@ -51,9 +51,7 @@ def hills(seed: int, size: float = 2000.0, shortest: float = 250.0, relief: floa
 
     def height(x: Floats, y: Floats) -> Floats:
         x, y = np.asarray(x, float) - EASTING, np.asarray(y, float) - NORTHING
-        waved = sum(
-            a * np.sin(p * x + q * y + f) for a, p, q, f in zip(amplitude, kx, ky, phase, strict=True)
-        )
+        waved = sum(a * np.sin(p * x + q * y + f) for a, p, q, f in zip(amplitude, kx, ky, phase, strict=True))
         return 1500.0 + dip[0] * x + dip[1] * y + waved
 
     return height
@@ -76,9 +74,7 @@ def paper_arrangement(
         xyz.append(np.column_stack([np.full(section_points, x), y]))
         section += [f"S{i + 1:02d}"] * section_points
     side = np.where(rng.uniform(size=periphery) < 0.5, 0.0, x1 + 60.0)
-    xyz.append(
-        np.column_stack([side + rng.uniform(0, x0 - 60.0, periphery), rng.uniform(0, size, periphery)])
-    )
+    xyz.append(np.column_stack([side + rng.uniform(0, x0 - 60.0, periphery), rng.uniform(0, size, periphery)]))
     plan = np.concatenate(xyz) + (EASTING, NORTHING)
     z = height(plan[:, 0], plan[:, 1]) + rng.normal(0, noise, len(plan))
     points = PointSet(

@@ -1,0 +1,52 @@
+# make demo | test | lint | real | bench | clean. Python 3.11 or newer; everything goes into .venv.
+SHELL := /bin/sh
+# A name may stand on the path and still not run (version managers leave such shims), so each is tried.
+PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo $$p; break; }; done)
+LOCK := constraints/constraints.txt
+BIN := .venv/bin
+PIP := $(BIN)/python -m pip --disable-pip-version-check
+INSTALL := $(PIP) install --quiet --constraint $(LOCK)
+
+.PHONY: demo test lint real bench clean python
+
+demo: .venv/.installed
+	$(BIN)/geofit demo --out demo_out
+
+test: .venv/.installed-test
+	$(BIN)/python -m pytest
+
+lint: .venv/.installed-lint
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	rm -rf build
+	$(PIP) install --quiet --no-deps --no-build-isolation --target build/typecheck .
+	cd build && MYPYPATH=typecheck ../$(BIN)/python -m mypy --config-file ../pyproject.toml -p geofit
+
+real: .venv/.installed-test
+	$(BIN)/python benchmarks/real.py
+
+bench: .venv/.installed-test
+	@set -e; for script in $(filter-out benchmarks/real.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$script; done
+
+clean:
+	rm -rf .venv build demo_out real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
+
+python:
+	@echo $(PYTHON)
+
+.venv/bin/python:
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed; none was found. Install it, or name it: make $(MAKECMDGOALS) PYTHON=/path/to/python3"; exit 1; }
+	$(PYTHON) -m venv .venv
+
+.venv/.installed: .venv/bin/python pyproject.toml $(LOCK)
+	$(INSTALL) --editable .
+	@touch $@
+
+.venv/.installed-test: .venv/.installed
+	$(INSTALL) --editable '.[gui,test]'
+	@touch $@
+
+.venv/.installed-lint: .venv/.installed-test
+	$(INSTALL) --editable '.[lint]' 'setuptools>=77'
+	@touch $@

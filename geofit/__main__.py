@@ -1,0 +1,5 @@
+"""``python -m geofit`` is the command ``geofit``."""
+
+from geofit.cli import main
+
+main()

@@ -1,0 +1,420 @@
+"""The command line: ``geofit demo | fit | check | info``.
+
+Exit codes: 0 every sigma < epsilon; 1 some verdict FAIL; 2 bad input or usage; 130 stopped.
+Everything heavy is imported inside the commands, so that ``geofit --help`` answers at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from geofit import __version__
+from geofit.console import (
+    guarded,
+    listening,
+    print_counts,
+    print_issues,
+    print_json,
+    print_results,
+    print_table,
+    say,
+)
+from geofit.errors import InputError, SettingsError
+
+if TYPE_CHECKING:
+    from geofit.progress import Progress
+    from geofit.settings import FitSettings
+    from geofit.site import Site
+    from geofit.surface import HorizonSurface
+
+__all__ = ["app", "main"]
+
+app = typer.Typer(
+    name="geofit",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    help="NURBS surfaces of geological horizons: fitted, checked against a tolerance, stitched, written "
+    "as STEP. "
+    "Exit codes: 0 every sigma < epsilon, 1 some verdict FAIL, 2 bad input or usage.",
+)
+
+
+class _Across(StrEnum):
+    CUBIC = "cubic"
+    LINEAR = "linear"
+
+
+class _Seam(StrEnum):
+    TANGENT = "tangent"
+    POSITION = "position"
+
+
+class _Frame(StrEnum):
+    AUTO = "auto"
+    MAP = "map"
+    BEST_PLANE = "best-plane"
+    SECTIONS = "sections"
+
+
+_Out = Annotated[Path, typer.Option(help="Folder for the results; made if it is not there.")]
+_Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON on stdout instead of a table.")]
+_X = Annotated[str | None, typer.Option("--x", help="CSV: column of the easting, m. Default: found by its header.")]
+_Y = Annotated[str | None, typer.Option("--y", help="CSV: column of the northing, m.")]
+_Z = Annotated[str | None, typer.Option("--z", help="CSV: column of the elevation, m.")]
+_SurfaceColumn = Annotated[str | None, typer.Option("--surface", help="CSV: column of the horizon's name.")]
+_SectionColumn = Annotated[str | None, typer.Option("--section", help="CSV: column of the section's name.")]
+_Sep = Annotated[str | None, typer.Option(help="CSV: separator: one character, 'tab' or 'space'. Default: found.")]
+_Decimal = Annotated[str | None, typer.Option(help="CSV: decimal mark, '.' or ','. Default: found.")]
+_FROM_SITE = "Default: the site file's, else"
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"geofit {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and leave.")
+    ] = False,
+) -> None:
+    pass
+
+
+@app.command()
+@guarded
+def demo(out: _Out = Path("demo_out"), as_json: _Json = False) -> int:
+    """Fit every horizon of the sample site, a fictional dam site."""
+    from geofit.io.site_file import read_site
+
+    site_file = _sample(out)
+    with listening() as progress:
+        site = read_site(site_file)
+        return _deliver(site, out, (), {}, as_json, progress)
+
+
+@app.command()
+@guarded
+def fit(
+    source: Annotated[Path, typer.Argument(metavar="SITE_OR_CSV", help="site.toml, or a table of points.")],
+    out: _Out,
+    horizon: Annotated[list[str] | None, typer.Option(help="Fit this horizon only; may be repeated.")] = None,
+    epsilon: Annotated[float | None, typer.Option(help=f"Control error for sigma, m. {_FROM_SITE} 0.5.")] = None,
+    x: _X = None,
+    y: _Y = None,
+    z: _Z = None,
+    surface: _SurfaceColumn = None,
+    section: _SectionColumn = None,
+    sep: _Sep = None,
+    decimal: _Decimal = None,
+    boundary: Annotated[
+        Path | None, typer.Option(help="Study area: table of corners (x, y) in order, or GeoJSON polygon; m.")
+    ] = None,
+    interior_tolerance: Annotated[
+        float | None, typer.Option(help=f"Largest distance wanted in the periphery, m. {_FROM_SITE} 0.1.")
+    ] = None,
+    boundary_tolerance: Annotated[
+        float | None, typer.Option(help=f"Largest gap between patches, m. {_FROM_SITE} 0.01.")
+    ] = None,
+    across: Annotated[
+        _Across | None,
+        typer.Option(help=f"Interpolation of the core across its sections. {_FROM_SITE} cubic."),
+    ] = None,
+    seam: Annotated[
+        _Seam | None,
+        typer.Option(help=f"Patches share the tangent plane, or the edge only. {_FROM_SITE} tangent."),
+    ] = None,
+    core: Annotated[
+        str | None,
+        typer.Option(help=f"Interpolated region: auto, all, none, or a file with a polygon. {_FROM_SITE} auto."),
+    ] = None,
+    frame: Annotated[
+        _Frame | None,
+        typer.Option(help=f"Height over the map, over the best plane, or through section lines. {_FROM_SITE} auto."),
+    ] = None,
+    smoothing: Annotated[
+        str | None, typer.Option(help=f"Weight of the bending energy: auto, or a number. {_FROM_SITE} auto.")
+    ] = None,
+    max_iterations: Annotated[int | None, typer.Option(help=f"Cap of the refinement steps. {_FROM_SITE} 20.")] = None,
+    max_control_points: Annotated[
+        int | None, typer.Option(help=f"Cap of the control points. {_FROM_SITE} ten a data point.")
+    ] = None,
+    conflict_distance: Annotated[
+        float | None, typer.Option(help=f"Points nearer than this are one place, m. {_FROM_SITE} 0.01.")
+    ] = None,
+    as_json: _Json = False,
+) -> int:
+    """Fit horizons, check them, and write STEP, reports, tables and pictures."""
+    given = {
+        "epsilon": epsilon,
+        "interior_tolerance": interior_tolerance,
+        "boundary_tolerance": boundary_tolerance,
+        "across": across and across.value,
+        "seam": seam and seam.value,
+        "core": _core(core),
+        "frame": frame and frame.value,
+        "smoothing": _smoothing(smoothing),
+        "max_iterations": max_iterations,
+        "max_control_points": max_control_points,
+        "conflict_distance": conflict_distance,
+    }
+    changes = {name: value for name, value in given.items() if value is not None}
+    columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "sep": sep, "decimal": decimal}
+    _settings(changes)  # a bad value is told before files are read
+    with listening() as progress:
+        site = _read(source, columns, boundary)
+        return _deliver(site, out, tuple(horizon or ()), changes, as_json, progress)
+
+
+@app.command()
+@guarded
+def check(
+    surface: Annotated[Path, typer.Argument(metavar="SURFACE.step", help="Any STEP file with faces.")],
+    points: Annotated[Path, typer.Argument(metavar="POINTS.csv", help="Table of points, m.")],
+    epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
+    horizon: Annotated[str | None, typer.Option(help="Name of the horizon, where the files hold several.")] = None,
+    x: _X = None,
+    y: _Y = None,
+    z: _Z = None,
+    surface_column: _SurfaceColumn = None,
+    section: _SectionColumn = None,
+    sep: _Sep = None,
+    decimal: _Decimal = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the residual table; none: not written.")] = None,
+    as_json: _Json = False,
+) -> int:
+    """Measure points against the surface in a STEP file, ours or any other."""
+    from geofit.accuracy import plain
+    from geofit.check import check as measure
+    from geofit.io.step import read_step
+    from geofit.report.result import HorizonResult
+
+    settings = _settings({"epsilon": epsilon})
+    columns = {
+        "x": x,
+        "y": y,
+        "z": z,
+        "surface": surface_column,
+        "section": section,
+        "sep": sep,
+        "decimal": decimal,
+    }
+    site = _read(points, columns, None)
+    print_issues(site.issues)
+    print_counts(site.counts)
+    name, found = _pick("horizon", site.horizons, horizon, points)
+    _, shape = _pick("product", read_step(surface), name if horizon else None, surface)
+    judged = shape.with_(points=found, settings=settings, name=name)
+    judged = judged.with_(accuracy=measure(judged))
+    result = HorizonResult(judged, site)
+    if out is not None:
+        from geofit.files import file_stems
+        from geofit.report.tables import write_residuals
+
+        out.mkdir(parents=True, exist_ok=True)
+        write_residuals(result, out / f"{file_stems([name])[name]}_residuals.csv")
+    if as_json:
+        print_json(_summary(plain(judged.accuracy), name))
+    else:
+        print_results([result])
+    return 0 if result.accuracy.passed else 1
+
+
+@app.command()
+@guarded
+def info(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="site.toml, table of points or STEP file.")],
+    as_json: _Json = False,
+) -> int:
+    """Say what is in a file."""
+    rows = _describe_step(file) if _is_step(file) else None
+    header: tuple[str, ...] = (
+        "surface",
+        "patches",
+        "control points",
+        "west..east, m",
+        "south..north, m",
+        "z, m",
+    )
+    issues: tuple[Any, ...] = ()
+    if rows is None:
+        site = _read(file, {}, None)
+        header = ("horizon", "points", "kinds", "west..east, m", "south..north, m", "z, m")
+        rows, issues = _describe_site(site), site.issues
+        print_counts(site.counts)
+    if as_json:
+        print_json([dict(zip(header, row, strict=True)) for row in rows])
+    else:
+        print_table(header, rows, left=(0, 2))
+        print_issues(issues)
+    return 0
+
+
+def _deliver(
+    site: Site,
+    out: Path,
+    horizons: tuple[str, ...],
+    changes: dict[str, Any],
+    as_json: bool,
+    progress: Progress | None,
+) -> int:
+    from geofit.deliver import deliver
+    from geofit.report.result import horizon_data
+
+    print_issues(site.issues, str(out / "import_issues.csv"))
+    print_counts(site.counts)
+    delivery = deliver(site, out, horizons, changes, progress)
+    if as_json:
+        print_json(
+            {
+                "out": str(out),
+                "horizons": [horizon_data(result) for result in delivery.results],
+                "failures": dict(delivery.failures),
+            }
+        )
+    elif delivery.results:
+        print_results(delivery.results)
+    for warning in delivery.warnings:
+        say(warning)
+    for name, text in delivery.failures.items():
+        say(f"geofit: {name}: {text}")
+    if delivery.results:
+        say(f"Reports, surfaces and tables: {out / 'report.html'}")
+    return delivery.exit_code
+
+
+def _sample(out: Path) -> Path:
+    """Find the sample site of the checkout, or make one now."""
+    for root in (Path.cwd(), Path(__file__).resolve().parents[1]):
+        if (root / "sample_data" / "site.toml").is_file():
+            return root / "sample_data" / "site.toml"
+    from geofit.sample import write_site
+
+    write_site(out / "sample_data")
+    return out / "sample_data" / "site.toml"
+
+
+def _read(source: Path, columns: dict[str, str | None], boundary: Path | None) -> Site:
+    from dataclasses import replace
+
+    from geofit.io.boundary import read_boundary
+    from geofit.io.picks import read_points
+    from geofit.io.site_file import read_site
+    from geofit.site import Site
+
+    area = None if boundary is None else read_boundary(boundary)
+    if source.suffix.casefold() == ".toml":
+        given = [f"--{name}" for name, value in columns.items() if value is not None]
+        if given:
+            raise InputError(
+                f"{given[0]} is for tables of points", "A site file names its own columns.", file=str(source)
+            )
+        site = read_site(source)
+        return site if area is None else replace(site, boundary=area)
+    picks = read_points(source, progress=None, **columns)
+    return Site(
+        name=source.stem,
+        horizons=picks.horizons,
+        boundary=area,
+        issues=picks.issues,
+        counts=picks.counts,
+        inputs=picks.inputs,
+    )
+
+
+def _settings(changes: dict[str, Any]) -> FitSettings:
+    from geofit.settings import FitSettings
+
+    return FitSettings(**changes)
+
+
+def _core(text: str | None) -> str | tuple[tuple[float, float], ...] | None:
+    if text is None or text in ("auto", "all", "none"):
+        return text
+    from geofit.io.boundary import read_boundary
+
+    return tuple((float(x), float(y)) for x, y in read_boundary(Path(text)))
+
+
+def _smoothing(text: str | None) -> str | float | None:
+    if text is None or text == "auto":
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise SettingsError(f"smoothing is '{text}'; give a number above 0 or the word auto.") from None
+
+
+def _pick(kind: str, found: Mapping[str, Any], wanted: str | None, file: Path) -> tuple[str, Any]:
+    if len(found) == 1 and (wanted is None or kind == "product"):
+        return next(iter(found.items()))
+    if wanted is not None and wanted in found:
+        return wanted, found[wanted]
+    reason = f"There is no {kind} '{wanted}'" if wanted else f"The file holds {len(found)} {kind}s"
+    raise InputError(reason, f"Choose with --horizon: {', '.join(found)}.", file=str(file))
+
+
+def _summary(accuracy: dict[str, Any], name: str) -> dict[str, Any]:
+    accuracy.pop("residuals")
+    accuracy.pop("patch")
+    return {
+        "horizon": name,
+        "verdict": "PASS" if accuracy["passed"] else "FAIL",
+        **accuracy,
+        "version": __version__,
+    }
+
+
+def _is_step(file: Path) -> bool:
+    return file.suffix.casefold() in (".step", ".stp")
+
+
+def _describe_step(file: Path) -> list[tuple[str, ...]]:
+    import numpy as np
+
+    from geofit.io.step import read_step
+
+    rows: list[tuple[str, ...]] = []
+    for name, surface in read_step(file).items():
+        xyz = np.concatenate([_corners(surface, i) for i in range(len(surface.patches))])
+        rows.append((name, str(len(surface.patches)), str(surface.control_points), *_ranges(xyz)))
+    return rows
+
+
+def _corners(surface: HorizonSurface, index: int) -> Any:
+    import numpy as np
+
+    patch = surface.patches[index]
+    u0, u1, v0, v1 = patch.domain
+    u, v = np.meshgrid(np.linspace(u0, u1, 30), np.linspace(v0, v1, 30))
+    return patch.evaluate(u, v).reshape(-1, 3) + surface.origin
+
+
+def _describe_site(site: Site) -> list[tuple[str, ...]]:
+    rows: list[tuple[str, ...]] = []
+    for name, points in site.horizons.items():
+        kinds = points.kind.tolist()
+        words = ", ".join(f"{kind} {kinds.count(kind)}" for kind in dict.fromkeys(kinds))
+        rows.append((name, str(len(points)), words, *_ranges(points.xyz)))
+    return rows
+
+
+def _ranges(xyz: Any) -> tuple[str, str, str]:
+    low, high = xyz.min(axis=0), xyz.max(axis=0)
+    x, y, z = (f"{a:.1f} .. {b:.1f}" for a, b in zip(low, high, strict=True))
+    return x, y, z
+
+
+def main() -> None:
+    """Run the command line."""
+    app()

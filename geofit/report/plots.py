@@ -1,0 +1,202 @@
+"""The flat pictures of a report: site plan, deviation map, histogram. Matplotlib objects, no global state."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.report.result import HorizonResult
+from geofit.report.style import CORE, FAIL, INK, LINE, MUTED, bands, kind_style, quiet
+from geofit.report.view import choose_view, rims, trimmed
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from geofit.report.scene import Scene
+
+__all__ = ["deviation_map", "histogram", "map_shape", "site_plan", "space"]
+
+Floats = NDArray[np.float64]
+
+#: More points than this are drawn as a rasterised layer.
+MANY = 5_000
+#: How far below a picture in space its scale stands, as a share of the picture's height.
+BELOW = 0.1
+
+
+def space(axes: Axes, scene: Scene, label: str = "Elevation, m") -> None:
+    """Show the picture in space with the scale of its colours."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    from geofit.report.scene import elevation_colours
+
+    axes.imshow(scene.image, interpolation="antialiased")
+    axes.set_axis_off()
+    # Below the picture, where no surface stands.
+    scale = axes.inset_axes((0.0, -BELOW, 0.26, 0.022))
+    colours = ScalarMappable(Normalize(*scene.limits), elevation_colours())
+    bar = axes.figure.colorbar(colours, cax=scale, ticks=_ticks(*scene.limits), orientation="horizontal")
+    bar.outline.set_visible(False)
+    scale.set_title(label, fontsize=8, fontweight="normal", color=MUTED, pad=3)
+    scale.tick_params(length=0, pad=2)
+
+
+def map_shape(result: HorizonResult, *, plan: bool) -> float:
+    """Return height over width of a map of the horizon."""
+    axes = np.eye(3)[:2] if plan else choose_view(result.surface).axes
+    xyz = np.concatenate([*rims(result.surface).values(), result.surface.points.xyz])
+    width, height = np.ptp(xyz @ axes.T, axis=0)
+    return float(height / width)
+
+
+def site_plan(axes: Axes, result: HorizonResult) -> None:
+    """Draw what the horizon was fitted to: points by kind, core, patches, study area, section lines."""
+    surface, site, core = result.surface, result.site, result.core
+    xyz = surface.points.xyz
+    for section in site.sections:
+        axes.plot(*section.line.T, color=LINE, lw=0.9, zorder=1)
+    if site.boundary is not None:
+        _closed(axes, site.boundary, color=MUTED, lw=1.0, ls=(0, (6, 3)), label="study area", zorder=2)
+    for rim in rims(surface, steps=400).values():
+        rim[trimmed(surface, rim[:, 0], rim[:, 1]) < -1e-6] = np.nan
+        axes.plot(rim[:, 0], rim[:, 1], color=LINE, lw=0.8, zorder=1)
+    if surface.partition is not None and surface.partition.corners is not None:
+        corners = np.asarray(surface.partition.corners)
+        axes.fill(*corners.T, facecolor=CORE, alpha=0.07, edgecolor="none", zorder=1)
+        _closed(axes, corners, color=CORE, lw=1.6, label=f"core ({int(core.sum())} points)", zorder=3)
+    for kind in sorted(set(surface.points.kind.tolist())):
+        of = surface.points.kind == kind
+        marker, colour = kind_style(kind)
+        axes.scatter(
+            xyz[of, 0], xyz[of, 1], s=9 if marker == "." else 16, marker=marker, color=colour, lw=0, zorder=4,
+            label=f"{kind} ({int(of.sum())})", rasterized=len(xyz) > MANY,
+        )  # fmt: skip
+    axes.set_title("Site plan")
+    _map_axes(axes, "Easting, m", "Northing, m")
+    _legend(axes)
+
+
+def deviation_map(axes: Axes, result: HorizonResult) -> None:
+    """Draw every residual in fixed tolerance bands: colour and marker tell the side, size the distance."""
+    surface, a = result.surface, result.accuracy
+    view = choose_view(surface)
+    if view.caption == "plan":
+        _contours(axes, result)
+    if surface.outline is not None and view.caption == "plan":
+        _closed(axes, surface.outline, color=MUTED, lw=1.0, ls=(0, (6, 3)), zorder=2)
+    for name, rim in rims(surface, steps=400).items():
+        rim[trimmed(surface, rim[:, 0], rim[:, 1]) < -1e-6] = np.nan
+        flat = view.of(rim)
+        heavy = name == "core"
+        axes.plot(*flat.T, color=CORE if heavy else LINE, lw=1.4 if heavy else 0.8, zorder=2 if heavy else 1)
+    place = view.of(surface.points.xyz)
+    d = a.residuals
+    for i, band in enumerate(bands(surface.settings)):
+        of = band.holds(d)
+        if i == 0:
+            _residuals(axes, place[of], ".", band.below, band.area, f"{band.label} ({int(of.sum())})", 3)
+            continue
+        for side, marker, colour, word in (
+            (d < 0, "v", band.below, "below"),
+            (d > 0, "^", band.above, "above"),
+        ):
+            both = of & side
+            _residuals(
+                axes,
+                place[both],
+                marker,
+                colour,
+                band.area,
+                f"{band.label} {word} ({int(both.sum())})",
+                3 + i,
+            )
+    axes.set_title("Deviation of every point")
+    _map_axes(axes, *view.labels)
+    _legend(axes)
+
+
+def histogram(axes: Axes, result: HorizonResult) -> None:
+    """Draw how many residuals lie where, with the control error as bounds; exact core points are left out."""
+    a, settings = result.accuracy, result.surface.settings
+    d = a.residuals[~result.core]
+    axes.set_title("Residuals of the approximated points")
+    if not len(d):
+        axes.text(
+            0.5, 0.5, "Every point is interpolated exactly;\nno residual to count.",
+            ha="center", va="center", color=MUTED, transform=axes.transAxes,
+        )  # fmt: skip
+        axes.set_axis_off()
+        return
+    widest = max(float(np.abs(d).max()), settings.interior_tolerance)
+    edges = np.linspace(-widest, widest, 42)
+    axes.hist(d, bins=list(edges), color="#8fa9bd", edgecolor="white", lw=0.5, zorder=2)
+    limits = [(settings.interior_tolerance, MUTED, "dashed", "interior tolerance")]
+    if a.epsilon <= widest * 1.5:
+        limits.append((a.epsilon, FAIL, "solid", "control error ε"))
+    for value, colour, dashes, label in limits:
+        for sign in (-1, 1):
+            axes.axvline(sign * value, color=colour, lw=1.1, ls=dashes, zorder=3, label=label if sign > 0 else None)
+    axes.set_xlabel("d, m (below the surface < 0 < above)")
+    axes.set_ylabel("points")
+    axes.grid(axis="y", color=LINE, lw=0.6, zorder=0)
+    axes.set_axisbelow(True)
+    quiet(axes)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, labelcolor=INK)
+
+
+def _residuals(axes: Axes, place: Floats, marker: str, colour: str, area: float, label: str, level: int) -> None:
+    if len(place):
+        axes.scatter(
+            place[:, 0], place[:, 1], s=area, marker=marker, color=colour, lw=0.3, edgecolor="white", label=label,
+            zorder=level, rasterized=len(place) > MANY,
+        )  # fmt: skip
+
+
+def _contours(axes: Axes, result: HorizonResult) -> None:
+    """Draw the surface itself in light contour lines."""
+    xyz = np.concatenate(list(rims(result.surface).values()))
+    x = np.linspace(xyz[:, 0].min(), xyz[:, 0].max(), 140)
+    y = np.linspace(xyz[:, 1].min(), xyz[:, 1].max(), 140)
+    z = result.surface.elevation(x, y[:, None])
+    z[trimmed(result.surface, *np.meshgrid(x, y)) < 0] = np.nan
+    if not np.isfinite(z).any() or np.nanmax(z) - np.nanmin(z) < 1e-6:
+        return
+    from matplotlib.ticker import MaxNLocator
+
+    levels = MaxNLocator(9, steps=[1, 2, 5, 10]).tick_values(np.nanmin(z), np.nanmax(z))
+    lines = axes.contour(x, y, np.ma.masked_invalid(z), levels=levels, colors="#bcc6d0", linewidths=0.7, zorder=0)
+    axes.clabel(lines, fmt="%g", fontsize=7, colors=MUTED)
+
+
+def _ticks(low: float, high: float) -> list[float]:
+    from matplotlib.ticker import MaxNLocator
+
+    ticks = MaxNLocator(4, steps=[1, 2, 5, 10]).tick_values(low, high)
+    return [float(tick) for tick in ticks if low <= tick <= high]
+
+
+def _closed(axes: Axes, corners: Floats, **style: object) -> None:
+    ring = np.concatenate([corners, corners[:1]])
+    axes.plot(ring[:, 0], ring[:, 1], **style)  # type: ignore[arg-type]
+
+
+def _map_axes(axes: Axes, xlabel: str, ylabel: str) -> None:
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    axes.set_aspect("equal", adjustable="box", anchor="NW")
+    # Contours would pin the limits to the surface's edge, and cut the markers on it.
+    axes.use_sticky_edges = False
+    axes.margins(0.03)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}".replace(",", " ")))
+    axes.set_xlabel(xlabel)
+    axes.set_ylabel(ylabel)
+    quiet(axes)
+
+
+def _legend(axes: Axes) -> None:
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, labelcolor=INK, handletextpad=0.5)

@@ -1,0 +1,234 @@
+"""The picture of a surface in space: OpenGL without a window, or a message where there is none."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import MissingDependencyError
+from geofit.report.result import HorizonResult
+from geofit.report.style import kind_style
+from geofit.report.view import rims, trimmed
+from geofit.site import Hole
+from geofit.surface import HorizonSurface
+
+if TYPE_CHECKING:
+    import pyvista
+
+__all__ = ["NO_OPENGL", "SEVERAL", "Scene", "elevation_colours", "horizon_scene", "site_scene"]
+
+Floats = NDArray[np.float64]
+
+NO_OPENGL = (
+    "The 3D picture is missing: this machine has no OpenGL library. "
+    "Install one (Debian and Ubuntu: apt-get install libgl1 libegl1 libxrender1) and run again."
+)
+
+#: Steps of a patch's mesh on each side.
+STEPS = 90
+#: Colours of the horizons where several stand in one picture: they differ in lightness too.
+SEVERAL = ("#5b8fb5", "#dcb25a", "#7fa66a", "#b3564a", "#8b6fae", "#4a9a96", "#c98d9d", "#6b7784")
+#: Opacity of horizons that stand behind each other.
+SHEER = 0.72
+#: Relief is raised by a whole number, at most MOST_RAISED, until it is this share of the width.
+RELIEF, MOST_RAISED = 0.14, 5
+#: Where the eye is: from the south-west, above.
+EYE = (-0.5, -0.8, 0.62)
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A picture in space: ``image`` (height, width, 3) pixels without a margin, heights times ``raised``.
+
+    ``limits`` are the elevations at the ends of the colours, metres.
+    """
+
+    image: NDArray[np.uint8]
+    raised: int
+    limits: tuple[float, float]
+
+    @property
+    def caption(self) -> str:
+        """Direction and scale in words."""
+        scale = "true scale" if self.raised == 1 else f"heights × {self.raised}"
+        return f"Seen from the south-west, {scale}."
+
+
+def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -> Scene:
+    """Draw one horizon with its points, coloured by elevation.
+
+    Raises
+    ------
+    MissingDependencyError
+        If there is no OpenGL library.
+    """
+    plotter = _plotter(size)
+    surface = result.surface
+    raised = _raised([surface])
+    place = _Place(surface.origin, raised)
+    meshes = [_mesh(surface, i, place) for i in range(len(surface.patches))]
+    z = np.concatenate([np.asarray(m["elevation"]) for m in meshes])
+    limits = (float(z.min()), max(float(z.max()), float(z.min()) + 1e-3))
+    for mesh in meshes:
+        _add_surface(plotter, mesh, cmap=elevation_colours(), clim=limits, scalars="elevation")
+        _add_contours(plotter, mesh, limits)
+    core = rims(surface, steps=400).get("core")
+    if core is not None and len(surface.patches) > 1:
+        _add_rim(plotter, surface, core, place, color="#0b2f4a", line_width=6)
+    _add_points(plotter, place(surface.points.xyz))
+    return Scene(_shoot(plotter), raised, limits)
+
+
+def site_scene(
+    surfaces: Sequence[HorizonSurface], holes: Sequence[Hole] = (), size: tuple[int, int] = (1800, 1300)
+) -> Scene:
+    """Draw all horizons of a site with its holes, one colour of ``SEVERAL`` each.
+
+    Raises
+    ------
+    MissingDependencyError
+        If there is no OpenGL library.
+    """
+    plotter = _plotter(size)
+    plotter.enable_depth_peeling(8)
+    raised = _raised(surfaces)
+    place = _Place(surfaces[0].origin, raised)
+    for i, surface in enumerate(surfaces):
+        for k in range(len(surface.patches)):
+            mesh = _mesh(surface, k, place)
+            _add_surface(plotter, mesh, color=SEVERAL[i % len(SEVERAL)], opacity=SHEER)
+        for rim in rims(surface, steps=400).values():
+            _add_rim(plotter, surface, rim, place, color="#1c2733", line_width=2, opacity=0.35)
+    for hole in holes:
+        plotter.add_mesh(_line(place(hole.xyz)), color=kind_style(hole.kind)[1], line_width=4)
+    return Scene(_shoot(plotter), raised, (0.0, 0.0))
+
+
+def elevation_colours() -> Any:
+    """Return the colour map of elevations: from deep water blue to dry ochre, lightness rising throughout."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("ground", ["#23506b", "#55877f", "#9dba8c", "#e2d9a4", "#f3e6c8"])
+
+
+class _Place:
+    """Map coordinates to the picture's: about a centre, because float32 carries 7 digits; heights raised."""
+
+    def __init__(self, centre: Floats, raised: int) -> None:
+        self.centre, self.scale = centre, np.array([1.0, 1.0, raised])
+
+    def __call__(self, xyz: Floats) -> NDArray[np.float32]:
+        return np.asarray((xyz - self.centre) * self.scale, np.float32)
+
+
+def _raised(surfaces: Sequence[HorizonSurface]) -> int:
+    xyz = np.concatenate([rim for s in surfaces for rim in rims(s).values()])
+    width, relief = np.ptp(xyz[:, :2], axis=0).max(), np.ptp(xyz[:, 2])
+    return int(np.clip(np.ceil(RELIEF * width / max(relief, 1e-9)), 1, MOST_RAISED))
+
+
+def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
+    if not _opengl():
+        raise MissingDependencyError(NO_OPENGL)
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        # VTK would try the X server first, and complain.
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    import pyvista
+
+    plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
+    plotter.set_background("white")
+    # The sun of a hill-shaded map stands in the north-west; a weak light beside the eye lifts the shadows.
+    plotter.add_light(pyvista.Light(position=(-1, 0.9, 1.1), intensity=0.7, light_type="scene light"))
+    plotter.add_light(pyvista.Light(position=EYE, intensity=0.5, light_type="scene light"))
+    return plotter
+
+
+def _opengl() -> bool:
+    """Whether VTK will find a way to draw: it aborts the process where it does not."""
+    if not sys.platform.startswith("linux"):
+        return True
+    for name in ("libGL.so.1", "libEGL.so.1") if os.environ.get("DISPLAY") else ("libEGL.so.1",):
+        try:
+            ctypes.CDLL(name)
+        except OSError:
+            return False
+    return True
+
+
+def _mesh(surface: HorizonSurface, index: int, place: _Place) -> pyvista.PolyData:
+    """One patch as triangles, cut along the outline of the study area."""
+    import pyvista
+
+    patch = surface.patches[index]
+    u0, u1, v0, v1 = patch.domain
+    u, v = np.meshgrid(np.linspace(u0, u1, STEPS), np.linspace(v0, v1, STEPS), indexing="ij")
+    true = patch.evaluate(u, v) + surface.origin
+    grid = pyvista.StructuredGrid(*np.moveaxis(place(true), -1, 0)[:, :, :, None])
+    grid["elevation"] = true[..., 2].ravel(order="F")
+    if surface.outline is not None:
+        grid["inside"] = np.clip(trimmed(surface, true[..., 0], true[..., 1]), -1e6, 1e6).ravel(order="F")
+    mesh = grid.extract_surface(algorithm="dataset_surface").triangulate()
+    if surface.outline is not None:
+        mesh = mesh.clip_scalar(scalars="inside", value=0.0, invert=False)
+    return mesh
+
+
+def _add_surface(plotter: pyvista.Plotter, mesh: pyvista.PolyData, **style: Any) -> None:
+    if mesh.n_points:
+        plotter.add_mesh(mesh, smooth_shading=True, specular=0.05, ambient=0.15, show_scalar_bar=False, **style)
+
+
+def _add_rim(plotter: pyvista.Plotter, surface: HorizonSurface, rim: Floats, place: _Place, **style: Any) -> None:
+    """Draw a patch's edge as far as it lies in the study area."""
+    inside = trimmed(surface, rim[:, 0], rim[:, 1]) > -1e-6
+    for run in np.split(np.arange(len(rim)), np.flatnonzero(np.diff(inside)) + 1):
+        if inside[run[0]] and len(run) > 1:
+            plotter.add_mesh(_line(place(rim[run])), **style)
+
+
+def _add_contours(plotter: pyvista.Plotter, mesh: pyvista.PolyData, limits: tuple[float, float]) -> None:
+    from matplotlib.ticker import MaxNLocator
+
+    levels = MaxNLocator(14, steps=[1, 2, 5, 10]).tick_values(*limits)
+    lines = mesh.contour(isosurfaces=list(levels), scalars="elevation") if mesh.n_points else mesh
+    if lines.n_points:
+        plotter.add_mesh(lines, color="#22303c", line_width=2, opacity=0.5, show_scalar_bar=False)
+
+
+def _add_points(plotter: pyvista.Plotter, local: NDArray[np.float32]) -> None:
+    import pyvista
+
+    if len(local):
+        plotter.add_mesh(
+            pyvista.PolyData(local), color="#14202b", point_size=9 if len(local) < 3000 else 3,
+            render_points_as_spheres=True,
+        )  # fmt: skip
+
+
+def _line(local: NDArray[np.float32]) -> pyvista.PolyData:
+    import pyvista
+
+    return pyvista.lines_from_points(local)
+
+
+def _shoot(plotter: pyvista.Plotter) -> NDArray[np.uint8]:
+    """Take the picture, and cut its margin off."""
+    plotter.camera_position = [EYE, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
+    plotter.enable_parallel_projection()
+    plotter.enable_anti_aliasing("ssaa")
+    plotter.reset_camera()
+    plotter.camera.zoom(1.15)
+    image = np.asarray(plotter.screenshot(return_img=True))[..., :3]
+    plotter.close()
+    drawn = image.min(axis=2) < 250
+    rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
+    if not rows.size:
+        return image.copy()
+    return image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].copy()

@@ -1,0 +1,113 @@
+"""Colours, bands and type of the pictures: one place, so that every picture looks like its neighbour."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.report.fonts import families
+from geofit.settings import FitSettings
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["INK", "KIND_STYLE", "LINE", "MUTED", "PAPER", "Band", "bands", "drawing", "kind_style", "quiet"]
+
+INK, MUTED, LINE, PAPER = "#1c2733", "#5d6b7a", "#d4dae1", "#ffffff"
+CORE, PASS, FAIL, QUIET = "#0b5c8a", "#1b6e3c", "#a3271c", "#8795a3"
+
+#: Marker and colour of each kind of source; shapes differ, so that a black-and-white print still tells.
+KIND_STYLE = {
+    "borehole": ("o", "#0b5c8a"),
+    "adit": ("s", "#7a4d9a"),
+    "section": (".", "#3a4652"),
+    "outcrop": ("^", "#b2611b"),
+    "geophysics": ("D", "#2b7a78"),
+    "map": ("v", "#8c6d1f"),
+    "point": (".", "#3a4652"),
+}
+_OTHER = ("P", "#6b6b6b")
+
+
+def kind_style(kind: str) -> tuple[str, str]:
+    """Return marker and colour of a kind of source."""
+    return KIND_STYLE.get(kind, _OTHER)
+
+
+@dataclass(frozen=True)
+class Band:
+    """A band of |d|: from ``low`` (included) to ``high`` metres; ``area`` of its marker in points squared."""
+
+    low: float
+    high: float
+    label: str
+    below: str
+    above: str
+    area: float
+
+    def holds(self, d: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which residuals fall into the band."""
+        return np.asarray((np.abs(d) >= self.low) & (np.abs(d) < self.high))
+
+
+def bands(settings: FitSettings) -> tuple[Band, ...]:
+    """Return the bands of a deviation map: bounded by the three tolerances, not by the data.
+
+    Blue lies below the surface, orange above; darker and larger is further off.
+    """
+    limits = sorted({settings.boundary_tolerance, settings.interior_tolerance, settings.epsilon})
+    edges = [0.0, *limits, np.inf]
+    shades = -len(edges) + 2
+    blues = (QUIET, *("#9cc7e4", "#3b8cc4", "#083a63")[shades:])
+    oranges = (QUIET, *("#f3c9a0", "#dd7f2b", "#8a2f06")[shades:])
+    areas = (14.0, *(22.0, 44.0, 90.0)[shades:])
+    made = []
+    for i, (low, high) in enumerate(pairwise(edges)):
+        label = f"|d| < {high:g} m" if i == 0 else f"{low:g} – {high:g} m" if np.isfinite(high) else f"≥ {low:g} m"
+        made.append(Band(low, high, label, blues[i], oranges[i], areas[i]))
+    return tuple(made)
+
+
+@contextmanager
+def drawing() -> Iterator[None]:
+    """Hold matplotlib's settings for one picture; a missing glyph is told of once, by the caller."""
+    import matplotlib as mpl
+
+    # The names that matplotlib's types allow change with its release.
+    settings: dict[Any, Any] = {
+        "font.family": families(),
+        "font.size": 9.0,
+        "text.color": INK,
+        "axes.edgecolor": LINE,
+        "axes.labelcolor": MUTED,
+        "axes.linewidth": 0.8,
+        "axes.titlesize": 10.0,
+        "axes.titleweight": "bold",
+        "axes.titlelocation": "left",
+        "axes.titlepad": 8.0,
+        "axes.unicode_minus": True,
+        "xtick.color": MUTED,
+        "ytick.color": MUTED,
+        "xtick.labelsize": 8.0,
+        "ytick.labelsize": 8.0,
+        "legend.frameon": False,
+        "legend.fontsize": 8.0,
+        "figure.facecolor": PAPER,
+        "savefig.facecolor": PAPER,
+    }
+    with mpl.rc_context(settings), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message=r"Glyph .* missing from font")
+        yield
+
+
+def quiet(axes: Axes) -> None:
+    """Leave only the axes that carry numbers."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.tick_params(length=3, width=0.8)

@@ -1,0 +1,63 @@
+"""Tables as CSV: the residual of every point, and what the readers found."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from geofit.files import replacing
+from geofit.report.result import HorizonResult
+from geofit.site import ImportIssue
+
+__all__ = ["write_issues", "write_residuals"]
+
+RESIDUAL_HEADER = (
+    "file", "row", "kind", "hole", "section", "x", "y", "z", "residual_m", "patch", "exact", "used", "reason",
+)  # fmt: skip
+ISSUE_HEADER = ("severity", "file", "row", "column", "value", "reason", "remedy")
+
+
+def write_residuals(result: HorizonResult, path: Path) -> None:
+    """Write one line a point, in the order they were read.
+
+    Metres; residuals are positive above the surface. ``exact`` marks the points that the core interpolates;
+    ``used`` is "no" for a point that lost a conflict, and ``reason`` says why.
+    """
+    points, a, core, dropped = result.surface.points, result.accuracy, result.core, result.dropped
+    rows = (
+        (
+            points.file[i],
+            points.row[i] or "",
+            points.kind[i],
+            points.hole[i],
+            points.section[i],
+            *(f"{value:.4f}" for value in points.xyz[i]),
+            f"{a.residuals[i]:.9f}",
+            a.patch[i],
+            "yes" if core[i] else "no",
+            "no" if i in dropped else "yes",
+            dropped.get(i, ""),
+        )
+        for i in range(len(points))
+    )
+    _write(path, RESIDUAL_HEADER, rows)
+
+
+def write_issues(issues: Sequence[ImportIssue], path: Path) -> None:
+    """Write everything that the readers found, errors first."""
+    order = {"error": 0, "warning": 1, "note": 2}
+    rows = (
+        (i.severity, i.file, i.row or "", i.column, i.value, i.reason, i.remedy)
+        for i in sorted(issues, key=lambda i: order[i.severity])
+    )
+    _write(path, ISSUE_HEADER, rows)
+
+
+def _write(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    # The byte-order mark tells spreadsheets that the text is UTF-8.
+    with replacing(path) as part, part.open("w", encoding="utf-8-sig", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows(rows)

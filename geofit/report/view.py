@@ -1,0 +1,85 @@
+"""From which side a surface is drawn: from above, or, where it is steep, along its strike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.surface import HorizonSurface, Patch
+
+__all__ = ["View", "choose_view", "rims", "trimmed"]
+
+Floats = NDArray[np.float64]
+
+#: Steeper on average than this, a surface is drawn along its strike, degrees.
+STEEP = 50.0
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """An orthogonal picture plane: ``axes`` (2, 3) unit vectors, ``start`` (3,) where they count from."""
+
+    axes: Floats
+    start: Floats
+    labels: tuple[str, str]
+    caption: str
+
+    def of(self, xyz: Floats) -> Floats:
+        """Return picture coordinates (..., 2) of map coordinates (..., 3), metres."""
+        return np.asarray((xyz - self.start) @ self.axes.T)
+
+
+def choose_view(surface: HorizonSurface) -> View:
+    """Return the plan for a surface that lies flat, the view across the strike for a steep one."""
+    normal = np.mean([_normals(patch) for patch in surface.patches], axis=0)
+    dip = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), abs(normal[2])))
+    if dip < STEEP:
+        return View(np.eye(3)[:2], np.zeros(3), ("Easting, m", "Northing, m"), "plan")
+    strike = np.array([-normal[1], normal[0], 0.0])
+    strike /= np.linalg.norm(strike)
+    # Seen so that the strike runs to the right and towards the east (or the north).
+    if strike[0] < -1e-9 or (abs(strike[0]) <= 1e-9 and strike[1] < 0):
+        strike = -strike
+    azimuth = np.degrees(np.arctan2(strike[0], strike[1])) % 360
+    along = np.concatenate([surface.points.xyz @ strike, [surface.origin @ strike]])
+    return View(
+        np.stack([strike, [0.0, 0.0, 1.0]]),
+        strike * along.min(),
+        (f"Along strike towards {azimuth:03.0f}°, m (mean dip {dip:.0f}°)", "Elevation, m"),
+        "across the strike",
+    )
+
+
+def _normals(patch: Patch) -> Floats:
+    u0, u1, v0, v1 = patch.domain
+    u, v = np.meshgrid(np.linspace(u0, u1, 12)[1:-1], np.linspace(v0, v1, 12)[1:-1])
+    area = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1)).reshape(-1, 3)
+    return np.asarray((area * (u1 - u0) * (v1 - v0)).mean(axis=0))
+
+
+def rims(surface: HorizonSurface, steps: int = 80) -> dict[str, Floats]:
+    """Return the closed outline of every patch in map coordinates, (k, 3) each."""
+    outlines = {}
+    for patch in surface.patches:
+        u0, u1, v0, v1 = patch.domain
+        t = np.linspace(0, 1, steps)
+        one = np.ones(steps)
+        u = np.concatenate([u0 + (u1 - u0) * t, u1 * one, u1 - (u1 - u0) * t, u0 * one])
+        v = np.concatenate([v0 * one, v0 + (v1 - v0) * t, v1 * one, v1 - (v1 - v0) * t])
+        outlines[patch.name] = patch.evaluate(u, v) + surface.origin
+    return outlines
+
+
+def trimmed(surface: HorizonSurface, x: Floats, y: Floats) -> Floats:
+    """Return metres inside the plan outline (negative outside); infinity where the surface is not trimmed."""
+    if surface.outline is None:
+        return np.full(np.shape(x), np.inf)
+    import shapely
+
+    polygon = shapely.Polygon(surface.outline)
+    shapely.prepare(polygon)
+    places = shapely.points(x, y)
+    away = shapely.distance(polygon.exterior, places)
+    return np.asarray(np.where(shapely.covers(polygon, places), away, -away))

@@ -1,0 +1,75 @@
+"""Adits: polylines in space, and contacts at a chainage along them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geofit.errors import InputError
+from geofit.io.axes import Region, check_axes
+from geofit.io.columns import ADIT_CONTACTS, ADIT_PATH
+from geofit.io.horizons import HorizonNames
+from geofit.io.journal import Journal
+from geofit.io.polyline import along, chainage
+from geofit.io.rows import read_rows
+from geofit.io.source import Source
+from geofit.points import PointSet
+from geofit.site import Hole
+
+__all__ = ["load_adit_contacts", "load_adits"]
+
+#: A contact at the face may lie this far beyond the surveyed end, metres.
+END_TOLERANCE = 0.01
+
+
+def load_adits(source: Source, journal: Journal, region: Region | None = None) -> tuple[Hole, ...]:
+    """Read adit paths: rows of one adit are its corners in order; an adit of one corner is listed."""
+    rows = read_rows(source, ADIT_PATH, journal)
+    name = rows.text("adit")
+    x, y, z = rows.numbers("x"), rows.numbers("y"), rows.numbers("z", no_data=True)
+    check_axes(rows, x, y, region)
+    adits = []
+    for adit in dict.fromkeys(name[i] for i in np.flatnonzero(rows.ok).tolist()):
+        corners = np.array([i for i in np.flatnonzero(rows.ok) if name[i] == adit])
+        xyz = np.column_stack([x, y, z])[corners]
+        for k in np.flatnonzero((np.diff(xyz, axis=0) == 0).all(axis=1)).tolist():
+            rows.reject(
+                int(corners[k + 1]), "x", "The corner repeats the one before", "Remove one of the two."
+            )
+        corners = corners[rows.ok[corners]]
+        if len(corners) < 2:
+            rows.reject(
+                int(corners[0]), "adit", f"Adit {adit} has one corner only", "Two or more corners are needed."
+            )
+            continue
+        xyz = np.column_stack([x, y, z])[corners]
+        adits.append(Hole(adit, "adit", chainage(xyz), xyz))
+    rows.close()
+    if not adits:
+        raise InputError("No adit has two usable corners", "See the listed rows.", file=source.name)
+    return tuple(adits)
+
+
+def load_adit_contacts(
+    source: Source, adits: tuple[Hole, ...], horizons: HorizonNames, journal: Journal
+) -> dict[str, PointSet]:
+    """Read contacts along adits, kind "adit"; a chainage beyond the adit is listed."""
+    rows = read_rows(source, ADIT_CONTACTS, journal)
+    name, s = rows.text("adit"), rows.numbers("chainage")
+    horizon = horizons.of(rows)
+    paths = {adit.name: adit for adit in adits}
+    rows.require_known("adit", name, paths, "adit path table")
+    xyz = np.zeros((len(rows), 3))
+    for i in np.flatnonzero(rows.ok).tolist():
+        adit = paths[name[i]]
+        length = float(adit.depth[-1])
+        if not 0 <= s[i] <= length + END_TOLERANCE:
+            rows.reject(
+                i,
+                "chainage",
+                f"The chainage is not on adit {name[i]}, which is {length:.2f} m long",
+                "Correct the chainage, or complete the adit's path.",
+            )
+            continue
+        xyz[i] = along(adit.xyz, s[i : i + 1])[0]
+    rows.close()
+    return horizons.split(rows, horizon, xyz, kind="adit", hole=name)

@@ -1,0 +1,79 @@
+"""Exchanged axes: easting where northing belongs."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.rows import Rows
+
+__all__ = ["Region", "check_axes", "region_of"]
+
+Floats = NDArray[np.float64]
+
+#: West, east, south, north of the place where points are expected, metres.
+Region = tuple[float, float, float, float]
+
+
+def region_of(xy: Floats) -> Region:
+    """Return the box of (n, 2) places, grown on every side by its own diagonal."""
+    low, high = xy.min(axis=0), xy.max(axis=0)
+    margin = max(float(np.hypot(*(high - low))), 1.0)
+    return (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin)
+
+
+def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
+    """Reject rows whose x and y look exchanged, and warn of rows far off.
+
+    A row looks exchanged when it lies outside ``region`` and would lie inside with x and y swapped. Without a
+    region the rows themselves make one: 20 median distances around their median.
+
+    Raises
+    ------
+    InputError
+        If most rows of the file look exchanged.
+    """
+    used = np.flatnonzero(rows.ok)
+    if used.size == 0:
+        return
+    known = region is not None
+    box = region if region is not None else _crowd(x[used], y[used])
+    if box is None:
+        return
+    far = ~_inside(x[used], y[used], box)
+    swapped = far & _inside(y[used], x[used], box)
+    if known and 2 * swapped.sum() > used.size:
+        i = int(used[np.flatnonzero(swapped)[0]])
+        raise InputError(
+            f"x and y look exchanged: {swapped.sum()} of {used.size} rows lie far outside the study area, "
+            f"and inside it with x and y swapped, the first at x = {x[i]:.15g}, y = {y[i]:.15g}",
+            "x is the easting, y the northing; exchange the columns "
+            "(in many Chinese tables X is the northing and Y the easting).",
+            file=rows.file,
+            row=int(rows.line[i]),
+            column=rows.table.header[rows.columns["x"]],
+        )
+    for i in used[swapped].tolist():
+        rows.reject(i, "x", "x and y look exchanged in this row", "x is the easting, y the northing.")
+    off = used[far & ~swapped]
+    if known and off.size:
+        i = int(off[0])
+        rows.warn(
+            i,
+            "x",
+            f"{off.size} rows lie far outside the study area, the first at x = {x[i]:.15g}, y = {y[i]:.15g}",
+            "Check the coordinates and the boundary.",
+        )
+
+
+def _crowd(x: Floats, y: Floats) -> Region | None:
+    if x.size < 4:
+        return None
+    cx, cy = float(np.median(x)), float(np.median(y))
+    reach = 20.0 * float(np.median(np.hypot(x - cx, y - cy))) + 1.0
+    return (cx - reach, cx + reach, cy - reach, cy + reach)
+
+
+def _inside(x: Floats, y: Floats, box: Region) -> NDArray[np.bool_]:
+    return (x >= box[0]) & (x <= box[1]) & (y >= box[2]) & (y <= box[3])

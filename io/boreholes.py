@@ -1,0 +1,231 @@
+"""Boreholes: collars, surveys and interval logs to paths in space."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.axes import Region, check_axes
+from geofit.io.columns import COLLAR, INTERVALS
+from geofit.io.desurvey import WellPath, minimum_curvature
+from geofit.io.journal import Journal
+from geofit.io.rows import Rows, read_rows
+from geofit.io.source import Source, as_source
+from geofit.io.surveys import Stations, read_stations
+from geofit.site import Hole, ImportIssue, TableCount
+
+__all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreholes"]
+
+Floats = NDArray[np.float64]
+DipSign = Literal["down-positive", "down-negative"]
+
+#: Depths of logs are written in centimetres: smaller differences are no difference, metres.
+DEPTH_TOLERANCE = 0.005
+
+
+@dataclass(frozen=True, eq=False)
+class IntervalLog:
+    """One interval table: arrays of equal length, sorted by hole and depth; ``row`` is the file's line."""
+
+    file: str
+    hole: NDArray[np.str_]
+    top: Floats
+    base: Floats
+    code: NDArray[np.str_]
+    row: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Boreholes:
+    """Holes in space with their logs, and what was found on the way.
+
+    ``paths`` holds the path of each hole, ``ends`` its depth in metres, ``logs`` one entry an interval table.
+    """
+
+    holes: tuple[Hole, ...]
+    paths: Mapping[str, WellPath]
+    ends: Mapping[str, float]
+    logs: tuple[IntervalLog, ...]
+    issues: tuple[ImportIssue, ...] = ()
+    counts: tuple[TableCount, ...] = ()
+    inputs: Mapping[str, str] | None = None
+
+
+@dataclass(frozen=True)
+class _Collar:
+    xyz: tuple[float, float, float]
+    end: float
+    stations: Stations | None
+
+
+def read_boreholes(
+    collar: str | Path | Source,
+    survey: str | Path | Source | None = None,
+    intervals: Sequence[str | Path | Source] = (),
+    dip: DipSign | None = None,
+) -> Boreholes:
+    """Read collar, survey and interval tables.
+
+    Parameters
+    ----------
+    collar : path or Source
+        Columns hole, x, y, z (elevation of the mouth), optionally depth, azimuth and dip.
+    survey : path or Source, optional
+        Columns hole, depth, azimuth, dip. A hole without rows is vertical.
+    intervals : sequence of path or Source
+        Tables with hole, from, to, code.
+    dip : {"down-positive", "down-negative"}, optional
+        Sign of the dips; if it is not stated the majority's sign is down, with a warning.
+
+    Returns
+    -------
+    Boreholes
+        Contacts are taken from it by :func:`geofit.io.take_contacts`.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used at all; single rows that cannot are listed in ``issues``.
+    """
+    journal = Journal()
+    found = load_boreholes(
+        as_source(collar),
+        as_source(survey) if survey is not None else None,
+        [as_source(table) for table in intervals],
+        dip,
+        journal,
+    )
+    return Boreholes(
+        found.holes,
+        found.paths,
+        found.ends,
+        found.logs,
+        tuple(journal.issues),
+        tuple(journal.counts),
+        dict(journal.inputs),
+    )
+
+
+def load_boreholes(
+    collar: Source,
+    survey: Source | None,
+    intervals: Sequence[Source],
+    dip: DipSign | None,
+    journal: Journal,
+    region: Region | None = None,
+) -> Boreholes:
+    """Read boreholes; the journal receives what is found."""
+    collars = _read_collars(collar, dip, journal, region)
+    stations = read_stations(survey, dip, list(collars), journal) if survey is not None else {}
+    logs = tuple(_read_log(source, collars, journal) for source in intervals)
+    paths, ends, holes = {}, {}, []
+    for name, mouth in collars.items():
+        surveyed = stations.get(name) or mouth.stations or Stations.vertical()
+        deepest = [float(log.base[log.hole == name].max(initial=0.0)) for log in logs]
+        ends[name] = mouth.end if np.isfinite(mouth.end) else max([float(surveyed.depth[-1]), *deepest])
+        path = minimum_curvature(mouth.xyz, surveyed.depth, surveyed.azimuth, surveyed.dip)
+        paths[name] = path
+        depth = np.union1d(path.depth[path.depth < ends[name]], [0.0, ends[name]])
+        holes.append(Hole(name, "borehole", depth, path.at(depth)))
+    return Boreholes(tuple(holes), paths, ends, logs)
+
+
+def _read_collars(
+    source: Source, dip: DipSign | None, journal: Journal, region: Region | None
+) -> dict[str, _Collar]:
+    rows = read_rows(source, COLLAR, journal)
+    name = rows.text("hole")
+    x, y, z = rows.numbers("x"), rows.numbers("y"), rows.numbers("z", no_data=True)
+    end = rows.numbers("depth", required=False)
+    for i in np.flatnonzero(end < 0).tolist():
+        rows.reject(i, "depth", "The hole's depth is negative", "Give the length of the hole in metres.")
+    check_axes(rows, x, y, region)
+    first: dict[str, int] = {}
+    places: dict[tuple[float, float, float], int] = {}
+    for i in np.flatnonzero(rows.ok).tolist():
+        if name[i] in first:
+            k = first[name[i]]
+            where = "at the same place" if (x[i], y[i], z[i]) == (x[k], y[k], z[k]) else "at another place"
+            rows.reject(
+                i,
+                "hole",
+                f"The hole is listed in row {rows.line[k]} already, {where}",
+                "Keep one of the rows.",
+            )
+            continue
+        first[name[i]] = i
+        k = places.setdefault((x[i], y[i], z[i]), i)
+        if k != i:
+            rows.warn(i, "hole", f"The collar lies exactly where hole {name[k]} (row {rows.line[k]}) starts")
+    attitudes = _collar_stations(rows, name, dip)
+    rows.close()
+    if not first:
+        raise InputError(
+            "No row of the collar table can be used", "See the listed rows.", file=source.name
+        ) from None
+    return {
+        hole: _Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole))
+        for hole, i in first.items()
+        if rows.ok[i]
+    }
+
+
+def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None) -> dict[str, Stations]:
+    """Return the straight holes whose azimuth and dip stand in the collar table."""
+    if not {"azimuth", "dip"} <= set(rows.columns):
+        return {}
+    return Stations.from_rows(rows, name, np.zeros(len(rows)), dip, blank_is_vertical=True)
+
+
+def _read_log(source: Source, collars: Mapping[str, _Collar], journal: Journal) -> IntervalLog:
+    rows = read_rows(source, INTERVALS, journal)
+    name, code = np.array(rows.text("hole")), np.array(rows.text("code"))
+    top, base = rows.numbers("from"), rows.numbers("to")
+    end = np.array([collars[h].end if h in collars else np.nan for h in name])
+    rows.require_known("hole", name.tolist(), collars, "collar table")
+    for mask, role, reason, remedy in (
+        (top < 0, "from", "The interval starts above the collar", "Depths count from the collar, downwards."),
+        (base < top, "to", "The interval is reversed: it ends above its start", "Exchange from and to."),
+        (base == top, "to", "The interval has no length", "Correct from or to."),
+        (
+            top > end - DEPTH_TOLERANCE,
+            "from",
+            "The interval starts at or beyond the hole's end",
+            "Correct the depth.",
+        ),
+    ):
+        for i in np.flatnonzero(mask & rows.ok).tolist():
+            limit = f" at {end[i]:g} m" if "hole's end" in reason else ""
+            rows.reject(i, role, reason + limit, remedy)
+    for i in np.flatnonzero((base > end + DEPTH_TOLERANCE) & rows.ok).tolist():
+        rows.warn(
+            i,
+            "to",
+            f"The interval ends {base[i] - end[i]:.2f} m beyond the hole's end; it is cut there",
+            "Correct the depth of the interval or of the hole.",
+        )
+        base[i] = end[i]
+    order = np.lexsort((np.arange(len(name)), top, name))
+    order = order[rows.ok[order]]
+    for i, k in pairwise(order.tolist()):
+        if name[i] == name[k] and top[k] < base[i] - DEPTH_TOLERANCE:
+            if (top[i], base[i], code[i]) == (top[k], base[k], code[k]):
+                rows.reject(k, "from", f"The interval repeats row {rows.line[i]}", "Remove one of the two.")
+                continue
+            rows.warn(
+                k,
+                "from",
+                f"The interval overlaps that of row {rows.line[i]} by "
+                f"{min(base[i], base[k]) - top[k]:.2f} m; limits inside the other one are no contacts",
+                "Correct from or to.",
+            )
+    rows.close()
+    order = order[rows.ok[order]]
+    return IntervalLog(rows.file, name[order], top[order], base[order], code[order], rows.line[order])

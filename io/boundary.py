@@ -1,0 +1,137 @@
+"""The study area: corners of a polygon from a table or a GeoJSON file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.columns import BOUNDARY
+from geofit.io.journal import Journal
+from geofit.io.rows import read_rows
+from geofit.io.sniff import decode
+from geofit.io.source import Source, as_source
+
+__all__ = ["load_boundary", "read_boundary"]
+
+Floats = NDArray[np.float64]
+
+
+def read_boundary(path: str | Path | Source) -> Floats:
+    """Return the corners (k, 2) of the study area, not closed.
+
+    Parameters
+    ----------
+    path : path or Source
+        A table with the columns x and y, corners in order; or a GeoJSON polygon (``.json``, ``.geojson``).
+
+    Raises
+    ------
+    InputError
+        If a corner cannot be read, there are fewer than three, or the boundary crosses itself.
+    """
+    return load_boundary(as_source(path), Journal())
+
+
+def load_boundary(source: Source, journal: Journal) -> Floats:
+    """Read the study area; the journal receives the guesses."""
+    if source.path.suffix.casefold() in (".json", ".geojson"):
+        corners = _from_geojson(source, journal)
+        journal.count(source.name, len(corners), 0)
+    else:
+        corners = _from_table(source, journal)
+    if len(corners) > 1 and np.array_equal(corners[0], corners[-1]):
+        corners = corners[:-1]
+        journal.add("note", source.name, "The last corner repeats the first; the boundary closes by itself")
+    _check(corners, source.name)
+    return corners
+
+
+def _from_table(source: Source, journal: Journal) -> Floats:
+    rows = read_rows(source, BOUNDARY, journal)
+    corners = np.column_stack([rows.numbers("x"), rows.numbers("y")])
+    rows.close()
+    if rows.table.read > rows.ok.sum():
+        bad = next(
+            issue for issue in journal.issues if issue.file == source.name and issue.severity == "error"
+        )
+        raise InputError(
+            f"A corner of the boundary cannot be read: {bad.reason}",
+            bad.remedy,
+            file=source.name,
+            row=bad.row,
+            column=bad.column or None,
+            value=bad.value,
+        )
+    return corners
+
+
+def _from_geojson(source: Source, journal: Journal) -> Floats:
+    text, _ = decode(journal.read(source), source.name, source.encoding)
+    try:
+        rings = _rings(json.loads(text))
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise InputError(
+            f"This is no GeoJSON polygon: {error}", "Export one polygon without holes.", file=source.name
+        ) from None
+    if len(rings) != 1:
+        raise InputError(
+            f"The file has {len(rings)} rings; one polygon without holes is needed",
+            "Export the outline of the study area alone.",
+            file=source.name,
+        )
+    try:
+        corners = np.array([corner[:2] for corner in rings[0]], dtype=np.float64)
+    except (ValueError, TypeError):
+        corners = np.empty((0, 0))
+    if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
+        raise InputError(
+            "A corner of the polygon is no pair of finite numbers",
+            "Export the polygon again.",
+            file=source.name,
+        )
+    if np.abs(corners[:, 0]).max() <= 180.0 and np.abs(corners[:, 1]).max() <= 90.0:
+        journal.add(
+            "warning",
+            source.name,
+            "The corners may be longitude and latitude; they are read as metres",
+            "Project them to the site's grid where they are degrees.",
+        )
+    return corners
+
+
+def _rings(node: Any) -> list[Any]:
+    match node.get("type"):
+        case "FeatureCollection":
+            return [ring for feature in node["features"] for ring in _rings(feature)]
+        case "Feature":
+            return _rings(node["geometry"])
+        case "Polygon":
+            return list(node["coordinates"])
+        case "MultiPolygon":
+            return [ring for polygon in node["coordinates"] for ring in polygon]
+    raise ValueError(f"its type is {node.get('type')!r}")
+
+
+def _check(corners: Floats, name: str) -> None:
+    distinct = len(np.unique(corners, axis=0))
+    if distinct < 3:
+        raise InputError(
+            f"The boundary has {distinct} different corners; at least three are needed",
+            "List the corners of the study area in order.",
+            file=name,
+        )
+    from shapely import Polygon
+    from shapely.validation import explain_validity
+
+    polygon = Polygon(corners)
+    if not polygon.is_valid or polygon.area == 0:
+        raise InputError(
+            f"The boundary crosses or touches itself: {explain_validity(polygon)}",
+            "List the corners in order around the study area, each once.",
+            file=name,
+        )

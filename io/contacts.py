@@ -1,0 +1,166 @@
+"""Contacts from interval logs: the top or the base of a code."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from difflib import get_close_matches
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
+from geofit.io.journal import Journal
+from geofit.points import PointSet
+from geofit.site import ImportIssue
+
+__all__ = ["Contacts", "Limit", "load_contacts", "take_contacts"]
+
+Limit = Literal["top", "base"]
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Points of one contact, kind "borehole", with what was found on the way."""
+
+    points: PointSet
+    issues: tuple[ImportIssue, ...]
+
+
+def take_contacts(boreholes: Boreholes, *, top: str | None = None, base: str | None = None) -> Contacts:
+    """Return where the holes cross the top or the base of a code.
+
+    Neighbouring intervals of the code count as one. A hole gives one contact: the uppermost top, the lowest
+    base; further ones are listed. The top of a code that starts at the collar, and the base of one that is
+    open at the hole's end, are not seen by the hole and give no contact.
+
+    Parameters
+    ----------
+    boreholes : Boreholes
+        From :func:`geofit.io.read_boreholes`.
+    top, base : str
+        The code; give one of the two.
+
+    Raises
+    ------
+    InputError
+        If neither or both are given, or no interval has the code.
+    """
+    if (top is None) == (base is None):
+        raise InputError("Both or neither of top and base are given", "Give the code of one of them.")
+    journal = Journal()
+    limit: Limit = "top" if top is not None else "base"
+    points = load_contacts(boreholes, top or base or "", limit, journal)
+    return Contacts(points, tuple(journal.issues))
+
+
+def load_contacts(boreholes: Boreholes, code: str, limit: Limit, journal: Journal) -> PointSet:
+    """Take contacts; the journal receives what is found."""
+    carrying = [log for log in boreholes.logs if (log.code == code).any()]
+    if not carrying:
+        codes = sorted({str(c) for log in boreholes.logs for c in np.unique(log.code)})
+        near = get_close_matches(code, codes, 1)
+        raise InputError(
+            f"No interval has the code '{code}'; the codes are {', '.join(codes[:40]) or 'none'}",
+            f"Did you mean '{near[0]}'?" if near else "Name one of them.",
+            file=", ".join(log.file for log in boreholes.logs) or None,
+        )
+    return PointSet.concatenate([_contacts_of(boreholes, log, code, limit, journal) for log in carrying])
+
+
+def _contacts_of(
+    boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit, journal: Journal
+) -> PointSet:
+    found: list[tuple[str, float, int]] = []
+    unseen: list[str] = []
+    for group in np.split(np.arange(len(log.hole)), np.flatnonzero(log.hole[1:] != log.hole[:-1]) + 1):
+        if not (log.code[group] == code).any():
+            continue
+        hole = str(log.hole[group[0]])
+        depth, row = _limit_in_hole(log, group, code, limit, boreholes.ends[hole], journal)
+        if row:
+            found.append((hole, depth, row))
+        else:
+            unseen.append(hole)
+    if unseen:
+        why = "starts at the collar" if limit == "top" else "is open at the hole's end"
+        journal.add(
+            "note",
+            log.file,
+            f"{limit} of {code}: {len(found)} contacts; no sure contact (the code {why}, or its limit is "
+            f"contradicted) in {len(unseen)} holes: {', '.join(unseen)}",
+            value=code,
+        )
+    if not found:
+        return PointSet(np.empty((0, 3)))
+    return PointSet(
+        np.concatenate([boreholes.paths[hole].at(depth) for hole, depth, _ in found]),
+        kind="borehole",
+        hole=[hole for hole, _, _ in found],
+        row=[row for _, _, row in found],
+        file=log.file,
+    )
+
+
+def _limit_in_hole(
+    log: IntervalLog, group: NDArray[np.int64], code: str, limit: Limit, end: float, journal: Journal
+) -> tuple[float, int]:
+    """Return depth and row of the contact of one hole; row 0 where the hole does not see it."""
+    runs = _runs(log, group, code)
+    depth, row = (
+        (log.top[runs[0][0]], log.row[runs[0][0]])
+        if limit == "top"
+        else (
+            log.base[runs[-1][1]],
+            log.row[runs[-1][1]],
+        )
+    )
+    hole, row = str(log.hole[group[0]]), int(row)
+
+    def warn(reason: str, remedy: str) -> None:
+        journal.add("warning", log.file, f"Hole {hole}: {reason}", remedy, row=row, value=code)
+
+    if len(runs) > 1:
+        which = "uppermost top" if limit == "top" else "lowest base"
+        warn(
+            f"{code} occurs {len(runs)} times; the {which} at {depth:g} m is taken",
+            "Give the repeats codes of their own.",
+        )
+    tolerance = DEPTH_TOLERANCE
+    other = group[log.code[group] != code]
+    if ((log.top[other] < depth - tolerance) & (log.base[other] > depth + tolerance)).any():
+        warn(
+            f"the {limit} of {code} at {depth:g} m lies inside another interval and is not used",
+            "Mend the overlap.",
+        )
+        return depth, 0
+    if limit == "top":
+        above = log.base[other][log.base[other] <= depth + tolerance]
+        if depth <= tolerance:
+            return depth, 0
+        gap = depth - float(above.max(initial=0.0))
+    else:
+        below = log.top[other][log.top[other] >= depth - tolerance]
+        if depth >= end - tolerance:
+            return depth, 0
+        gap = float(below.min(initial=end)) - depth
+    if gap > tolerance:
+        side = "above" if limit == "top" else "below"
+        warn(
+            f"nothing is logged for {gap:.2f} m {side} the {limit} of {code} at {depth:g} m",
+            "Complete the log.",
+        )
+    return depth, row
+
+
+def _runs(log: IntervalLog, group: NDArray[np.int64], code: str) -> list[tuple[int, int]]:
+    """Return first and last index of each run of intervals of a code that touch each other."""
+    runs: list[tuple[int, int]] = []
+    for i in map(int, group[log.code[group] == code]):
+        if runs and log.top[i] <= log.base[runs[-1][1]] + DEPTH_TOLERANCE:
+            first, last = runs[-1]
+            runs[-1] = (first, i if log.base[i] > log.base[last] else last)
+        else:
+            runs.append((i, i))
+    return runs

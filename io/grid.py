@@ -1,0 +1,113 @@
+"""The ground from an ESRI ASCII grid."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from geofit.errors import InputError
+from geofit.io.journal import Journal
+from geofit.io.sniff import decode
+from geofit.io.source import Source, as_source
+from geofit.site import Ground
+
+__all__ = ["load_ground", "read_ground"]
+
+_KEYS = {
+    "ncols",
+    "nrows",
+    "xllcorner",
+    "yllcorner",
+    "xllcenter",
+    "yllcenter",
+    "cellsize",
+    "dx",
+    "dy",
+    "nodata_value",
+}
+
+
+def read_ground(path: str | Path | Source) -> Ground:
+    """Read an ESRI ASCII grid; cells without data are nan.
+
+    Raises
+    ------
+    InputError
+        If the head is incomplete, a cell is no number, or the cells are not ncols x nrows.
+    """
+    return load_ground(as_source(path), Journal())
+
+
+def load_ground(source: Source, journal: Journal) -> Ground:
+    """Read an ESRI ASCII grid; the journal receives the count of lines and of cells without data."""
+    text, _ = decode(journal.read(source), source.name, source.encoding)
+    lines = text.splitlines()
+    head: dict[str, float] = {}
+    at = 0
+    while at < len(lines) and (not lines[at].strip() or lines[at].split()[0].casefold() in _KEYS):
+        words = lines[at].split()
+        if words:
+            head[words[0].casefold()] = _number(
+                words[-1] if len(words) == 2 else "", source.name, at + 1, words[0]
+            )
+        at += 1
+    columns, rows = _size(head, "ncols", source.name), _size(head, "nrows", source.name)
+    dx, dy = (head.get(key, head.get("cellsize", float("nan"))) for key in ("dx", "dy"))
+    if not (dx > 0 and dy > 0):
+        raise InputError("The grid has no cellsize above 0", "Add a line 'cellsize 10'.", file=source.name)
+    west = _corner(head, "x", dx, source.name)
+    south = _corner(head, "y", dy, source.name)
+    body = [(at + k + 1, line.split()) for k, line in enumerate(lines[at:]) if line.strip()]
+    cells = [word for _, words in body for word in words]
+    if len(cells) != columns * rows:
+        raise InputError(
+            f"The grid has {len(cells)} cells; ncols x nrows = {columns} x {rows} are needed",
+            "Export the grid again.",
+            file=source.name,
+        )
+    try:
+        z = np.array(cells, dtype=np.float64)
+    except ValueError:
+        for line, words in body:
+            for word in words:
+                _number(word, source.name, line, "cell")
+        raise
+    blank = ~np.isfinite(z) | (z == head.get("nodata_value", -9999.0))
+    z[blank] = np.nan
+    if blank.all():
+        raise InputError("No cell of the grid has an elevation", "Check nodata_value.", file=source.name)
+    if blank.any():
+        journal.add("note", source.name, f"{int(blank.sum())} of {z.size} cells have no data")
+    journal.count(source.name, len(body), 0)
+    x, y = np.arange(columns, dtype=np.float64), np.arange(rows, dtype=np.float64)
+    return Ground(west + dx * x, south + dy * y, z.reshape(rows, columns)[::-1].copy())
+
+
+def _number(word: str, file: str, row: int, column: str) -> float:
+    try:
+        return float(word)
+    except ValueError:
+        raise InputError(
+            "This is no number", "Export the grid again.", file=file, row=row, column=column, value=word
+        ) from None
+
+
+def _size(head: dict[str, float], key: str, file: str) -> int:
+    value = head.get(key, np.nan)
+    if not (value >= 2 and value == int(value)):
+        raise InputError(
+            f"The grid's head has no whole {key} of at least 2",
+            "An ESRI ASCII grid starts with ncols, nrows, xllcorner, yllcorner, cellsize.",
+            file=file,
+        )
+    return int(value)
+
+
+def _corner(head: dict[str, float], axis: str, step: float, file: str) -> float:
+    """Return the first cell's centre."""
+    if f"{axis}llcenter" in head:
+        return head[f"{axis}llcenter"]
+    if f"{axis}llcorner" in head:
+        return head[f"{axis}llcorner"] + 0.5 * step
+    raise InputError(f"The grid has no {axis}llcorner", f"Add a line '{axis}llcorner 500000'.", file=file)

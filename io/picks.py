@@ -1,0 +1,133 @@
+"""Plain picks: points with x, y, z, for one horizon or many."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from geofit.errors import InputError
+from geofit.io.axes import Region, check_axes
+from geofit.io.columns import PICKS, Schema
+from geofit.io.horizons import HorizonNames
+from geofit.io.journal import Journal
+from geofit.io.places import list_places
+from geofit.io.rows import read_rows
+from geofit.io.source import Source
+from geofit.points import PointSet
+from geofit.progress import Progress, tell
+from geofit.site import ImportIssue, TableCount
+
+__all__ = ["Picks", "load_picks", "read_points"]
+
+
+@dataclass(frozen=True, eq=False)
+class Picks:
+    """Points of each horizon of a pick file, with what was found on the way."""
+
+    horizons: Mapping[str, PointSet]
+    issues: tuple[ImportIssue, ...]
+    counts: tuple[TableCount, ...]
+    inputs: Mapping[str, str]
+
+
+def read_points(
+    path: str | Path,
+    x: str | int | None = None,
+    y: str | int | None = None,
+    z: str | int | None = None,
+    surface: str | int | None = None,
+    section: str | int | None = None,
+    sep: str | None = None,
+    decimal: str | None = None,
+    encoding: str | None = None,
+    progress: Progress | None = None,
+) -> Picks:
+    """Read a text table of points.
+
+    Parameters
+    ----------
+    path : path
+        CSV, TSV or blank-separated text.
+    x, y, z, surface, section : str or int, optional
+        Column of easting, northing, elevation (m), horizon and section: its header, or its number from 1.
+        What is not given is guessed from the header; each guess is listed as a note.
+    sep, decimal, encoding : str, optional
+        Separator, decimal mark and encoding, where the guess is wrong.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``.
+
+    Returns
+    -------
+    Picks
+        Without a column for the horizon there is one, named as the file is.
+
+    Raises
+    ------
+    InputError
+        If the file is missing or empty, a column is missing, or no row can be used.
+    """
+    given = {"x": x, "y": y, "z": z, "horizon": surface, "section": section}
+    source = Source(
+        path=Path(path),
+        sep=sep,
+        decimal=decimal,
+        encoding=encoding,
+        columns={role: column for role, column in given.items() if column is not None},
+    )
+    journal = Journal()
+    tell(progress, "read", 0.0)
+    horizons = load_picks(source, HorizonNames(), journal, alone=Path(path).stem)
+    for name, points in horizons.items():
+        list_places(name, points, journal)
+    tell(progress, "read", 1.0)
+    return Picks(horizons, tuple(journal.issues), tuple(journal.counts), dict(journal.inputs))
+
+
+def load_picks(
+    source: Source,
+    horizons: HorizonNames,
+    journal: Journal,
+    *,
+    kind: str = "point",
+    region: Region | None = None,
+    alone: str | None = None,
+) -> dict[str, PointSet]:
+    """Read picks; ``kind`` and ``alone`` stand where the file names no kind and no horizon."""
+    required = dict(PICKS.required)
+    optional = dict(PICKS.optional)
+    if alone is None:
+        required = {"horizon": optional.pop("horizon"), **required}
+    rows = read_rows(source, Schema("picks", required, optional), journal)
+    x, y, z = rows.numbers("x"), rows.numbers("y"), rows.numbers("z", no_data=True)
+    accuracy = rows.numbers("accuracy", required=False)
+    for i in np.flatnonzero((accuracy <= 0) & rows.ok).tolist():
+        rows.reject(i, "accuracy", "The accuracy is not above 0", "Give one standard deviation in metres.")
+    names = horizons.of(rows) if "horizon" in rows.columns else [alone or ""] * len(rows)
+    check_axes(rows, x, y, region)
+    kinds = [cell.casefold() or kind for cell in rows.text("kind", required=False)]
+    rows.close()
+    if not rows.ok.any():
+        first = next(
+            (issue for issue in journal.issues if issue.file == source.name and issue.severity == "error"),
+            None,
+        )
+        raise InputError(
+            f"None of {rows.table.read} rows can be used"
+            + (f"; row {first.row}: {first.reason}" if first else ""),
+            first.remedy if first else "",
+            file=source.name,
+            column=first.column if first else None,
+            value=first.value if first else None,
+        )
+    return horizons.split(
+        rows,
+        names,
+        np.column_stack([x, y, z]),
+        kind=kinds,
+        hole=rows.text("hole", required=False),
+        section=rows.text("section", required=False),
+        accuracy=accuracy,
+    )

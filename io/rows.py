@@ -1,0 +1,127 @@
+"""Typed rows of one table: a row is either used or listed, and every row is one of the two."""
+
+from __future__ import annotations
+
+import unicodedata
+from collections.abc import Iterable, Sequence
+from difflib import get_close_matches
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.io.columns import Schema, find_columns
+from geofit.io.journal import Journal, Severity
+from geofit.io.source import Source, as_source
+from geofit.io.tables import Table, parse_numbers, read_table
+
+__all__ = ["NO_DATA", "Rows", "read_rows"]
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+#: Elevations that programs write where there is none.
+NO_DATA = (-9999.0, -99999.0, -999.25, -999999.0, 1e30, 1e31, 1.70141e38)
+
+
+class Rows:
+    """The rows of a table under their roles.
+
+    ``ok`` (n,) is True for rows that are still used; :meth:`reject` lists a row and takes it out.
+    """
+
+    def __init__(self, table: Table, columns: dict[str, int], journal: Journal) -> None:
+        self.table, self.columns, self.journal = table, columns, journal
+        self.file = table.name
+        self.line = table.lines
+        self.ok: Mask = np.ones(len(table), dtype=bool)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def text(self, role: str, *, required: bool = True) -> list[str]:
+        """Return the cells of a role without outer blanks; empty where there is no column."""
+        if role not in self.columns:
+            return [""] * len(self)
+        cells = self.table.columns[self.columns[role]]
+        cleaned = {cell: unicodedata.normalize("NFKC", cell).strip() for cell in set(cells)}
+        if required and "" in cleaned.values():
+            for i in [i for i, cell in enumerate(cells) if not cleaned[cell]]:
+                self.reject(i, role, f"The {role} is empty", "Complete the cell.")
+        return [cleaned[cell] for cell in cells]
+
+    def numbers(self, role: str, *, required: bool = True, no_data: bool = False) -> Floats:
+        """Return the numbers of a role; rows without a finite one are rejected, or nan where one is optional.
+
+        With ``no_data`` the usual marks for "no value" are rejected too.
+        """
+        if role not in self.columns:
+            return np.full(len(self), np.nan)
+        cells = self.table.columns[self.columns[role]]
+        values, bad = parse_numbers(cells, self.table.decimal)
+        for i in bad.tolist():
+            cell = cells[i].strip()
+            if cell:
+                self.reject(
+                    i,
+                    role,
+                    f"The {role} is no finite number",
+                    f"Give a number with the decimal mark '{self.table.decimal}' and no unit.",
+                )
+            elif required:
+                self.reject(i, role, f"The {role} is empty", "Complete the cell.")
+        if no_data:
+            for i in np.flatnonzero(np.isin(values, NO_DATA)).tolist():
+                self.reject(
+                    i, role, f"The {role} is a mark for 'no data'", "Complete the cell or remove the row."
+                )
+        return values
+
+    def reject(
+        self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "error"
+    ) -> None:
+        """List row i and do not use it."""
+        self.ok[i] = False
+        self._list(severity, i, role, reason, remedy)
+
+    def warn(
+        self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "warning"
+    ) -> None:
+        """List row i but use it."""
+        self._list(severity, i, role, reason, remedy)
+
+    def require_known(self, role: str, names: Sequence[str], known: Iterable[str], where: str) -> None:
+        """Reject the rows whose hole, adit or horizon is not known; ``where`` says what should name it."""
+        present = list(known)
+        lookup, hints = set(present), dict[str, str]()
+        for i in np.flatnonzero(self.ok).tolist():
+            name = names[i]
+            if name in lookup:
+                continue
+            if name not in hints:
+                near = get_close_matches(name, present, 1) if len(hints) < 20 else []
+                hints[name] = f"Did you mean '{near[0]}'?" if near else f"Add it to the {where}."
+            self.reject(i, role, f"The {role} '{name}' is not in the {where}", hints[name])
+
+    def close(self) -> None:
+        """Count the rows: those of the file that are not used are listed."""
+        self.journal.count(self.file, self.table.read, self.table.read - int(self.ok.sum()))
+
+    def _list(self, severity: Severity, i: int, role: str, reason: str, remedy: str) -> None:
+        j = self.columns.get(role)
+        self.journal.add(
+            severity,
+            self.file,
+            reason,
+            remedy,
+            row=int(self.line[i]),
+            column=self.table.header[j] if j is not None else role,
+            value=self.table.columns[j][i].strip() if j is not None else "",
+        )
+
+
+def read_rows(source: Source | str | Path, schema: Schema, journal: Journal) -> Rows:
+    """Read a table and find its columns."""
+    source = as_source(source)
+    table = read_table(source, journal)
+    return Rows(table, find_columns(table, schema, source, journal), journal)

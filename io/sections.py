@@ -1,0 +1,111 @@
+"""Sections drawn in 2D (distance along the section line against elevation), lifted to their place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.columns import SECTION
+from geofit.io.horizons import HorizonNames
+from geofit.io.journal import Journal
+from geofit.io.polyline import along, chainage
+from geofit.io.rows import read_rows
+from geofit.io.section_dxf import read_drawing
+from geofit.io.source import Source
+from geofit.points import PointSet
+from geofit.site import Section
+
+__all__ = ["Drawing", "lift", "load_section"]
+
+Floats = NDArray[np.float64]
+
+#: A drawn point may lie this far beyond the ends of its section line, metres.
+END_TOLERANCE = 0.01
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawing:
+    """How drawing units become metres: ``distance = (u - origin[0]) / scale``, elevation alike.
+
+    ``scale`` is drawing units a metre (1000 for millimetres at 1:1), ``origin`` the drawing's coordinates of
+    distance 0 and elevation 0.
+    """
+
+    scale: float = 1.0
+    origin: tuple[float, float] = (0.0, 0.0)
+
+    def metres(self, uv: Floats) -> Floats:
+        """Return (n, 2) drawing coordinates as distance and elevation."""
+        return np.asarray((uv - np.array(self.origin)) / self.scale)
+
+
+def lift(line: Floats, distance: Floats, elevation: Floats) -> Floats:
+    """Return the places (n, 3) of points of a section whose line in plan is ``line`` (k, 2)."""
+    return np.column_stack([along(line, distance), elevation])
+
+
+def load_section(
+    source: Source, section: Section, drawing: Drawing, horizons: HorizonNames, journal: Journal
+) -> dict[str, PointSet]:
+    """Read one section, CSV or DXF; points keep their order along the drawn line, kind "section".
+
+    A point before the start or beyond the end of the section line is listed and not used.
+    """
+    if source.path.suffix.casefold() == ".dxf":
+        return _from_dxf(source, section, drawing, horizons, journal)
+    rows = read_rows(source, SECTION, journal)
+    horizon = horizons.of(rows)
+    uv = drawing.metres(np.column_stack([rows.numbers("distance"), rows.numbers("elevation", no_data=True)]))
+    for i in np.flatnonzero(_off_line(section, uv[:, 0]) & rows.ok).tolist():
+        rows.reject(i, "distance", *_off_line_text(section, uv[i, 0]))
+    rows.close()
+    return horizons.split(
+        rows, horizon, lift(section.line, uv[:, 0], uv[:, 1]), kind="section", section=section.name
+    )
+
+
+def _from_dxf(
+    source: Source, section: Section, drawing: Drawing, horizons: HorizonNames, journal: Journal
+) -> dict[str, PointSet]:
+    drawn = read_drawing(source, horizons, journal, scale_stated=drawing.scale != 1.0)
+    if not len(drawn.uv) and not drawn.listed:
+        raise InputError("The drawing is empty", "Draw the horizons in model space.", file=source.name)
+    uv = drawing.metres(drawn.uv)
+    off = _off_line(section, uv[:, 0])
+    for i in np.flatnonzero(off).tolist():
+        reason, remedy = _off_line_text(section, uv[i, 0])
+        journal.add(
+            "error",
+            source.name,
+            reason,
+            remedy,
+            row=int(drawn.number[i]),
+            column=drawn.horizon[i],
+            value=f"{drawn.uv[i, 0]:.15g}",
+        )
+    journal.count(source.name, len(uv) + drawn.listed, drawn.listed + int(off.sum()))
+    xyz = lift(section.line, uv[:, 0], uv[:, 1])
+    names = np.array(drawn.horizon, dtype=np.str_)
+    return {
+        name: PointSet(
+            xyz[chosen], kind="section", section=section.name, row=drawn.number[chosen], file=source.name
+        )
+        for name in dict.fromkeys(names[~off].tolist())
+        for chosen in [np.flatnonzero((names == name) & ~off)]
+    }
+
+
+def _off_line(section: Section, distance: Floats) -> NDArray[np.bool_]:
+    length = chainage(section.line)[-1]
+    return np.asarray((distance < -END_TOLERANCE) | (distance > length + END_TOLERANCE))
+
+
+def _off_line_text(section: Section, distance: float) -> tuple[str, str]:
+    length = chainage(section.line)[-1]
+    return (
+        f"The distance {distance:.2f} m is not on the line of section {section.name} ({length:.2f} m long)",
+        "Correct the distance, the line, or the drawing's scale and origin.",
+    )

@@ -1,0 +1,345 @@
+"""site.toml: the file that binds the tables and drawings of one site."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError, SettingsError
+from geofit.io.adits import load_adit_contacts, load_adits
+from geofit.io.axes import Region, region_of
+from geofit.io.boreholes import Boreholes, load_boreholes
+from geofit.io.boundary import load_boundary
+from geofit.io.contacts import Limit, load_contacts
+from geofit.io.grid import load_ground
+from geofit.io.horizons import HorizonNames
+from geofit.io.journal import Journal
+from geofit.io.picks import load_picks
+from geofit.io.places import list_places
+from geofit.io.sections import Drawing, load_section
+from geofit.io.site_keys import HORIZON, SETTINGS, TABLE, TOP, Reader
+from geofit.io.source import Source
+from geofit.io.traces import load_traces
+from geofit.points import KINDS, PointSet
+from geofit.progress import Progress, tell
+from geofit.settings import FitSettings
+from geofit.site import Ground, Hole, Section, Site
+
+__all__ = ["read_site"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class _Horizon:
+    """One [[horizon]] table."""
+
+    name: str
+    top: str | None
+    base: str | None
+    accuracy: Mapping[str, float]
+    settings: FitSettings
+
+
+def read_site(path: str | Path, progress: Progress | None = None) -> Site:
+    """Read a site file and everything that it names.
+
+    The format is described in ``docs/site_file.md``. Rows that cannot be used are listed in ``issues``; for
+    each file ``read == used + listed`` in ``counts``.
+
+    Parameters
+    ----------
+    path : path
+        The ``site.toml``; the files that it names count from its folder.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``.
+
+    Returns
+    -------
+    Site
+
+    Raises
+    ------
+    InputError
+        If the site file has an unknown key, a file cannot be used at all, or a horizon has no point.
+    """
+    source = Source(path=Path(path))
+    journal = Journal()
+    reader = Reader(source.path)
+    top = _parse(journal.read(source), source.name)
+    reader.keys(top, TOP, "The site file")
+    label = reader.get(top, "site", dict, "the site file") or {}
+    reader.keys(label, ("name", "crs"), "[site]")
+    horizons = [_horizon(reader, table) for table in reader.tables(top, "horizon")]
+    names = HorizonNames([horizon.name for horizon in horizons])
+    if len(set(map(str.casefold, names.names))) < len(horizons):
+        raise reader.fail("Two [[horizon]] tables have one name", "Give each its own.", "name")
+
+    tell(progress, "read boundary and ground", 0.0)
+    boundary, ground, region = _surroundings(reader, top, journal)
+    tell(progress, "read boreholes and adits", 0.1)
+    gathered: dict[str, list[PointSet]] = {name: [] for name in names.names}
+    boreholes = _boreholes(reader, top, journal, region)
+    _gather_contacts(reader, gathered, boreholes, horizons, journal)
+    adits = _adits(reader, top, names, journal, region, gathered)
+    tell(progress, "read sections", 0.4)
+    sections = _sections(reader, top, names, journal, region, gathered)
+    tell(progress, "read traces and picks", 0.7)
+    for table in reader.tables(top, "traces"):
+        _gather(gathered, load_traces(reader.source(table, "[traces]"), ground, names, journal, region))
+    for table in reader.tables(top, "picks"):
+        kind = reader.get(table, "kind", str, "[picks]") or "point"
+        picks = reader.source(table, "[picks]", ("kind",))
+        _gather(gathered, load_picks(picks, names, journal, kind=kind, region=region))
+
+    points, settings = {}, {}
+    stated = {horizon.name: horizon for horizon in horizons}
+    for name, sets in gathered.items():
+        horizon = stated.get(name) or _Horizon(name, None, None, {}, FitSettings())
+        settings[name] = horizon.settings
+        points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon)
+        list_places(name, points[name], journal, horizon.settings.conflict_distance)
+    if not points:
+        raise reader.fail(
+            "The site has no horizon", "Add a [[horizon]] table and files that hold its points."
+        )
+    tell(progress, "read", 1.0)
+    return Site(
+        name=reader.get(label, "name", str, "[site]") or source.path.parent.name,
+        horizons=points,
+        settings=settings,
+        boundary=boundary,
+        ground=ground,
+        holes=((boreholes.holes if boreholes else ()) + adits),
+        sections=sections,
+        issues=tuple(journal.issues),
+        counts=tuple(journal.counts),
+        crs=reader.get(label, "crs", str, "[site]") or "",
+        inputs=dict(journal.inputs),
+    )
+
+
+def _parse(data: bytes, name: str) -> dict[str, Any]:
+    try:
+        return tomllib.loads(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise InputError(f"The site file is not UTF-8: {error}", "Save it as UTF-8.", file=name) from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"The site file is no TOML: {error}", "See docs/site_file.md.", file=name) from None
+
+
+def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
+    name = reader.need(table, "name", str, "[[horizon]]", 'Write name = "...".').strip()
+    where = f"horizon '{name}'"
+    if not name:
+        raise reader.fail("A [[horizon]] has an empty name", 'Write name = "...".', "name")
+    reader.keys(table, HORIZON, where)
+    top, base = (reader.get(table, key, str, where) for key in ("top", "base"))
+    if top is not None and base is not None:
+        raise reader.fail(f"{where} has both top and base", "Keep the one that is this horizon.", "base")
+    accuracy = reader.get(table, "accuracy", dict, where) or {}
+    for kind in accuracy:
+        if not reader.get(accuracy, kind, float, f"accuracy of {where}") > 0:
+            raise reader.fail(
+                f"accuracy of {where} must be above 0",
+                "Give one standard deviation in metres.",
+                kind,
+                accuracy[kind],
+            )
+    try:
+        settings = FitSettings(**{key: table[key] for key in SETTINGS if key in table})
+    except (SettingsError, TypeError) as error:
+        raise reader.fail(f"{where}: {error}", "Correct it in the site file.") from None
+    return _Horizon(name, top, base, {kind: float(value) for kind, value in accuracy.items()}, settings)
+
+
+def _surroundings(
+    reader: Reader, top: Mapping[str, Any], journal: Journal
+) -> tuple[Floats | None, Ground | None, Region | None]:
+    boundary = ground = region = None
+    if "ground" in top:
+        ground = load_ground(reader.source(top["ground"], "[ground]"), journal)
+        region = region_of(np.array([[ground.x[0], ground.y[0]], [ground.x[-1], ground.y[-1]]]))
+    if "boundary" in top:
+        boundary = load_boundary(reader.source(top["boundary"], "[boundary]"), journal)
+        if region is not None:
+            _compare(reader, boundary, region)
+        region = region_of(boundary)
+    return boundary, ground, region
+
+
+def _compare(reader: Reader, boundary: Floats, ground: Region) -> None:
+    west, east, south, north = ground
+    x, y = boundary.mean(axis=0)
+    if not (west <= x <= east and south <= y <= north):
+        swapped = west <= y <= east and south <= x <= north
+        raise reader.fail(
+            f"The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid"
+            + (", and on it with x and y exchanged" if swapped else ""),
+            "Exchange x and y of the boundary." if swapped else "Give both in the same coordinates.",
+            "boundary",
+        )
+
+
+def _boreholes(
+    reader: Reader, top: Mapping[str, Any], journal: Journal, region: Region | None
+) -> Boreholes | None:
+    table = reader.get(top, "boreholes", dict, "the site file")
+    if table is None:
+        return None
+    where = "[boreholes]"
+    reader.keys(table, ("collar", "survey", "intervals", "dip"), where)
+    if "collar" not in table:
+        raise reader.fail(f"{where} has no 'collar'", 'Write collar = "collar.csv".', "collar")
+    dip = reader.get(table, "dip", str, where)
+    if dip not in (None, "down-positive", "down-negative"):
+        raise reader.fail(
+            "The sign of the dips is unknown", 'Write "down-positive" or "down-negative".', "dip", dip
+        )
+    intervals = table.get("intervals", [])
+    intervals = intervals if isinstance(intervals, list) else [intervals]
+    return load_boreholes(
+        reader.source(table["collar"], f"collar in {where}"),
+        reader.source(table["survey"], f"survey in {where}") if "survey" in table else None,
+        [reader.source(entry, f"intervals in {where}") for entry in intervals],
+        dip,
+        journal,
+        region,
+    )
+
+
+def _gather_contacts(
+    reader: Reader,
+    gathered: dict[str, list[PointSet]],
+    boreholes: Boreholes | None,
+    horizons: list[_Horizon],
+    journal: Journal,
+) -> None:
+    for horizon in horizons:
+        code = horizon.top if horizon.top is not None else horizon.base
+        if code is None:
+            continue
+        if boreholes is None or not boreholes.logs:
+            raise reader.fail(
+                f"horizon '{horizon.name}' is a limit of '{code}', but the site has no intervals",
+                'Add intervals = ["lithology.csv"] to [boreholes], or remove top and base.',
+                "top" if horizon.top is not None else "base",
+            )
+        limit: Limit = "top" if horizon.top is not None else "base"
+        gathered[horizon.name].append(load_contacts(boreholes, code, limit, journal))
+
+
+def _adits(
+    reader: Reader,
+    top: Mapping[str, Any],
+    names: HorizonNames,
+    journal: Journal,
+    region: Region | None,
+    gathered: dict[str, list[PointSet]],
+) -> tuple[Hole, ...]:
+    table = reader.get(top, "adits", dict, "the site file")
+    if table is None:
+        return ()
+    reader.keys(table, ("path", "contacts"), "[adits]")
+    if "path" not in table:
+        raise reader.fail("[adits] has no 'path'", 'Write path = "adits.csv".', "path")
+    adits = load_adits(reader.source(table["path"], "path in [adits]"), journal, region)
+    if "contacts" in table:
+        contacts = reader.source(table["contacts"], "contacts in [adits]")
+        _gather(gathered, load_adit_contacts(contacts, adits, names, journal))
+    return adits
+
+
+def _sections(
+    reader: Reader,
+    top: Mapping[str, Any],
+    names: HorizonNames,
+    journal: Journal,
+    region: Region | None,
+    gathered: dict[str, list[PointSet]],
+) -> tuple[Section, ...]:
+    sections: list[Section] = []
+    for table in reader.tables(top, "section"):
+        name = reader.need(table, "name", str, "[[section]]", 'Write name = "...".')
+        where = f"section '{name}'"
+        if any(section.name == name for section in sections):
+            raise reader.fail(f"Two sections have the name '{name}'", "Give each its own.", "name")
+        reader.keys(table, (*TABLE, "name", "line", "scale", "origin"), where)
+        remedy = "Write line = [[x, y], [x, y]], the corners of the section line in plan."
+        line = _pairs(reader, reader.need(table, "line", list, where, remedy), f"line of {where}", remedy)
+        if len(line) < 2 or not (np.diff(line, axis=0) != 0).any(axis=1).all():
+            raise reader.fail(
+                f"The line of {where} needs two or more different corners", remedy, "line", line.tolist()
+            )
+        _check_line(reader, line, where, region)
+        scale = reader.get(table, "scale", float, where)
+        if scale is not None and scale <= 0:
+            raise reader.fail(
+                f"scale in {where} must be above 0", "Give drawing units a metre.", "scale", scale
+            )
+        remedy = "Write origin = [u, v], the drawing's coordinates of distance 0 and elevation 0."
+        origin = _pairs(reader, [table.get("origin", [0.0, 0.0])], f"origin of {where}", remedy)[0]
+        drawing = Drawing(scale=1.0 if scale is None else scale, origin=(float(origin[0]), float(origin[1])))
+        sections.append(Section(name, line))
+        source = reader.source(table, where, ("name", "line", "scale", "origin"))
+        _gather(gathered, load_section(source, sections[-1], drawing, names, journal))
+    return tuple(sections)
+
+
+def _pairs(reader: Reader, value: Any, where: str, remedy: str) -> Floats:
+    try:
+        pairs = np.array(value, dtype=np.float64)
+    except (ValueError, TypeError):
+        pairs = np.empty(0)
+    if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
+        raise reader.fail(f"The {where} is no list of finite pairs", remedy, value=value)
+    return pairs
+
+
+def _check_line(reader: Reader, line: Floats, where: str, region: Region | None) -> None:
+    if region is None:
+        return
+    west, east, south, north = region
+    x, y = line.mean(axis=0)
+    if (west <= y <= east and south <= x <= north) and not (west <= x <= east and south <= y <= north):
+        raise reader.fail(
+            f"x and y look exchanged in the line of {where}: it lies far outside the study area, and inside "
+            "it with x and y swapped",
+            "x is the easting, y the northing.",
+            "line",
+            line.tolist(),
+        )
+
+
+def _gather(gathered: dict[str, list[PointSet]], found: Mapping[str, PointSet]) -> None:
+    for name, points in found.items():
+        gathered.setdefault(name, []).append(points)
+
+
+def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> PointSet:
+    """Return the points with the site file's accuracy where their own file states none."""
+    if not len(points):
+        raise reader.fail(
+            f"Horizon '{horizon.name}' has no point in any file",
+            "Correct its name or code, or remove its [[horizon]] table.",
+            "name",
+        )
+    accuracy = np.array(points.accuracy)
+    kinds = sorted({*KINDS, *points.kind.tolist()})
+    for kind, value in horizon.accuracy.items():
+        if kind not in kinds:
+            near = get_close_matches(kind, kinds, 1)
+            raise reader.fail(
+                f"accuracy of horizon '{horizon.name}' names the kind '{kind}', which no point has",
+                f"Did you mean '{near[0]}'?" if near else f"The kinds are {', '.join(kinds)}.",
+                kind,
+            )
+        accuracy[(points.kind == kind) & np.isnan(accuracy)] = value
+    return points.with_(accuracy=accuracy)

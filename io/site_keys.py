@@ -1,0 +1,103 @@
+"""The keys of a site file: what may stand where, and clear words for what may not."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import fields
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any
+
+from geofit.errors import InputError
+from geofit.io.source import Source
+from geofit.settings import FitSettings
+
+__all__ = ["HORIZON", "SETTINGS", "TABLE", "TOP", "Reader"]
+
+SETTINGS = tuple(f.name for f in fields(FitSettings))
+
+#: Keys of a table that names a text file.
+TABLE = ("file", "encoding", "sep", "decimal", "columns")
+HORIZON = ("name", "top", "base", "accuracy", *SETTINGS)
+TOP = ("site", "boundary", "ground", "boreholes", "adits", "section", "traces", "picks", "horizon")
+
+_KINDS = {str: "a text", dict: "a table", list: "a list", float: "a number"}
+
+
+class Reader:
+    """Takes typed values out of one site file; every complaint names the file and the key."""
+
+    def __init__(self, path: Path) -> None:
+        self.path, self.file = path, path.name
+
+    def fail(self, reason: str, remedy: str, key: str | None = None, value: Any = None) -> InputError:
+        """Return the error for a key."""
+        return InputError(
+            reason, remedy, file=self.file, column=key, value=None if value is None else str(value)
+        )
+
+    def keys(self, table: Mapping[str, Any], allowed: Iterable[str], where: str) -> None:
+        """Refuse keys that are not allowed, naming the nearest that is."""
+        allowed = list(allowed)
+        for key in table:
+            if key not in allowed:
+                near = get_close_matches(key, allowed, 1, cutoff=0.5)
+                raise self.fail(
+                    f"{where} has no key '{key}'",
+                    (f"Did you mean '{near[0]}'? " if near else "") + f"The keys are {', '.join(allowed)}.",
+                    key,
+                )
+
+    def get(self, table: Mapping[str, Any], key: str, kind: type, where: str) -> Any:
+        """Return the value of a key of the right kind, None if it is absent."""
+        value = table.get(key)
+        if value is None:
+            return None
+        numeric = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+        if not (numeric if kind is float else isinstance(value, kind)):
+            raise self.fail(f"{key} in {where} must be {_KINDS[kind]}", "Correct its value.", key, value)
+        return float(value) if kind is float else value
+
+    def need(self, table: Mapping[str, Any], key: str, kind: type, where: str, remedy: str) -> Any:
+        """Return the value of a key that must be there."""
+        value = self.get(table, key, kind, where)
+        if value is None:
+            raise self.fail(f"{where} has no '{key}'", remedy, key)
+        return value
+
+    def tables(self, top: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
+        """Return what stands under ``[key]`` or repeatedly under ``[[key]]``."""
+        value = top.get(key, [])
+        value = [value] if isinstance(value, dict) else value
+        if not isinstance(value, list) or not all(isinstance(table, dict) for table in value):
+            raise self.fail(f"'{key}' is no table", f"Write [{key}] or [[{key}]] above its keys.", key)
+        return value
+
+    def source(self, value: Any, where: str, more: Iterable[str] = ()) -> Source:
+        """Return the file that a text or a table with ``file`` names; ``more`` keys are someone else's."""
+        if isinstance(value, str):
+            value = {"file": value}
+        if not isinstance(value, dict):
+            raise self.fail(
+                f"{where} must name a file", 'Write "name.csv" or { file = "name.csv" }.', value=value
+            )
+        self.keys(value, (*TABLE, *more), where)
+        file = self.need(value, "file", str, where, 'Write file = "name.csv".')
+        columns = self.get(value, "columns", dict, where) or {}
+        for role, column in columns.items():
+            if not isinstance(column, (str, int)) or isinstance(column, bool):
+                raise self.fail(
+                    f"Column '{role}' in {where} must be a header or a number",
+                    "Correct its value.",
+                    role,
+                    column,
+                )
+        return Source(
+            path=self.path.parent / file,
+            name=file,
+            encoding=self.get(value, "encoding", str, where),
+            sep=self.get(value, "sep", str, where),
+            decimal=self.get(value, "decimal", str, where),
+            columns=columns,
+        )

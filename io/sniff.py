@@ -1,0 +1,156 @@
+"""What a text file does not say about itself: encoding, separator, decimal mark, header."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from geofit.errors import InputError
+
+__all__ = ["decode", "find_decimal", "find_separator", "is_header", "is_number", "is_units_row", "split_line"]
+
+#: In order of preference where several fit equally well; " " stands for runs of blanks.
+SEPARATORS = (";", "\t", ",", "|", " ")
+
+_BOMS = (
+    (b"\xef\xbb\xbf", "utf-8-sig"),
+    (b"\xff\xfe\x00\x00", "utf-32"),
+    (b"\x00\x00\xfe\xff", "utf-32"),
+    (b"\xff\xfe", "utf-16"),
+    (b"\xfe\xff", "utf-16"),
+)
+_NUMBER = re.compile(r"[+-]?(\d+([.,]\d*)?|[.,]\d+)([eE][+-]?\d+)?")
+_DECIMAL_COMMA = re.compile(r"(?<![\d.,])\d*,\d+(?:[eE][+-]?\d+)?(?![\d.,])")
+_DECIMAL_POINT = re.compile(r"(?<![\d.,])\d*\.\d+(?:[eE][+-]?\d+)?(?![\d.,])")
+_UNITS = {
+    "m",
+    "metre",
+    "metres",
+    "meter",
+    "meters",
+    "ft",
+    "feet",
+    "deg",
+    "degree",
+    "degrees",
+    "°",
+    "米",
+    "度",
+}
+
+
+def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, str]:
+    """Return the text of a file and its encoding.
+
+    In order: what the caller says, a byte order mark, strict UTF-8, UTF-16 by its zero bytes, GB18030 where
+    the bytes look like Chinese, Windows-1252.
+    """
+    if encoding is not None:
+        try:
+            return data.decode(encoding).removeprefix("\ufeff"), encoding
+        except LookupError:
+            raise InputError(
+                f"The encoding {encoding!r} is unknown", "Give utf-8, utf-16, gb18030 or cp1252.", file=name
+            ) from None
+        except UnicodeError as error:
+            raise InputError(
+                f"The file is not written in {encoding}: {error}", "Leave the encoding out.", file=name
+            ) from None
+    if data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
+        raise InputError("This is a workbook, not a text table", "Save the sheet as CSV UTF-8.", file=name)
+    for codec in _candidates(data):
+        try:
+            return data.decode(codec), codec
+        except UnicodeError:
+            continue
+    raise InputError(
+        "The file is no text in UTF-8, UTF-16, GB18030 or Windows-1252",
+        "Save it as CSV UTF-8, or state its encoding.",
+        file=name,
+    )
+
+
+def _candidates(data: bytes) -> Iterator[str]:
+    yield from [codec for bom, codec in _BOMS if data.startswith(bom)][:1]
+    if b"\0" in data:
+        yield from _utf16(data)
+        return
+    yield "utf-8"
+    if _looks_chinese(data):
+        yield "gb18030"
+    yield "cp1252"
+
+
+def _utf16(data: bytes) -> list[str]:
+    head = data[:4000]
+    if len(head) < 4:
+        return []
+    even, odd = head[0::2].count(0) / len(head), head[1::2].count(0) / len(head)
+    return ["utf-16-le"] if odd > 0.2 > even else ["utf-16-be"] if even > 0.2 > odd else []
+
+
+def _looks_chinese(data: bytes) -> bool:
+    """Whether the bytes above 127 come in pairs of the common characters of GB 2312."""
+    high = re.findall(rb"[\x80-\xff]+", data)
+    common = sum(
+        len(re.findall(rb"[\xa1-\xa3\xb0-\xd7][\xa1-\xfe]", run)) for run in high if len(run) % 2 == 0
+    )
+    return common * 2 > 0.6 * sum(map(len, high)) > 0
+
+
+def split_line(line: str, sep: str) -> list[str]:
+    """Return the cells of one line; quotes keep a separator inside a cell."""
+    if sep == " ":
+        return line.split()
+    if '"' not in line:
+        return line.split(sep)
+    return next(csv.reader([line], delimiter=sep), [])
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number under one of the two decimal marks."""
+    return _NUMBER.fullmatch(cell.strip()) is not None
+
+
+def find_separator(lines: Sequence[str]) -> str:
+    """Return the separator under which the lines have equally many cells, and most of them numbers."""
+
+    def merit(sep: str) -> float:
+        rows = [split_line(line, sep) for line in lines]
+        width, times = Counter(map(len, rows)).most_common(1)[0]
+        if width < 2:
+            return 0.0
+        cells = [cell for row in rows for cell in row]
+        return times / len(rows) + 0.5 * sum(map(is_number, cells)) / len(cells)
+
+    best = max(SEPARATORS, key=merit)
+    return best if merit(best) > 0 else ","
+
+
+def find_decimal(text: str, sep: str) -> str:
+    """Return the decimal mark that most fractions of the text have."""
+    if sep == "," or "," not in text:
+        return "."
+    commas, points = len(_DECIMAL_COMMA.findall(text)), len(_DECIMAL_POINT.findall(text))
+    return "," if commas > points else "."
+
+
+def is_header(first: Sequence[str], following: Sequence[Sequence[str]]) -> bool:
+    """Whether the first row names the columns: words stand over numbers more often than numbers do."""
+    numeric = [is_number(cell) for cell in first]
+    if not any(numeric):
+        return True
+    words = numbers = 0
+    for j, number in enumerate(numeric):
+        below = [row[j] for row in following if j < len(row) and row[j].strip()]
+        if below and sum(map(is_number, below)) > 0.5 * len(below):
+            words, numbers = words + (not number and bool(first[j].strip())), numbers + number
+    return words > numbers
+
+
+def is_units_row(cells: Sequence[str]) -> bool:
+    """Whether a row under the header holds nothing but units."""
+    filled = [cell.strip().strip("[]()<>").casefold() for cell in cells if cell.strip()]
+    return bool(filled) and all(cell in _UNITS | {"-", "units"} for cell in filled)

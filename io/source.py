@@ -1,0 +1,79 @@
+"""A file to be read, and what the user says about it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from geofit.errors import InputError
+
+__all__ = ["Source", "as_source"]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Source:
+    """A table file with whatever the user overrules; what is ``None`` is guessed, and the guess is listed.
+
+    Parameters
+    ----------
+    path : Path
+        Where the file is.
+    name : str
+        How messages and points name it; by default the file's own name.
+    encoding, sep, decimal : str, optional
+        Text encoding, separator of cells ("space" or " " for runs of blanks, "tab"), decimal mark.
+    columns : mapping of str to str or int
+        Column of a role: its header, or its number counted from 1.
+    """
+
+    path: Path
+    name: str = ""
+    encoding: str | None = None
+    sep: str | None = None
+    decimal: str | None = None
+    columns: Mapping[str, str | int] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "path", Path(self.path))
+        object.__setattr__(self, "name", self.name or self.path.name)
+        words = {"tab": "\t", "space": " ", "comma": ",", "semicolon": ";", "\\t": "\t"}
+        object.__setattr__(self, "sep", words.get(self.sep, self.sep) if self.sep is not None else None)
+        if self.sep is not None and len(self.sep) != 1:
+            raise InputError(
+                f"The separator {self.sep!r} is not one character",
+                "Give one character, 'tab' or 'space'.",
+                file=self.name,
+            )
+        if self.decimal not in (None, ".", ","):
+            raise InputError(
+                f"The decimal mark {self.decimal!r} is unknown", "Give '.' or ','.", file=self.name
+            )
+        if self.decimal == "," and self.sep == ",":
+            raise InputError(
+                "The comma cannot be both separator and decimal mark",
+                "Name the separator between the cells.",
+                file=self.name,
+            )
+
+    def read(self) -> bytes:
+        """Return the bytes of the file."""
+        try:
+            return self.path.read_bytes()
+        except FileNotFoundError:
+            raise InputError(
+                "There is no such file",
+                f"It was looked for at {self.path}; names in a site file count from the site file's folder.",
+                file=self.name,
+            ) from None
+        except OSError as error:
+            raise InputError(
+                f"The file cannot be opened: {error.strerror or error}",
+                "Name a file that you may read.",
+                file=self.name,
+            ) from None
+
+
+def as_source(given: str | Path | Source) -> Source:
+    """Return a path as a source of which everything is guessed."""
+    return given if isinstance(given, Source) else Source(path=Path(given))

@@ -1,0 +1,183 @@
+"""Survey tables: stations of each hole, and the sign of their dips."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.columns import SURVEY
+from geofit.io.desurvey import minimum_curvature
+from geofit.io.journal import Journal
+from geofit.io.rows import Rows, read_rows
+from geofit.io.source import Source
+
+__all__ = ["Stations", "read_stations"]
+
+Floats = NDArray[np.float64]
+
+#: A hole that turns by more between two stations has a wrong sign or a wrong row, degrees.
+SHARPEST_TURN = 90.0
+
+
+@dataclass(frozen=True, eq=False)
+class Stations:
+    """Survey of one hole: depth ascending (m), azimuth and dip in degrees, dip positive downwards."""
+
+    depth: Floats
+    azimuth: Floats
+    dip: Floats
+
+    @classmethod
+    def vertical(cls) -> Stations:
+        """Return the survey of a hole that has none."""
+        return cls(np.zeros(1), np.zeros(1), np.full(1, 90.0))
+
+    @staticmethod
+    def from_rows(
+        rows: Rows,
+        name: list[str],
+        depth: Floats,
+        sign: Literal["down-positive", "down-negative"] | None,
+        *,
+        blank_is_vertical: bool = False,
+    ) -> dict[str, Stations]:
+        """Return the stations of each hole; rows that cannot be used are listed."""
+        azimuth, dip = (
+            rows.numbers("azimuth", required=False),
+            rows.numbers("dip", required=not blank_is_vertical),
+        )
+        azimuth[np.isnan(azimuth) & (np.abs(dip) == 90.0)] = 0.0
+        for i in np.flatnonzero((np.isnan(azimuth) & np.isfinite(dip)) & rows.ok).tolist():
+            rows.reject(i, "azimuth", "The azimuth of an inclined hole is empty", "Complete the cell.")
+        for i in np.flatnonzero((np.abs(dip) > 90.0) & rows.ok).tolist():
+            rows.reject(
+                i, "dip", "The dip is not between -90 and 90 degrees", "Give the angle from horizontal."
+            )
+        for i in np.flatnonzero((np.abs(azimuth) > 360.0) & rows.ok).tolist():
+            rows.reject(
+                i, "azimuth", "The azimuth is not between 0 and 360 degrees", "Give degrees from north."
+            )
+        dip = _downwards(rows, dip, sign)
+        chosen = rows.ok & np.isfinite(dip)
+        result: dict[str, Stations] = {}
+        order = np.lexsort((np.arange(len(name)), depth, np.array(name)))
+        order = order[chosen[order]]
+        for group in np.split(
+            order, np.flatnonzero(np.array(name)[order][1:] != np.array(name)[order][:-1]) + 1
+        ):
+            kept = _sound(rows, group, depth, azimuth, dip)
+            if kept.size:
+                result[name[kept[0]]] = Stations(depth[kept], azimuth[kept], dip[kept])
+        return result
+
+
+def read_stations(
+    source: Source,
+    sign: Literal["down-positive", "down-negative"] | None,
+    holes: Sequence[str],
+    journal: Journal,
+) -> dict[str, Stations]:
+    """Read a survey table; stations of unknown holes, repeated and impossible ones are listed.
+
+    A hole whose first station lies below 0 goes straight to it, a hole with one station is straight: each is
+    listed as a warning.
+    """
+    rows = read_rows(source, SURVEY, journal)
+    name, depth = rows.text("hole"), rows.numbers("depth")
+    rows.require_known("hole", name, holes, "collar table")
+    for i in np.flatnonzero((depth < 0) & rows.ok).tolist():
+        rows.reject(
+            i, "depth", "The station lies above the collar", "Depths count from the collar, downwards."
+        )
+    stations = Stations.from_rows(rows, name, depth, sign)
+    first: dict[str, int] = {}
+    for i in np.flatnonzero(rows.ok).tolist():
+        if name[i] not in first or depth[i] < depth[first[name[i]]]:
+            first[name[i]] = i
+    for hole, i in first.items():
+        if stations[hole].depth[0] > 0:
+            rows.warn(
+                i,
+                "depth",
+                f"Hole {hole} has no station at depth 0; it is straight down to its first station",
+                "Add the attitude at the collar.",
+            )
+        if len(stations[hole].depth) == 1:
+            rows.warn(
+                i,
+                "depth",
+                f"Hole {hole} has one station only; it is straight",
+                "Add stations where there are some.",
+            )
+    for hole in holes:
+        if hole not in stations:
+            journal.add(
+                "warning",
+                rows.file,
+                f"Hole {hole} has no survey; it is vertical",
+                "Add its stations where it is inclined.",
+                value=hole,
+            )
+    rows.close()
+    return stations
+
+
+def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-negative"] | None) -> Floats:
+    """Return the dips positive downwards; where no sign is stated the majority decides, and is listed."""
+    used = rows.ok & np.isfinite(dip)
+    negative, positive = int((dip[used] < 0).sum()), int((dip[used] > 0).sum())
+    if sign is None and negative == positive > 0:
+        raise InputError(
+            f"{positive} dips are positive and {negative} negative: the sign that points down is not clear",
+            'State dip = "down-positive" or dip = "down-negative".',
+            file=rows.file,
+            column=rows.table.header[rows.columns["dip"]],
+        )
+    down = sign or ("down-negative" if negative > positive else "down-positive")
+    if sign is None and negative + positive:
+        rows.journal.add(
+            "warning",
+            rows.file,
+            f"The sign of the dips is not stated: {negative} are negative, {positive} positive; "
+            f"taken as {down} by majority",
+            'State dip = "down-positive" or dip = "down-negative".',
+            column=rows.table.header[rows.columns["dip"]],
+        )
+        for i in np.flatnonzero(used & ((dip > 0) if down == "down-negative" else (dip < 0))).tolist():
+            rows.warn(i, "dip", "By the majority's sign the hole points upwards here", "Check the sign.")
+    return -dip if down == "down-negative" else dip
+
+
+def _sound(
+    rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats, dip: Floats
+) -> NDArray[np.int64]:
+    """Return the stations of one hole without repeated depths and impossible turns, which are listed."""
+    kept: list[int] = []
+    for i in map(int, group):
+        if kept and depth[i] == depth[kept[-1]]:
+            rows.reject(
+                i,
+                "depth",
+                f"The station repeats the depth of row {rows.line[kept[-1]]}",
+                "Keep one of the rows.",
+            )
+            continue
+        if kept:
+            pair = [kept[-1], i]
+            path = minimum_curvature(np.zeros(3), np.array([0.0, 1.0]), azimuth[pair], dip[pair])
+            turn = float(np.degrees(np.arccos(np.clip(path.tangent[0] @ path.tangent[1], -1.0, 1.0))))
+            if turn > SHARPEST_TURN:
+                rows.reject(
+                    i,
+                    "dip",
+                    f"The hole turns by {turn:.0f} degrees since row {rows.line[kept[-1]]}",
+                    "Check the sign of the dip and the azimuth.",
+                )
+                continue
+        kept.append(i)
+    return np.array(kept, dtype=np.int64)

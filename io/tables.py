@@ -1,0 +1,253 @@
+"""A text table as plain data: header, cells as strings, the line of each row."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.journal import Journal
+from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, split_line
+from geofit.io.source import Source
+
+__all__ = ["Table", "parse_numbers", "read_table"]
+
+Floats = NDArray[np.float64]
+
+_SAMPLE = 200
+_SEPARATOR_NAMES = {"\t": "tab", " ": "blanks"}
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """Rows of one text file.
+
+    ``columns[j][i]`` is the cell of column j in row i as it stands in the file, ``lines[i]`` the line of
+    row i counted from 1. ``read`` counts the rows of the file; those that are not in ``columns`` have cells
+    beyond the header's and are listed in the journal already. ``named``: the file has a header.
+    """
+
+    name: str
+    header: tuple[str, ...]
+    units: tuple[str, ...]
+    columns: tuple[tuple[str, ...], ...]
+    lines: NDArray[np.int64]
+    read: int
+    named: bool
+    encoding: str
+    sep: str
+    decimal: str
+
+    def __len__(self) -> int:
+        return len(self.lines)
+
+
+def read_table(source: Source, journal: Journal) -> Table:
+    """Read a text table; what is guessed is listed.
+
+    Parameters
+    ----------
+    source : Source
+        The file, with whatever of encoding, separator and decimal mark the user states.
+    journal : Journal
+        Receives the guesses as notes, and rows whose cells do not fit the header.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, empty, no text, or has a header only.
+    """
+    text, encoding = decode(journal.read(source), source.name, source.encoding)
+    text = text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "")
+    lines = text.split("\n")
+    start = _skip_comments(lines, source.name, journal)
+    sample = [line for line in lines[start : start + 4 * _SAMPLE] if line.strip()][:_SAMPLE]
+    if not sample:
+        raise InputError("The file is empty", "A header and at least one row are needed.", file=source.name)
+    sep = source.sep or find_separator(sample)
+    decimal = source.decimal or find_decimal(text, sep)
+    start = _skip_titles(lines, start, sep, source.name, journal)
+    first, taken = _quoted(lines, start, sep)
+    below = [line for line in lines[start + taken : start + 4 * _SAMPLE] if line.strip(sep + " \t")][:_SAMPLE]
+    named = is_header(first, [split_line(line, sep) for line in below])
+    width = len(first)
+    while named and width > 1 and not first[width - 1].strip():
+        width -= 1
+    header = _unique([cell.strip() for cell in first[:width]]) if named else _numbered(width)
+    body = start + taken if named else start
+    units: tuple[str, ...] = ()
+    if named and below and is_units_row(split_line(below[0], sep)):
+        units = tuple(cell.strip() for cell in split_line(below[0], sep))
+        body = lines.index(below[0], body) + 1
+        journal.add("note", source.name, "This row holds the units", row=body, value=below[0])
+    columns, numbers, malformed = _columns(lines, body, width, sep, source.name, journal)
+    if not numbers and not malformed:
+        raise InputError(
+            f"The file has a header ({', '.join(header)}) but no rows",
+            "Export the table again with its rows.",
+            file=source.name,
+        )
+    journal.add(
+        "note",
+        source.name,
+        f"Read as {encoding}, cells separated by {_SEPARATOR_NAMES.get(sep, repr(sep))}, decimal mark "
+        f"'{decimal}', {'with' if named else 'without'} a header",
+        "State encoding, sep or decimal where this is wrong.",
+    )
+    return Table(
+        name=source.name,
+        header=header,
+        units=units,
+        columns=columns,
+        lines=np.array(numbers, dtype=np.int64),
+        read=len(numbers) + malformed,
+        named=named,
+        encoding=encoding,
+        sep=sep,
+        decimal=decimal,
+    )
+
+
+def _skip_comments(lines: list[str], name: str, journal: Journal) -> int:
+    """Return the index of the first line that is no comment; later '#' are data (hole '#12')."""
+    start = 0
+    while start < len(lines) and (not lines[start].strip() or lines[start].lstrip().startswith("#")):
+        start += 1
+    skipped = sum(bool(line.strip()) for line in lines[:start])
+    if skipped:
+        journal.add("note", name, f"{skipped} comment lines at the head are not read", row=1, value=lines[0])
+    return start
+
+
+def _skip_titles(lines: list[str], start: int, sep: str, name: str, journal: Journal) -> int:
+    """Return the index of the first line with as many cells as a table has: titles above it have one."""
+    marks = sep + " \t"
+    filled = [i for i in range(start, min(start + _SAMPLE, len(lines))) if lines[i].strip(marks)]
+    widths = [sum(bool(cell.strip()) for cell in split_line(lines[i], sep)) for i in filled]
+    k = 0
+    while (
+        k + 1 < len(filled)
+        and widths[k] == 1
+        and sep != " "
+        and sum(w > 1 for w in widths[k:]) > len(widths[k:]) // 2
+    ):
+        journal.add(
+            "note", name, "A title above the header is not read", row=filled[k] + 1, value=lines[filled[k]]
+        )
+        k += 1
+    return filled[k] if filled else start
+
+
+def _columns(
+    lines: list[str], start: int, width: int, sep: str, name: str, journal: Journal
+) -> tuple[tuple[tuple[str, ...], ...], list[int], int]:
+    """Return the columns, the line of each row counted from 1, and how many rows do not fit the header.
+
+    Rows with exactly the header's cells and no quotes are split all at once: a million small lists would keep
+    the garbage collector busy for seconds.
+    """
+    regular: list[str] = []
+    numbers: list[int] = []
+    odd: list[tuple[int, list[str]]] = []
+    marks = sep + " \t"
+    blank = malformed = 0
+    i = start
+    while i < len(lines):
+        line, number = lines[i], i + 1
+        i += 1
+        if not line.strip(marks):
+            blank += bool(line.strip())
+            continue
+        if sep != " " and '"' not in line and line.count(sep) == width - 1:
+            regular.append(line)
+            numbers.append(number)
+            continue
+        cells, taken = _quoted(lines, number - 1, sep)
+        i += taken - 1
+        if any(cell.strip() for cell in cells[width:]):
+            malformed += 1
+            journal.add(
+                "error",
+                name,
+                f"The row has {len(cells)} cells, the header {width}",
+                "Quote cells that hold the separator, or use another separator than the decimal mark.",
+                row=number,
+                value=line[:120],
+            )
+        else:
+            odd.append((number, (cells + [""] * width)[:width]))
+    if blank:
+        journal.add("note", name, f"{blank} lines without any cell filled are no rows")
+    cells = sep.join(regular).split(sep) if regular else []
+    columns = [cells[j::width] + [row[j] for _, row in odd] for j in range(width)]
+    numbers += [number for number, _ in odd]
+    if odd:
+        order = np.argsort(numbers).tolist()
+        columns = [[column[k] for k in order] for column in columns]
+        numbers.sort()
+    return tuple(map(tuple, columns)), numbers, malformed
+
+
+def _quoted(lines: list[str], i: int, sep: str) -> tuple[list[str], int]:
+    """Return the cells of a row that may have quotes, and over how many lines it runs.
+
+    A cell may hold line breaks. A quote that is never closed would swallow the rows below it, so a cell ends
+    with its line when the lines that it would take look like rows of their own.
+    """
+    alone = split_line(lines[i], sep)
+    if sep == " " or lines[i].count('"') % 2 == 0:
+        return alone, 1
+    for taken in range(2, min(60, len(lines) - i) + 1):
+        if lines[i + taken - 1].count('"') % 2 == 1:
+            inner = lines[i + 1 : i + taken - 1]
+            joined = next(csv.reader([line + "\n" for line in lines[i : i + taken]], delimiter=sep))
+            if any(line.count(sep) >= len(joined) - 1 > 0 for line in inner):
+                break
+            return joined, taken
+    return alone, 1
+
+
+def _unique(names: list[str]) -> tuple[str, ...]:
+    seen: dict[str, int] = {}
+    unique = []
+    for j, name in enumerate(names):
+        name = name or f"column {j + 1}"
+        seen[name] = seen.get(name, 0) + 1
+        unique.append(name if seen[name] == 1 else f"{name} ({seen[name]})")
+    return tuple(unique)
+
+
+def _numbered(width: int) -> tuple[str, ...]:
+    return tuple(f"column {j + 1}" for j in range(width))
+
+
+def parse_numbers(cells: tuple[str, ...], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
+    """Return the numbers of a column, nan where a cell holds none, and the indices of those cells.
+
+    "nan" and "inf" are no numbers here, nor is "1_000", which Python would read.
+    """
+    joined = "".join(cells)
+    if decimal == "," and ("," in joined or "." in joined):
+        swap = str.maketrans(",.", ".,")
+        cells = tuple(cell.translate(swap) for cell in cells)
+    if "\u2212" in joined:
+        cells = tuple(cell.replace("\u2212", "-") for cell in cells)
+    try:
+        values = np.fromiter(map(float, cells), dtype=np.float64, count=len(cells))
+    except ValueError:
+        values = np.fromiter(map(_float, cells), dtype=np.float64, count=len(cells))
+    if "_" in joined:
+        values[["_" in cell for cell in cells]] = np.nan
+    bad = np.flatnonzero(~np.isfinite(values))
+    values[bad] = np.nan
+    return values, bad
+
+
+def _float(cell: str) -> float:
+    try:
+        return float(cell)
+    except ValueError:
+        return np.nan

@@ -1,0 +1,116 @@
+"""Holes, dip signs and contacts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geofit.errors import InputError
+from geofit.io import read_boreholes, take_contacts
+
+COLLAR = "hole,x,y,z,depth\nB1,0,0,100,50\n"
+
+
+@pytest.fixture
+def log(write):
+    """Return a function that reads one vertical hole of 50 m with an interval table."""
+
+    def read(rows):
+        collar = write(COLLAR, "collar.csv")
+        table = write("hole,from,to,code\n" + "".join(f"B1,{row}\n" for row in rows.split()), "log.csv")
+        return read_boreholes(collar, None, [table])
+
+    return read
+
+
+@pytest.mark.parametrize(
+    ("rows", "limit", "depth"),
+    [
+        ("0,10,A 10,30,B 30,50,C", {"base": "B"}, 30),
+        ("0,10,A 10,30,B 30,50,C", {"top": "B"}, 10),
+        ("0,10,A 10,20,B 20,30,B 30,50,C", {"top": "B"}, 10),
+        ("0,10,A 10,20,B 20,30,B 30,50,C", {"base": "B"}, 30),
+        ("20,30,B 30,50,C 0,10,A 10,20,B", {"base": "B"}, 30),  # rows out of order
+        ("0,10,A 10,50,B", {"base": "B"}, None),  # open at the end
+        ("0,10,B 10,50,A", {"top": "B"}, None),  # starts at the collar
+        ("0,10,A 10,20,B 20,30,A 30,40,B 40,50,C", {"base": "B"}, 40),
+        ("0,10,A 10,20,B 20,30,A 30,40,B 40,50,C", {"top": "B"}, 10),
+        ("0,10,A 10,20,B 20,30,A 30,50,B", {"base": "B"}, None),  # its lowest base is not reached
+        ("0,10,A 10,20,B 25,50,C", {"base": "B"}, 20),  # a gap below
+        ("0,10,A 10,20,B", {"base": "B"}, 20),  # the log ends before the hole
+        ("0,10,A 8,20,B 20,50,C", {"top": "B"}, None),  # contradicted by the overlap
+        ("0,10,A 8,20,B 20,50,C", {"base": "B"}, 20),
+        ("0,10,A 10,20,B 12,18,B 20,50,C", {"base": "B"}, 20),  # B inside B
+        ("0,10,A 10,20,B 20,55,C", {"base": "B"}, 20),
+    ],
+)
+def test_contact_of_a_log(log, rows, limit, depth):
+    contacts = take_contacts(log(rows), **limit)
+    expected = [] if depth is None else [100 - depth]
+    np.testing.assert_allclose(contacts.points.xyz[:, 2], expected)
+    assert all(issue.value in ("A", "B", "C") for issue in contacts.issues)
+
+
+@pytest.mark.parametrize(
+    ("rows", "words"),
+    [
+        ("0,10,A 10,20,B 20,30,A 30,40,B 40,50,C", "occurs 2 times; the lowest base at 40 m"),
+        ("0,10,A 10,20,B 25,50,C", "nothing is logged for 5.00 m below"),
+        ("0,10,A 10,20,B", "nothing is logged for 30.00 m below"),
+    ],
+)
+def test_doubtful_contact_is_warned_of(log, rows, words):
+    contacts = take_contacts(log(rows), base="B")
+    assert any(words in issue.reason and issue.severity == "warning" for issue in contacts.issues)
+
+
+def test_unknown_code_names_the_known_ones(log):
+    with pytest.raises(InputError, match=r"'b'.*A, B"):
+        take_contacts(log("0,10,A 10,50,B"), base="b")
+
+
+def survey(write, rows, dip=None):
+    collar = write("hole,x,y,z,depth\nB1,0,0,0,100\nB2,9,9,0,100\n", "collar.csv")
+    return read_boreholes(collar, write("hole,depth,azimuth,dip\n" + rows, "survey.csv"), dip=dip)
+
+
+@pytest.mark.parametrize(
+    ("rows", "dip", "end"),
+    [
+        ("B1,0,0,-60\n", None, -100 * np.sin(np.radians(60))),
+        ("B1,0,0,60\n", None, -100 * np.sin(np.radians(60))),
+        ("B1,0,0,-60\n", "down-positive", 100 * np.sin(np.radians(60))),
+        ("B1,0,0,60\n", "down-negative", 100 * np.sin(np.radians(60))),
+        ("B1,0,0,60\nB2,0,0,-80\nB2,50,0,-80\n", None, 100 * np.sin(np.radians(60))),
+    ],
+)
+def test_dip_sign(write, rows, dip, end):
+    holes = survey(write, rows, dip)
+    assert holes.holes[0].xyz[-1, 2] == pytest.approx(end)
+    assert any("by majority" in issue.reason for issue in holes.issues) is (dip is None)
+
+
+def test_dip_sign_that_is_not_clear_is_an_error(write):
+    with pytest.raises(InputError, match='State dip = "down-positive"'):
+        survey(write, "B1,0,0,60\nB2,0,0,-60\n")
+
+
+def test_hole_without_survey_is_vertical_and_vertical_needs_no_azimuth(write):
+    holes = survey(write, "B1,0,,-90\nB1,50,0,-89\n")
+    np.testing.assert_allclose(holes.holes[1].xyz[-1], [9, 9, -100])
+    assert any("B2 has no survey" in issue.reason for issue in holes.issues)
+    assert holes.counts[1].used == 2
+
+
+def test_first_station_below_the_collar(write):
+    holes = survey(write, "B1,40,90,45\nB1,80,90,45\n")
+    np.testing.assert_allclose(
+        holes.paths["B1"].at(40), [[40 * np.sqrt(0.5), 0, -40 * np.sqrt(0.5)]], atol=1e-12
+    )
+    assert any("no station at depth 0" in issue.reason for issue in holes.issues)
+
+
+def test_attitude_in_the_collar_table(write):
+    collar = write("hole,x,y,z,depth,azimuth,dip\nB1,0,0,0,10,90,30\n", "collar.csv")
+    holes = read_boreholes(collar, dip="down-positive")
+    np.testing.assert_allclose(holes.holes[0].xyz[-1], [10 * np.sqrt(0.75), 0, -5], atol=1e-12)

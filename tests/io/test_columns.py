@@ -1,0 +1,88 @@
+"""Roles guessed from headers of many programs."""
+
+from __future__ import annotations
+
+import pytest
+
+from geofit.errors import InputError
+from geofit.io import columns
+from geofit.io.columns import find_columns
+from geofit.io.journal import Journal
+from geofit.io.source import Source
+from geofit.io.tables import read_table
+
+
+def find(path, schema, **stated):
+    journal = Journal()
+    source = Source(path=path, columns=stated)
+    return find_columns(read_table(source, journal), schema, source, journal), journal
+
+
+@pytest.mark.parametrize(
+    ("schema", "header"),
+    [
+        (columns.COLLAR, "hole,x,y,z,depth"),
+        (columns.COLLAR, "HoleID,East,North,Elev,MaxDepth"),
+        (columns.COLLAR, "BHID,XCOLLAR,YCOLLAR,ZCOLLAR,DEPTH"),
+        (columns.COLLAR, "LocationID,Easting,Northing,GroundLevel,FinalDepth"),
+        (columns.COLLAR, "hole_ID, X (m), Y [m], Z_m, Total Depth (m)"),
+        (columns.COLLAR, "钻孔编号,坐标X,坐标Y,孔口高程,终孔深度"),
+        (columns.COLLAR, "孔号,X坐标(m),Y坐标(m),孔口标高（m）,孔深(m)"),
+        (columns.SURVEY, "BHID,AT,BRG,DIP"),
+        (columns.SURVEY, "孔号,测点深度,方位角(°),倾角(°)"),
+        (columns.INTERVALS, "hole_ID,depth_from,to_depth,rock code"),
+        (columns.INTERVALS, "BHID,FROM,TO,ROCK"),
+        (columns.INTERVALS, "孔号,起始深度,终止深度,地层代号"),
+        (columns.SECTION, "horizon,distance,elevation"),
+        (columns.SECTION, "层位,距离,高程"),
+        (columns.ADIT_PATH, "平硐编号,X,Y,Z"),
+        (columns.ADIT_CONTACTS, "平硐,桩号,层位"),
+        (columns.BOUNDARY, "X,Y"),
+    ],
+)
+def test_spellings(write, schema, header):
+    width = header.count(",") + 1
+    found, journal = find(write(header + "\n" + ",".join(["1"] * width) + "\n"), schema)
+    roles = [*schema.required, *schema.optional][:width]
+    assert [found[role] for role in roles] == list(range(width))
+    guesses = [issue for issue in journal.issues if "is taken as" in issue.reason]
+    assert len(guesses) == width
+    assert all(issue.severity == "note" for issue in guesses)
+
+
+def test_gempy_and_loopstructural_picks(write):
+    assert find(write("X,Y,Z,surface\n1,2,3,A\n"), columns.PICKS)[0]["horizon"] == 3
+    assert find(write("X,Y,Z,feature_name,val\n1,2,3,A,0\n"), columns.PICKS)[0]["horizon"] == 3
+
+
+def test_surest_spelling_wins_and_the_others_are_named(write):
+    found, journal = find(write("hole,from,to,rock unit,rock code\nB1,0,1,a,b\n"), columns.INTERVALS)
+    assert found["code"] == 4
+    assert any("also possible: 'rock unit'" in issue.reason for issue in journal.issues)
+
+
+def test_stated_columns_win(write):
+    path = write("x,y,E,N,z\n1,2,3,4,5\n")
+    found, _ = find(path, columns.PICKS, x="E", y=4)
+    assert (found["x"], found["y"], found["z"]) == (2, 3, 4)
+
+
+def test_missing_column_names_what_is_there(write):
+    with pytest.raises(InputError) as caught:
+        find(write("hole,from,code\nB1,0,a\n"), columns.INTERVALS)
+    assert "'to'" in str(caught.value)
+    assert "hole, from, code" in str(caught.value)
+    assert caught.value.row == 1
+
+
+def test_no_header_is_taken_in_order_with_a_warning(write):
+    found, journal = find(write("1,2,3\n4,5,6\n"), columns.PICKS)
+    assert found == {"x": 0, "y": 1, "z": 2}
+    assert any(issue.severity == "warning" for issue in journal.issues)
+    with pytest.raises(InputError, match="no header and 4 columns"):
+        find(write("1,2,3,4\n4,5,6,7\n"), columns.PICKS)
+
+
+def test_feet_are_warned_of(write):
+    _, journal = find(write("hole,x,y,z_ft\nB1,1,2,3\n"), columns.COLLAR)
+    assert any("feet" in issue.reason for issue in journal.issues if issue.severity == "warning")

@@ -1,0 +1,102 @@
+"""Bare pick files, boundaries and grids."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from geofit.errors import InputError
+from geofit.io import read_boundary, read_ground, read_points
+
+
+def test_one_horizon_is_named_as_its_file(write):
+    picks = read_points(write("x,y,z\n1,2,3\n4,5,6\n", "top.csv"))
+    assert list(picks.horizons) == ["top"]
+    np.testing.assert_array_equal(picks.horizons["top"].xyz, [[1, 2, 3], [4, 5, 6]])
+    assert picks.horizons["top"].row.tolist() == [2, 3]
+
+
+def test_many_horizons_with_stated_columns(write):
+    path = write("E;N;H;what;line\n1,5;2;3;A;S1\n4;5;6;B;S2\n7;8;9;A;S1\n")
+    picks = read_points(path, x="E", y="N", z="H", surface="what", section="line", sep=";", decimal=",")
+    assert {name: len(points) for name, points in picks.horizons.items()} == {"A": 2, "B": 1}
+    assert picks.horizons["A"].section.tolist() == ["S1", "S1"]
+    assert picks.horizons["A"].xyz[0, 0] == 1.5
+
+
+def test_order_of_rows_is_kept_with_odd_rows_among_them(write):
+    rows = [f"{i},{i * i},{i}" for i in range(40)]
+    rows[7] = '7,"49",7'
+    rows[20] = "20,400,20,"
+    rows[30] = "30,900"
+    points = read_points(write("x,y,z\n" + "\n".join(rows) + "\n"))
+    xyz = points.horizons["table"].xyz
+    np.testing.assert_array_equal(xyz[:, 0], [i for i in range(40) if i != 30])
+    np.testing.assert_array_equal(xyz[:, 1], xyz[:, 0] ** 2)
+    assert (points.counts[0].read, points.counts[0].used, points.counts[0].listed) == (40, 39, 1)
+
+
+def test_one_swapped_row_is_listed_without_a_boundary(write):
+    rows = [f"{500000 + 10 * i},{3100000 + 7 * i},5" for i in range(20)]
+    rows[11] = "3100077,500110,5"
+    picks = read_points(write("x,y,z\n" + "\n".join(rows)))
+    (issue,) = [issue for issue in picks.issues if issue.severity == "error"]
+    assert (issue.row, issue.column) == (13, "x")
+    assert "exchanged" in issue.reason
+
+
+def test_large_coordinates_are_not_taken_for_swapped(write):
+    rows = [f"{32412665.15 + 900 * i},{5778285.3 + 800 * (i % 7)},-2250" for i in range(20)]
+    assert read_points(write("x,y,z\n" + "\n".join(rows))).counts[0].used == 20
+
+
+def test_two_points_at_one_place(write):
+    picks = read_points(write("x,y,z\n1,2,3\n4,5,6\n1,2,3\n4,5,7\n"))
+    found = {issue.row: issue.severity for issue in picks.issues if "Horizon" in issue.reason}
+    assert found == {4: "note", 5: "warning"}
+    assert picks.counts[0].used == 4
+
+
+def test_boundary_from_geojson_and_table_are_equal(write):
+    ring = [[0, 0], [1000, 0], [1000, 900], [0, 900], [0, 0]]
+    polygon = {"type": "Polygon", "coordinates": [ring]}
+    collection = {"type": "FeatureCollection", "features": [{"type": "Feature", "geometry": polygon}]}
+    table = write("x;y\n" + "".join(f"{x};{y}\n" for x, y in ring))
+    expected = np.array(ring[:4], dtype=float)
+    np.testing.assert_array_equal(read_boundary(table), expected)
+    np.testing.assert_array_equal(read_boundary(write(json.dumps(polygon), "b.json")), expected)
+    np.testing.assert_array_equal(read_boundary(write(json.dumps(collection), "b.geojson")), expected)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "[1]",
+        "{",
+        '{"type": "Point", "coordinates": [1, 2]}',
+        '{"type": "Polygon", "coordinates": [["a"]]}',
+        '{"type": "Polygon", "coordinates": [[[0,0],[1,1],[1,0],[0,1]]]}',
+        '{"type": "Polygon", "coordinates": []}',
+    ],
+)
+def test_broken_geojson_is_a_clear_error(write, text):
+    with pytest.raises(InputError, match=r"b\.geojson"):
+        read_boundary(write(text, "b.geojson"))
+
+
+def test_grid_runs_from_south_to_north(write):
+    head = "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 10\nNODATA_value -9999\n"
+    ground = read_ground(write(head + "1 2 3\n4 5 -9999\n", "g.asc"))
+    np.testing.assert_array_equal(ground.x, [105, 115, 125])
+    np.testing.assert_array_equal(ground.y, [205, 215])
+    np.testing.assert_array_equal(ground.z, [[4, 5, np.nan], [1, 2, 3]])
+    np.testing.assert_allclose(ground.elevation([110, 110], [205, 210]), [4.5, 3.0])
+
+
+def test_grid_by_cell_centres(write):
+    head = "NCOLS 2\nNROWS 2\nXLLCENTER 100\nYLLCENTER 200\nDX 10\nDY 5\n"
+    ground = read_ground(write(head + "1 2\n3 4\n", "g.asc"))
+    assert (ground.x.tolist(), ground.y.tolist()) == ([100, 110], [200, 205])

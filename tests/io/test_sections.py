@@ -1,0 +1,91 @@
+"""Sections as DXF and CSV, with scale and origin."""
+
+from __future__ import annotations
+
+import ezdxf
+import numpy as np
+import pytest
+
+from geofit.errors import InputError
+from geofit.io.horizons import HorizonNames
+from geofit.io.journal import Journal
+from geofit.io.sections import Drawing, load_section
+from geofit.io.source import Source
+from geofit.site import Section
+
+SECTION = Section("C1", np.array([[1000.0, 2000.0], [1300.0, 2400.0], [1300.0, 2900.0]]))
+
+
+@pytest.fixture
+def drawing(tmp_path):
+    document = ezdxf.new("R2010")
+    return document.modelspace(), lambda: (document.saveas(tmp_path / "C1.dxf"), tmp_path / "C1.dxf")[1]
+
+
+def load(path, names=("A", "B"), **how):
+    journal = Journal()
+    points = load_section(Source(path=path), SECTION, Drawing(**how), HorizonNames(names), journal)
+    (count,) = journal.counts
+    assert count.read == count.used + count.listed == sum(map(len, points.values())) + count.listed
+    return points, journal
+
+
+def test_entities_keep_their_order_and_place(drawing):
+    space, save = drawing
+    space.add_lwpolyline([(0, 80), (250, 81), (700, 82)], dxfattribs={"layer": "a"})
+    space.add_polyline2d([(10, 50), (5, 51)], dxfattribs={"layer": "B"})
+    space.add_line((5, 51), (0, 52), dxfattribs={"layer": "B"})
+    space.add_point((1000, 60), dxfattribs={"layer": "A"})
+    points, journal = load(save())
+    np.testing.assert_allclose(
+        points["A"].xyz, [[1000, 2000, 80], [1150, 2200, 81], [1300, 2600, 82], [1300, 2900, 60]]
+    )
+    np.testing.assert_allclose(points["B"].xyz[:, 2], [50, 51, 52])
+    assert points["B"].row.tolist() == [4, 5, 7]
+    assert points["A"].section.tolist() == ["C1"] * 4
+    assert [issue.reason for issue in journal.issues] == ["The point repeats the one before"]
+
+
+def test_scale_and_origin(drawing, write):
+    space, save = drawing
+    space.add_lwpolyline([(100, 200), (250_100, 10_200)], dxfattribs={"layer": "A"})
+    how = {"scale": 1000.0, "origin": (100.0, 200.0)}
+    expected = [[1000, 2000, 0], [1150, 2200, 10]]
+    np.testing.assert_allclose(load(save(), **how)[0]["A"].xyz, expected)
+    table = write("horizon,distance,elevation\nA,100,200\nA,250100,10200\n")
+    np.testing.assert_allclose(load(table, **how)[0]["A"].xyz, expected)
+
+
+def test_what_is_not_used_is_listed(drawing):
+    space, save = drawing
+    space.add_lwpolyline([(0, 80), (1000.5, 81), (1001, 82), (-1, 83)], dxfattribs={"layer": "A"})
+    space.add_spline([(0, 0), (1, 1), (2, 0)], dxfattribs={"layer": "A"})
+    space.add_lwpolyline([(0, 0), (1, 1), (2, 0)], close=True, dxfattribs={"layer": "A"})
+    space.add_text("C1", dxfattribs={"layer": "TEXT"})
+    points, journal = load(save())
+    assert len(points["A"]) == 1
+    assert journal.counts[0].listed == 3 + 1 + 3 + 1
+    severities = [issue.severity for issue in journal.issues]
+    assert severities.count("error") == 5
+    assert severities.count("note") == 1
+
+
+def test_arcs_and_units_are_warned_of(drawing):
+    space, save = drawing
+    space.doc.header["$INSUNITS"] = 4
+    space.add_lwpolyline([(0, 80, 0, 0, 0.5), (9, 81, 0, 0, 0)], dxfattribs={"layer": "A"})
+    _, journal = load(save())
+    assert sum("arcs" in issue.reason or "millimetres" in issue.reason for issue in journal.issues) == 2
+
+
+@pytest.mark.parametrize("content", [b"", b"no drawing", b"0\nSECTION\n2\nENTITIES\n0\nLINE\n"])
+def test_broken_drawing_is_a_clear_error(tmp_path, content):
+    path = tmp_path / "C1.dxf"
+    path.write_bytes(content)
+    with pytest.raises(InputError, match=r"C1\.dxf"):
+        load(path)
+
+
+def test_empty_drawing_is_a_clear_error(drawing):
+    with pytest.raises(InputError, match="empty"):
+        load(drawing[1]())
