@@ -158,7 +158,7 @@ def print_results(results: Sequence[HorizonResult]) -> None:
         rows.append(
             (
                 r.name, str(a.n), f"{core}/{a.n - core}", metres(a.sigma), f"{a.epsilon:g}", metres(a.max_abs),
-                verdict, _seams(r), f"{sum(r.seconds.values()):.1f}",
+                verdict, _seams(r), _time(r.seconds.get("fit")), _time(sum(r.seconds.values())),
             )
         )  # fmt: skip
     print_table(header, rows, left=(0, 6, 7))
@@ -169,6 +169,10 @@ def print_results(results: Sequence[HorizonResult]) -> None:
             say(f"{r.name}: check '{check.name}' does not hold: {check.text}")
         for note in a.notes:
             say(f"{r.name}: {note}")
+
+
+def _time(seconds: float | None) -> str:
+    return f"{seconds:.1f}" if seconds else "–"
 
 
 def _seams(result: HorizonResult) -> str:

@@ -131,7 +131,7 @@ def choose(
     names = {3: ("smooth", "rough"), 2: ("rough",)}.get(space.degree, ("flat",))
     fields = []
     for name in names:
-        likelihood = _Likelihood(space, name, band, right, square, len(plane))
+        likelihood = _Likelihood(space, name, band, right, square, len(plane), float(weight.sum()))
         fields.append(likelihood.at(likelihood.best() if smoothing is None else math.log10(smoothing)))
     least = min(field.score for field in fields)
     best = [field for field in fields if field.score <= CLEARLY * least][-1] if least < math.inf else fields[0]
@@ -147,11 +147,14 @@ def choose(
 class _Likelihood:
     """Restricted likelihood of lambda for one energy; each value costs one factorisation."""
 
-    def __init__(self, space: TensorSpace, name: str, band: Floats, right: Floats, square: float, n: int) -> None:
+    def __init__(
+        self, space: TensorSpace, name: str, band: Floats, right: Floats, square: float, n: int, weight: float
+    ) -> None:
         self.name, self.space, self.band, self.right, self.square = name, space, band, right, square
         self.energy = energy_band(space, name)
         self.columns = 1 if right.ndim == 1 else right.shape[1]
         self.n, self.free = n, ENERGIES[name][1]
+        self.weight = weight
         self.floor = n * self.columns * _FINEST**2
 
     def _solve(self, log: float) -> tuple[Factor, Floats, float]:
@@ -195,7 +198,8 @@ class _Likelihood:
         bending = 10.0**log * float((coefficients * band_times(self.energy, coefficients)).sum())
         residual = max(penalised - bending, self.floor) / self.columns
         left = max(self.n - effective, 0.01 * self.n, 1e-3)
-        noise = math.sqrt(penalised / (max(self.n - self.free, 1) * self.columns))
+        share = self.n / (max(self.n - self.free, 1) * self.columns * self.weight)
+        noise = math.sqrt(penalised * share)
         return Field(self.name, 10.0**log, noise, math.sqrt(self.n * residual) / left)
 
 

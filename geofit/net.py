@@ -7,7 +7,7 @@ there; let the core pass through its points; approximate the periphery with what
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from geofit.periphery import approximate, borrowed
 from geofit.points import PointSet
 from geofit.settings import FitSettings
 from geofit.skin import Lines, least_change, ruled, section_lines, separate
-from geofit.tensor import CELLWISE, TensorSpace
+from geofit.tensor import CELLWISE, TensorSpace, values_at
 
 __all__ = ["Net", "approximate_all", "fit_with_core"]
 
@@ -34,8 +34,12 @@ Stage = Callable[[str, float], None]
 LONGEST, EVEN = 0.8, 0.6
 #: Spans between neighbours of one section, and of neighbouring sections, as a share of their distance.
 ALONG, ACROSS = 1.8, 1.0
+#: Shortest span that is still halved for a point outside its tolerance.
+FINEST = 0.05
 #: Control points of the space on which the field is chosen.
 COARSE = 1_600
+#: Control points to try where points are many, and how many of these points choose the field.
+LEVELS, PART = (1_000, 4_000, 16_000, 60_000), 50_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,6 +115,17 @@ def _cap(settings: FitSettings, n: int) -> int:
     return settings.max_control_points or int(np.clip(10 * n, 400, 60_000))
 
 
+def _in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpace) -> int:
+    """Return the control points of all patches: each seam adds knots, and a row that both sides count."""
+    if core is None:
+        return shape[0] * shape[1]
+    rows = []
+    for count, knots, edges in ((shape[0], space.knots_u, core[:2]), (shape[1], space.knots_v, core[2:])):
+        inner = [x for x in edges if knots[0] < x < knots[-1]]
+        rows.append(count + sum(space.degree + 1 - int((knots == x).sum()) for x in inner))
+    return rows[0] * rows[1]
+
+
 def _span_for(area: Rectangle, control_points: float, degree: int) -> float:
     """Return the span at which an even space has about so many control points."""
     side = max(np.sqrt(control_points) - degree, 1.0)
@@ -135,62 +150,114 @@ def approximate_all(
         return _approximate_many(data, settings, most)
     space = _uniform(data.area, max(EVEN, _span_for(data.area, most, degree)), degree)
     field = _choose(data, space, settings)
-    tolerance = settings.interior_tolerance
-    rounds = _rounds(settings, field)
-    while True:
-        stage("periphery", 0.5)
-        weight = cell_weights(space, data.plane, data.accuracy)
-        start, energy = smooth(space, field, data.plane, data.value, weight)
-        free = np.zeros(space.size, bool)
-        result = approximate(space, energy, start, free, data.plane, data.value, weight, tolerance, rounds)
-        outside = result.misfit > tolerance
-        finer = _finer(space, data.plane[outside]) if outside.any() and rounds else space
-        if finer.size == space.size or finer.size > most:
-            break
-        space = finer
-    coefficients = result.coefficients + data.over_trend(space)
-    notes = _beyond(outside, result.misfit, settings, field)
-    return Net(space, coefficients, free, None, None, data.unit, field, result.rounds, notes)
+    stage("periphery", 0.5)
+    start = np.zeros((space.size, *data.value.shape[1:]))
+    periphery = _Periphery(data, np.ones(n, bool), None, field, settings, most)
+    space, coefficients, frozen, rounds, notes = periphery.fit(space, start)
+    return Net(space, coefficients + data.over_trend(space), frozen, None, None, data.unit, field, rounds, notes)
 
 
-def _rounds(settings: FitSettings, field: Field) -> int:
-    """Return how often points outside the tolerance may be pulled.
+@dataclass(frozen=True, eq=False)
+class _Periphery:
+    """The points to approximate, beside the core that lends its control points."""
 
-    Not at all where a smoothing is given, nor where the tolerance is finer than the data's own contradiction.
-    """
-    return 0 if field.contradictory or settings.smoothing != "auto" else settings.max_iterations
+    data: _Data
+    outer: NDArray[np.bool_]
+    core: Rectangle | None
+    field: Field
+    settings: FitSettings
+    most: int
 
+    def fit(
+        self, space: TensorSpace, start: Floats
+    ) -> tuple[TensorSpace, Floats, NDArray[np.bool_], int, tuple[str, ...]]:
+        """Approximate, and add knots where points stay outside the tolerance, as far as the cap allows."""
+        data, tolerance = self.data, self.settings.interior_tolerance
+        plane, value = data.plane[self.outer], data.value[self.outer]
+        # A tolerance finer than the data's own contradiction is reported, not chased; nor is a given smoothing.
+        chased = not self.field.contradictory and self.settings.smoothing == "auto"
+        rounds = self.settings.max_iterations if chased else 0
+        total = 0
+        while True:
+            frozen = np.zeros(space.size, bool) if self.core is None else borrowed(space, self.core).ravel()
+            energy = self.field.smoothing * energy_band(space, self.field.energy)
+            weight = cell_weights(space, data.plane, data.accuracy)[self.outer]
+            result = approximate(space, energy, start, frozen, plane, value, weight, tolerance, rounds)
+            total += result.rounds
+            excess = np.where(result.misfit > tolerance, result.misfit, 0.0)
+            at_u, at_v = self._new_knots(space, plane, excess) if chased else ({}, {})
+            if not at_u and not at_v:
+                break
+            space, start = multiply_knots(space, result.coefficients, at_u, at_v)
+        return space, result.coefficients, frozen, total, self._notes(excess)
 
-def _finer(space: TensorSpace, plane: Floats) -> TensorSpace:
-    """Halve the spans that hold points outside their tolerance."""
-    knots = []
-    for x, vector in ((plane[:, 0], space.knots_u), (plane[:, 1], space.knots_v)):
-        breaks = np.unique(vector)
-        k = np.unique(np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(breaks) - 2))
-        middles = (breaks[k] + breaks[k + 1]) / 2
-        knots.append(bspline.clamped_knots(np.union1d(breaks, middles), space.degree))
-    return TensorSpace(knots[0], knots[1], space.degree)
+    def _new_knots(
+        self, space: TensorSpace, plane: Floats, excess: Floats
+    ) -> tuple[dict[float, int], dict[float, int]]:
+        """Halve the longer span at the worst points first; a knot never runs through the core."""
+        breaks = [np.unique(space.knots_u), np.unique(space.knots_v)]
+        ranges = [(np.inf, -np.inf)] * 2 if self.core is None else [self.core[:2], self.core[2:]]
+        counts = list(space.shape)
+        new: tuple[dict[float, int], dict[float, int]] = ({}, {})
+        for point in np.argsort(-excess, kind="stable"):
+            if excess[point] == 0:
+                break
+            choices = []
+            for axis, (low, high) in enumerate(ranges):
+                x = plane[point, axis]
+                k = int(np.clip(np.searchsorted(breaks[axis], x, side="right") - 1, 0, len(breaks[axis]) - 2))
+                span = float(breaks[axis][k + 1] - breaks[axis][k])
+                if not low <= x <= high and span > FINEST:
+                    choices.append((span, axis, float(breaks[axis][k] + breaks[axis][k + 1]) / 2))
+            if not choices:
+                continue
+            _, axis, middle = max(choices)
+            if middle not in new[axis]:
+                counts[axis] += 1
+                if _in_patches((counts[0], counts[1]), self.core, space) > self.most:
+                    break
+                new[axis][middle] = 1
+        return new
+
+    def _notes(self, excess: Floats) -> tuple[str, ...]:
+        count = int((excess > 0).sum())
+        if not count:
+            return ()
+        reason = "no more control points are allowed there"
+        if self.field.contradictory:
+            reason = f"the data contradict each other by about {self.field.noise:.2f} m, which is not chased"
+        elif self.settings.smoothing != "auto":
+            reason = "the smoothing is given"
+        tolerance = self.settings.interior_tolerance
+        return (f"interior tolerance {tolerance:g} m not met at {count} points, worst {excess.max():.3f} m: {reason}",)
 
 
 def _approximate_many(data: _Data, settings: FitSettings, most: int) -> Net:
-    """Approximate more points than any tolerance can hold one by one: refine while the fit gains by it."""
-    weight = np.ones(len(data.plane))
+    """Approximate more points than can be pulled one by one: refine while the fit gains by it.
+
+    Energy and lambda, which do not depend on the number of points, are chosen on a part of them.
+    """
+    n = len(data.plane)
+    part = slice(None, None, max(n // PART, 1))
+    weight = np.ones(n)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
-    count, best = 1_000, None
-    while count <= most:
-        space = _uniform(data.area, _span_for(data.area, count, 3), 3)
-        field = choose(space, data.plane, data.value, weight, given)
-        if best is not None and field.score > 0.98 * best[1].score:
+    coarse = _uniform(data.area, _span_for(data.area, LEVELS[0], 3), 3)
+    field = choose(coarse, data.plane[part], data.value[part], weight[part], given)
+    best: tuple[float, TensorSpace, Floats] | None = None
+    for count in LEVELS:
+        if best is not None and count > min(most, n / 3):
             break
-        best = (space, field)
-        count *= 4
+        space = _uniform(data.area, _span_for(data.area, count, 3), 3)
+        coefficients, _ = smooth(space, field, data.plane, data.value, weight)
+        misfit = data.value - values_at(space, coefficients, data.plane)
+        score = float(np.sqrt(np.square(misfit).sum() * n)) / max(n - space.size, 1)
+        if best is not None and score > 0.99 * best[0]:
+            break
+        best = (score, space, coefficients)
     assert best is not None
-    space, field = best
-    coefficients, _ = smooth(space, field, data.plane, data.value, weight)
-    note = (
-        f"{len(data.plane)} points: the tolerance is judged by sigma, points are not pulled one by one; "
-        f"estimated noise {field.noise:.3f} m"
-    )
+    noise, space, coefficients = best
+    field = replace(field, noise=noise)
+    note = f"{n} points are judged by sigma, not pulled into the tolerance one by one; noise about {noise:.3f} m"
     free = np.zeros(space.size, bool)
     total = coefficients + data.over_trend(space)
     return Net(space, total, free, None, None, data.unit, field, 1, (note,))
@@ -228,9 +295,7 @@ def fit_with_core(
     space = TensorSpace(knots[0], knots[1], degree)
     weight = cell_weights(space, data.plane, data.accuracy)
     coefficients, _ = smooth(space, field, data.plane, data.value, weight)
-    space, coefficients, rule = _open_seams(
-        space, coefficients, core, settings, data.plane[inside, 0] if linear else None, lines
-    )
+    space, coefficients, rule = _open_seams(space, coefficients, core, settings, linear)
     coefficients = _skin(space, coefficients, core, data, inside, rule)
     frozen = borrowed(space, core).ravel()
     stage("periphery", 0.6)
@@ -239,23 +304,10 @@ def fit_with_core(
         total = coefficients + data.over_trend(space)
         cut = None if not outer.any() else core
         return Net(space, total, frozen, cut, rule, data.unit, field, 0, notes)
-    energy = field.smoothing * energy_band(space, field.energy)
-    tolerance = settings.interior_tolerance
-    rounds = _rounds(settings, field)
-    result = approximate(
-        space,
-        energy,
-        coefficients,
-        frozen,
-        data.plane[outer],
-        data.value[outer],
-        weight[outer],
-        tolerance,
-        rounds,
-    )
-    notes += _beyond(result.misfit > tolerance, result.misfit, settings, field)
-    total = result.coefficients + data.over_trend(space)
-    return Net(space, total, frozen, core, rule, data.unit, field, result.rounds, notes)
+    periphery = _Periphery(data, outer, core, field, settings, most)
+    space, coefficients, frozen, rounds, more = periphery.fit(space, coefficients)
+    total = coefficients + data.over_trend(space)
+    return Net(space, total, frozen, core, rule, data.unit, field, rounds, notes + more)
 
 
 def _breaks(
@@ -290,7 +342,9 @@ def _breaks(
         scale = np.array([1.0, 1.0, stretch])
         breaks_u = graded_breaks(required_u, LONGEST * stretch, sizes_u * scale, smallest)
         breaks_v = graded_breaks(required_v, LONGEST * stretch, sizes_v * scale, smallest)
-        if (len(breaks_u) + degree - 1) * (len(breaks_v) + degree - 1) <= 0.9 * most:
+        knots = [bspline.clamped_knots(along, degree) for along in (breaks_u, breaks_v)]
+        space = TensorSpace(knots[0], knots[1], degree)
+        if _in_patches(space.shape, core, space) <= 0.9 * most:
             break
         stretch *= 1.15
     if linear:
@@ -312,8 +366,7 @@ def _open_seams(
     coefficients: Floats,
     core: Rectangle,
     settings: FitSettings,
-    core_u: Floats | None,
-    lines: Lines,
+    linear: bool,
 ) -> tuple[TensorSpace, Floats, Floats | None]:
     """Raise the knots at the seams as far as the joint asks, and at the lines of a ruled core.
 
@@ -323,12 +376,11 @@ def _open_seams(
     p = space.degree
     inner_u = [x for x in core[:2] if space.knots_u[0] < x < space.knots_u[-1]]
     inner_v = [x for x in core[2:] if space.knots_v[0] < x < space.knots_v[-1]]
-    ruled_core = core_u is not None
     broken = settings.seam == "position"
-    at_u = dict.fromkeys(inner_u, p if broken else p - 1 if ruled_core else 1)
+    at_u = dict.fromkeys(inner_u, p if broken else p - 1 if linear else 1)
     at_v = dict.fromkeys(inner_v, p if broken else 1)
     rule = None
-    if ruled_core:
+    if linear:
         knots = np.unique(space.knots_u)
         rule = knots[(knots >= core[0]) & (knots <= core[1])]
         at_u.update(dict.fromkeys(rule[1:-1].tolist(), p))
@@ -366,15 +418,3 @@ def _skin(
     held = borrowed(space, core)[rows].ravel()
     result[columns[held]] = (spread @ start)[held]
     return result
-
-
-def _beyond(outside: NDArray[np.bool_], misfit: Floats, settings: FitSettings, field: Field) -> tuple[str, ...]:
-    if not outside.any():
-        return ()
-    reason = ""
-    if field.contradictory:
-        reason = f": the data contradict each other by about {field.noise:.2f} m, which was not chased"
-    return (
-        f"interior tolerance {settings.interior_tolerance:g} m not met at {outside.sum()} points, the worst "
-        f"{misfit.max():.3f} m{reason}",
-    )

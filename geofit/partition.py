@@ -135,7 +135,7 @@ def _largest_cluster(plane: Floats, reach: float) -> NDArray[np.bool_]:
     n = len(plane)
     graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
     label = connected_components(graph, directed=False)[1]
-    largest: NDArray[np.bool_] = label == np.argmax(np.bincount(label))
+    largest: NDArray[np.bool_] = np.equal(label, np.argmax(np.bincount(label)))
     return largest
 
 

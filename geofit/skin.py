@@ -150,9 +150,8 @@ def separate(
         if not len(strained):
             break
         new_u, new_v = _between(pairs, strained, plane, breaks_u, breaks_v)
-        if space.size * (1 + len(new_u) / space.shape[0]) * (1 + len(new_v) / space.shape[1]) > most:
-            break
-        if not len(new_u) and not len(new_v):
+        grown = (space.shape[0] + len(new_u)) * (space.shape[1] + len(new_v))
+        if grown > most or grown == space.size:
             break
         breaks_u, breaks_v = np.union1d(breaks_u, new_u), np.union1d(breaks_v, new_v)
     return breaks_u, breaks_v

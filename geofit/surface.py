@@ -66,7 +66,8 @@ class Patch:
         rows = iu[:, None] + np.arange(self.degree[0] + 1)
         columns = iv[:, None] + np.arange(self.degree[1] + 1)
         local = control[rows[:, :, None], columns[:, None, :]]
-        return np.einsum("na,nb,nabk->nk", nu, nv, local).reshape(*u.shape, control.shape[2])
+        total: Floats = np.einsum("na,nb,nabk->nk", nu, nv, local)
+        return total.reshape(*u.shape, control.shape[2])
 
     def _rational(self, u: Floats, v: Floats, du: int, dv: int) -> Floats:
         """Quotient rule on homogeneous coordinates (The NURBS Book, eq. 4.20), up to second order."""
@@ -89,7 +90,8 @@ class Patch:
     def normal(self, u: ArrayLike, v: ArrayLike) -> Floats:
         """Return unit normals S_u x S_v; arrays broadcast to shape (..., 3)."""
         cross = np.cross(self.evaluate(u, v, 1, 0), self.evaluate(u, v, 0, 1))
-        return cross / np.linalg.norm(cross, axis=-1, keepdims=True)
+        unit: Floats = cross / np.linalg.norm(cross, axis=-1, keepdims=True)
+        return unit
 
 
 @dataclass(frozen=True)

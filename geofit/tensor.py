@@ -20,7 +20,7 @@ from scipy.sparse import csr_array
 from geofit import bspline
 from geofit.errors import FitError
 
-__all__ = ["Factor", "TensorSpace", "band_times"]
+__all__ = ["Factor", "TensorSpace", "band_times", "values_at"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -86,21 +86,15 @@ class TensorSpace:
         index, values = self.rows(plane)
         weighted = values * weight[:, None]
         blocks = weighted[:, :, None] * values[:, None, :]
-        right = np.stack(
-            [
-                np.bincount(index.ravel(), (weighted * column[:, None]).ravel(), minlength=self.size)
-                for column in z.reshape(len(z), -1).T
-            ],
-            axis=1,
-        )
-        return self._scatter(index, blocks), right.reshape(self.size, *z.shape[1:])
+        columns = [_sums(index, weighted * column[:, None], self.size) for column in z.reshape(len(z), -1).T]
+        return self._scatter(index, blocks), np.stack(columns, axis=1).reshape(self.size, *z.shape[1:])
 
     def _scatter(self, index: Ints, blocks: Floats) -> Floats:
         below = index[:, :, None] - index[:, None, :]
         column = np.broadcast_to(index[:, None, :], below.shape)
         lower = below >= 0
         place = below[lower] * self.size + column[lower]
-        band: Floats = np.bincount(place, blocks[lower], minlength=(self.bandwidth + 1) * self.size)
+        band = _sums(place, blocks[lower], (self.bandwidth + 1) * self.size)
         return band.reshape(self.bandwidth + 1, self.size)
 
     def _by_cells(self, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
@@ -148,7 +142,7 @@ class TensorSpace:
         index = ((fu[:, None] + step)[:, None, :, None] * self.shape[1]) + (fv[:, None] + step)[None, :, None, :]
         index = index.reshape(-1, (p + 1) ** 2)
         band = self._scatter(index, blocks.reshape(-1, (p + 1) ** 2, (p + 1) ** 2))
-        return band, np.bincount(index.ravel(), sums.ravel(), minlength=self.size)
+        return band, _sums(index, sums, self.size)
 
     def energy(self, order: int) -> Floats:
         """Return the band of the energy of all derivatives of one order.
@@ -210,7 +204,8 @@ class Factor:
     def solve(self, right: Floats) -> Floats:
         """Solve for one (size,) or several (size, k) right-hand sides."""
         scale = self._scale if right.ndim == 1 else self._scale[:, None]
-        return cho_solve_banded((self._band, True), right * scale, check_finite=False) * scale
+        solution: Floats = cho_solve_banded((self._band, True), right * scale, check_finite=False) * scale
+        return solution
 
     @property
     def logdet(self) -> float:
@@ -218,17 +213,47 @@ class Factor:
         return float(2 * np.log(self._band[0]).sum() - 2 * np.log(self._scale).sum())
 
 
+def values_at(space: TensorSpace, coefficients: Floats, plane: Floats) -> Floats:
+    """Return the (n,) values of a spline at (n, 2) places, cell polynomials evaluated in chunks."""
+    p = space.degree
+    cells_u, cells_v = _cells(space.knots_u), _cells(space.knots_v)
+    lu = _local_polynomials(space.knots_u, p, cells_u)
+    lv = _local_polynomials(space.knots_v, p, cells_v)
+    fu = bspline.spans(space.knots_u, p, (cells_u[1:] + cells_u[:-1]) / 2) - p
+    fv = bspline.spans(space.knots_v, p, (cells_v[1:] + cells_v[:-1]) / 2) - p
+    step = np.arange(p + 1)
+    net = coefficients.reshape(space.shape)[
+        (fu[:, None] + step)[:, None, :, None], (fv[:, None] + step)[None, :, None, :]
+    ]
+    local = np.einsum("cai,cdab,dbj->ijcd", lu, net, lv, optimize=True).reshape((p + 1) ** 2, -1)
+    result = np.empty(len(plane))
+    for start in range(0, len(plane), _CHUNK):
+        part = slice(start, start + _CHUNK)
+        cu, pu = _legendre(cells_u, plane[part, 0], p)
+        cv, pv = _legendre(cells_v, plane[part, 1], p)
+        cell = cu * (len(cells_v) - 1) + cv
+        result[part] = sum(
+            pu[i] * sum(local[i * (p + 1) + j][cell] * pv[j] for j in range(p + 1)) for i in range(p + 1)
+        )
+    return result
+
+
 def band_times(band: Floats, x: Floats) -> Floats:
     """Return the symmetric banded matrix times x, (size,) or (size, k)."""
     size = band.shape[1]
     columns = x.reshape(size, -1)
-    result = band[0][:, None] * columns
+    result: Floats = band[0][:, None] * columns
     for k in range(1, len(band)):
         below = band[k, : size - k, None]
         if below.any():
             result[k:] += below * columns[: size - k]
             result[: size - k] += below * columns[k:]
     return result.reshape(x.shape)
+
+
+def _sums(index: Ints, values: Floats, size: int) -> Floats:
+    """Return the (size,) sums of the values that share an index."""
+    return np.bincount(index.ravel(), values.ravel(), minlength=size).astype(np.float64, copy=False)
 
 
 def _diagonal(matrix: Floats, below: int) -> Floats:
@@ -256,7 +281,9 @@ def _local_polynomials(knots: Floats, degree: int, cells: Floats) -> Floats:
     half = np.diff(cells) / 2
     x = cells[:-1, None] + half[:, None] * (1 + nodes)
     _, values = bspline.basis(knots, degree, x.ravel())
-    return np.einsum("kq,cqa->cak", inverse, values.reshape(len(half), degree + 1, degree + 1))
+    at_nodes = values.reshape(len(half), degree + 1, degree + 1)
+    local: Floats = np.einsum("kq,cqa->cak", inverse, at_nodes)
+    return local
 
 
 def _legendre_products(degree: int) -> Floats:

@@ -43,9 +43,7 @@ def write_picks(path: Path, extra: str = "", names: tuple[str, ...] = ("T3/T2",)
             for i in range(5):
                 for y in np.linspace(20, 580, 12):
                     x = 260 + 20 * i
-                    writer.writerow(
-                        [WEST + x, SOUTH + y, f"{height(x, y) - 40 * layer:.4f}", name, f"S{i + 1}", ""]
-                    )
+                    writer.writerow([WEST + x, SOUTH + y, f"{height(x, y) - 40 * layer:.4f}", name, f"S{i + 1}", ""])
             for i, (x, y) in enumerate(rng.uniform((0, 0), (600, 600), (60, 2))):
                 if not 230 < x < 370:
                     z = height(x, y) - 40 * layer + rng.normal(0, 0.03)

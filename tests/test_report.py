@@ -52,9 +52,7 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         patch("east", 800, 1500, -600, 600),
     )
     rng = np.random.default_rng(5)
-    xy = np.concatenate(
-        [rng.uniform((0, -590), (800, 590), (120, 2)), rng.uniform((-690, -590), (0, 590), (80, 2))]
-    )
+    xy = np.concatenate([rng.uniform((0, -590), (800, 590), (120, 2)), rng.uniform((-690, -590), (0, 590), (80, 2))])
     xy[160:, 0] += 1500
     d = np.concatenate([np.zeros(120), rng.normal(0, 0.15, 80)])
     d[150] = 0.62
@@ -102,9 +100,7 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         points=points,
         settings=FitSettings(epsilon=epsilon),
         name=name,
-        partition=Partition(
-            tuple((x + ORIGIN[0], y + ORIGIN[1]) for x, y in corners), 120, 80, "Dense in the middle."
-        ),
+        partition=Partition(tuple((x + ORIGIN[0], y + ORIGIN[1]) for x, y in corners), 120, 80, "Dense in the middle."),
         core=core,
         accuracy=accuracy,
         fit={"smoothing": 0.0123, "frame": "map", "iterations": 3},
@@ -129,9 +125,7 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         False,
         (Check("free edges", True, 8, 8, "", "all on the outline"),),
     )  # fmt: skip
-    return HorizonResult(
-        surface, site, back, equal_accuracy(surface, 0.1), 123_456, {"fit": 0.5, "pictures": 1.25}
-    )
+    return HorizonResult(surface, site, back, equal_accuracy(surface, 0.1), 123_456, {"fit": 0.5, "pictures": 1.25})
 
 
 @pytest.fixture(scope="module")
@@ -186,9 +180,7 @@ def test_json_has_the_promised_keys_and_the_known_figures(result, tmp_path):
     assert (data["n_points"], data["n_used"], data["n_core"], data["n_periphery"]) == (200, 199, 120, 80)
     d = result.accuracy.residuals
     assert data["sigma"] == pytest.approx(np.sqrt((d**2).sum() / 199), rel=1e-12)
-    assert data["periphery"]["share_within_interior_tolerance"] == pytest.approx(
-        (np.abs(d[120:]) <= 0.1).mean()
-    )
+    assert data["periphery"]["share_within_interior_tolerance"] == pytest.approx((np.abs(d[120:]) <= 0.1).mean())
     assert data["core"] == {"n": 120, "max_abs": 0.0}
     assert data["seams"][1] == {"a": "core", "b": "east", "max_gap": 2e-10, "max_angle_deg": 0.0003}
     assert data["patches"][0] == {"name": "core", "degree": [3, 3], "n_control": 121}
@@ -319,9 +311,7 @@ def test_steep_surfaces_are_seen_across_their_strike():
     u = bspline.clamped_knots([0, 400], 1)
     control = np.stack([np.stack([strike * a + down * b for b in (0, 300)]) for a in (0, 400)])
     steep = Patch("core", (1, 1), u, bspline.clamped_knots([0, 300], 1), control)
-    surface = HorizonSurface(
-        patches=(steep,), origin=ORIGIN, points=PointSet(control.reshape(-1, 3) + ORIGIN)
-    )
+    surface = HorizonSurface(patches=(steep,), origin=ORIGIN, points=PointSet(control.reshape(-1, 3) + ORIGIN))
     view = choose_view(surface)
     assert "060°" in view.labels[0]
     assert "75°" in view.labels[0]
@@ -360,7 +350,7 @@ def test_font_message_only_where_it_is_needed(monkeypatch):
         (-0.5, 1, "−0.5"),
         (3e-9, 6, "3e-9"),
         (-3e-9, 6, "−3e-9"),
-        (0.0, 2, "0.00"),
+        (0.0, 2, "0"),
         (None, 3, "–"),
     ],
 )

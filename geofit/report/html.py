@@ -111,25 +111,42 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         undefined=StrictUndefined,
     )
-    environment.filters |= {"m": metres, "size": _size, "count": _count}
+    environment.filters |= {
+        "m": metres,
+        "size": _size,
+        "count": _count,
+        "value": lambda check: _measured(check.value, check.unit),
+        "limit": lambda check: _measured(check.limit, check.unit),
+    }
     return environment
 
 
 def metres(value: float | None, digits: int = 3) -> str:
-    """Write metres for a person: a dash for nothing, powers of ten below what the digits show.
+    """Write metres for a person: a dash for nothing, powers of ten below what the digits show, exact zero as 0.
 
     Examples
     --------
     >>> metres(0.1234), metres(-2.0, 1), metres(3e-9), metres(0.0), metres(None)
-    ('0.123', '−2.0', '3e-9', '0.000', '–')
+    ('0.123', '−2.0', '3e-9', '0', '–')
     """
     if value is None or not np.isfinite(value):
         return "–"
-    if value != 0 and abs(value) < 0.5 * 10.0**-digits:
+    if value == 0:
+        return "0"
+    if abs(value) < 0.5 * 10.0**-digits:
         mantissa, exponent = f"{value:.0e}".split("e")
         text = f"{mantissa}e{int(exponent)}"
         return "−" + text[1:] if text.startswith("-") else text
     return f"{value:.{digits}f}".replace("-", "−")
+
+
+def _measured(value: float, unit: str) -> str:
+    """Write a check's value: metres and degrees with three digits, counts as they are."""
+    if not np.isfinite(value):
+        return "–"
+    if unit in ("m", "deg"):
+        return f"{metres(value)} {'m' if unit == 'm' else '°'}"
+    return f"{value:g} {unit}".strip()
 
 
 def _size(value: float) -> str:

@@ -1,0 +1,214 @@
+"""The package as a whole: what an import costs, who may import whom, what the repository may hold."""
+
+from __future__ import annotations
+
+import ast
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import geofit
+
+ROOT = Path(__file__).resolve().parents[1]
+
+#: Floors of docs/architecture.md, the lowest first. A room imports from its own floor and those below.
+FLOORS = (
+    ("accuracy", "errors", "files", "points", "progress", "settings", "site"),
+    ("bspline", "frame", "tensor"),
+    ("surface",),
+    ("cells", "distance", "elevation"),
+    ("check", "occ", "seams", "storage", "trim"),
+    ("adjust", "assemble", "chart", "conflicts", "field", "fold", "knots", "net", "partition", "periphery", "skin"),
+    ("stitch",),
+    ("pipeline",),
+    ("io", "sample"),
+    ("report",),
+    ("deliver",),
+    ("cli", "console"),
+    ("__main__", "gui"),
+)  # fmt: skip
+FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
+#: Methods of Site and HorizonSurface that lead upwards: lazily, by design of the public interface.
+UPWARDS = {("surface", "elevation"), ("surface", "distance"), ("surface", "stitch"), ("surface", "io")}
+#: Who alone may import these, at the named places.
+RESERVED = {
+    "OCP": ("geofit/occ.py", "geofit/trim.py", "geofit/stitch.py", "io/"),
+    "cadquery": ("geofit/occ.py", "geofit/trim.py", "geofit/stitch.py", "io/"),
+    "PySide6": ("gui/",),
+    "pyvistaqt": ("gui/",),
+    "pyvista": ("geofit/report/scene.py", "gui/"),
+    "vtkmodules": ("geofit/report/scene.py", "gui/"),
+    "matplotlib": ("geofit/report/", "gui/"),
+    "typer": ("geofit/cli.py", "geofit/console.py"),
+    "rich": ("geofit/cli.py", "geofit/console.py"),
+}
+HEAVY = ("scipy", "pandas", "shapely", "matplotlib", "pyvista", "vtkmodules", "OCP", "cadquery", "PySide6", "ezdxf")
+
+
+def python(code: str, cwd: Path, *options: str) -> str:
+    done = subprocess.run([sys.executable, *options, "-c", code], cwd=cwd, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip()
+
+
+def sources() -> dict[str, ast.Module]:
+    files = [p for folder in ("geofit", "io", "gui") for p in sorted((ROOT / folder).rglob("*.py"))]
+    return {p.relative_to(ROOT).as_posix(): ast.parse(p.read_text(encoding="utf-8")) for p in files}
+
+
+def module_of(path: str) -> str:
+    """Dotted name of a file: io/ and gui/ live in geofit."""
+    dotted = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+    return dotted if dotted.startswith("geofit") else f"geofit.{dotted}"
+
+
+def imports(tree: ast.Module, *, typing_too: bool) -> set[str]:
+    found: set[str] = set()
+    skipped: set[ast.AST] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test) and not typing_too:
+            skipped.update(child for statement in node.body for child in ast.walk(statement))
+    for node in ast.walk(tree):
+        if node in skipped:
+            continue
+        if isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            found.add(node.module or "")
+            if node.module == "geofit":
+                found.update(f"geofit.{alias.name}" for alias in node.names)
+    return found
+
+
+def tracked() -> list[Path]:
+    listed = subprocess.run(
+        ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"],
+        cwd=ROOT, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    if listed.returncode:
+        pytest.skip("no git repository: the package was unpacked, not cloned")
+    return [ROOT / name for name in listed.stdout.split("\0") if name and (ROOT / name).is_file()]
+
+
+def test_importing_geofit_loads_nothing_heavy(tmp_path):
+    code = "import sys, geofit, geofit.io; print(*sorted({m.split('.')[0] for m in sys.modules}))"
+    assert not set(python(code, tmp_path).split()) & set(HEAVY)
+
+
+def test_help_loads_nothing_heavy(tmp_path):
+    code = "import sys, geofit.cli; print(*sorted({m.split('.')[0] for m in sys.modules}))"
+    assert not set(python(code, tmp_path).split()) & set(HEAVY)
+
+
+@pytest.mark.parametrize("where", ["root", "elsewhere"])
+def test_the_folder_io_never_shadows_the_standard_library(where, tmp_path):
+    cwd = ROOT if where == "root" else tmp_path
+    code = (
+        "import io, sys; assert io.StringIO('a').read() == 'a'; import geofit.io;"
+        "assert sys.modules['io'] is not sys.modules['geofit.io']; assert not hasattr(io, 'read_site'); print('ok')"
+    )
+    assert python(code, cwd) == "ok"
+    assert python(code, cwd, "-I") == "ok"
+
+
+def test_every_module_stands_on_a_floor():
+    rooms = {module_of(path).split(".")[1] for path in sources() if module_of(path) != "geofit"}
+    assert rooms <= set(FLOOR), f"not in docs/architecture.md and FLOORS: {rooms - set(FLOOR)}"
+
+
+def test_rooms_import_only_from_their_floor_and_below():
+    wrong = []
+    for path, tree in sources().items():
+        module = module_of(path)
+        if module == "geofit":
+            continue
+        room = module.split(".")[1]
+        for name in imports(tree, typing_too=False):
+            parts = name.split(".")
+            if parts[0] != "geofit" or len(parts) < 2 or parts[1] not in FLOOR:
+                continue
+            if FLOOR[parts[1]] > FLOOR[room] and (room, parts[1]) not in UPWARDS:
+                wrong.append(f"{path} imports {name}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_reserved_libraries_stay_in_their_rooms():
+    wrong = []
+    for path, tree in sources().items():
+        for name in imports(tree, typing_too=False):
+            allowed = RESERVED.get(name.split(".")[0])
+            if allowed is not None and not path.startswith(allowed):
+                wrong.append(f"{path} imports {name}; allowed in {', '.join(allowed)}")
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_floors_are_those_of_the_architecture_page():
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8")
+    picture = page.split("```")[1]
+    absent = [room for room in FLOOR if room != "__main__" and not re.search(rf"\b{room}\b", picture)]
+    assert not absent
+
+
+def test_versions_agree():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    changes = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert project["version"] == geofit.__version__
+    assert re.search(r"^version: (.+)$", citation, re.M)[1].strip('"') == geofit.__version__
+    assert re.search(r"^## (\S+)", changes, re.M)[1] == geofit.__version__
+
+
+def test_every_dependency_is_explained_and_locked():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    extras = project["optional-dependencies"]
+    wanted = [*project["dependencies"], *extras["gui"], *extras["test"]]
+    names = {re.match(r"[\w-]+", line)[0].casefold() for line in wanted}
+    page = (ROOT / "docs" / "architecture.md").read_text(encoding="utf-8").casefold()
+    locked = {
+        line.split("==")[0].casefold()
+        for line in (ROOT / "constraints" / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    }
+    assert not [name for name in names if name not in page]
+    assert names <= locked
+
+
+def test_constraints_hold_names_versions_and_markers_only():
+    for line in (ROOT / "constraints" / "constraints.txt").read_text(encoding="utf-8").splitlines():
+        assert re.fullmatch(r"[\w.-]+==[\w.+!]+( ; [\w .<>=!'()-]+)?", line), line
+
+
+def test_no_machine_path_and_no_registry_host_in_the_repository():
+    # Put together here, so that this file does not hold what it looks for.
+    hosts = [".".join(parts) for parts in (("pypi", "org"), ("pythonhosted", "org"), ("deb", "debian", "org"))]
+    places = ["/" + "/".join(parts) + "/" for parts in (("work", "main"), ("work", "shared"), ("root",), ("home",))]
+    wrong = []
+    for path in tracked():
+        if path.suffix in (".png", ".dxf"):
+            continue
+        text = path.read_bytes().decode("utf-8", errors="replace")
+        wrong += [f"{path.relative_to(ROOT)}: {word}" for word in hosts + places if word in text]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_the_readme_example_runs_as_written(tmp_path):
+    page = (ROOT / "README.md").read_text(encoding="utf-8")
+    example = re.search(r"```python\n(.*?)```", page, re.S)[1]
+    assert len(example.strip().splitlines()) == 5
+    shutil.copytree(ROOT / "sample_data", tmp_path / "sample_data")
+    printed = python(example, tmp_path).split()
+    assert printed[0] == "PASS"
+    assert 0 < float(printed[1]) < 0.5
+    assert 1300 < float(printed[2]) < 1700
+    assert (tmp_path / "T2-T1.step").stat().st_size > 10_000
+
+
+def test_the_readme_links_to_files_that_exist():
+    for page in ("README.md", "docs/architecture.md"):
+        text = (ROOT / page).read_text(encoding="utf-8")
+        for target in re.findall(r"\]\(([^)#:]+)\)", text):
+            assert ((ROOT / page).parent / target).exists(), f"{page} links to {target}"
