@@ -149,7 +149,8 @@ def print_results(results: Sequence[HorizonResult]) -> None:
         "max, m",
         "verdict",
         "seams",
-        "seconds",
+        "fit, s",
+        "all, s",
     )
     rows = []
     for r in results:

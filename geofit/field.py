@@ -6,27 +6,27 @@ spacing of the sparse points, so that one range of lambda serves every site. Two
 ========= ============================================ ====================================================
 name      energy                                       where it wins
 ========= ============================================ ====================================================
-"smooth"  third derivatives + second derivatives       gentle horizons: half the error of a thin plate
+"smooth"  third derivatives + 4 x second derivatives   gentle horizons: half the error of a thin plate
 "rough"   second derivatives + 1/4 first derivatives   rugged horizons, where third derivatives overshoot
 ========= ============================================ ====================================================
 
-Below one spacing the first term rules, above it the second, which calms the surface where no data are. For
-each energy lambda comes from restricted maximum likelihood (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36);
-"smooth" is taken where its generalised cross-validation score (G. Wahba, *Spline Models for Observational
-Data*, 1990, eq. 4.3.1) is clearly the lower one.
+At short distances the first term rules, beyond the spacing the second, which calms the surface where no data are. Energy
+and lambda are those of the greatest restricted likelihood, in which the energy is a Gaussian prior of the
+surface (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36): one that is too stiff for the relief, or too loose, makes
+the data unlikely.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from geofit.errors import FitError
-from geofit.tensor import Factor, TensorSpace, band_times
+from geofit.tensor import Factor, TensorSpace
 
 __all__ = ["Field", "cell_weights", "choose", "energy_band", "plane_trend", "smooth"]
 
@@ -34,7 +34,7 @@ Floats = NDArray[np.float64]
 
 #: Weights of the derivative orders in each energy, and the dimension of what it leaves free.
 ENERGIES: dict[str, tuple[dict[int, float], int]] = {
-    "smooth": ({3: 1.0, 2: 1.0}, 3),
+    "smooth": ({3: 1.0, 2: 4.0}, 3),
     "rough": ({2: 1.0, 1: 0.25}, 1),
     "flat": ({1: 1.0}, 1),
 }
@@ -42,8 +42,8 @@ ENERGIES: dict[str, tuple[dict[int, float], int]] = {
 _LOG_RANGE = (-9.0, 3.0)
 #: Noise above this share of the values' own spread contradicts any tolerance below it.
 CONTRADICTION = 0.5
-#: "rough" is the safer energy: a score this much above the least still takes it.
-CLEARLY = 1.015
+#: Part of an energy's diagonal that stands in for what the energy leaves free, in its determinant.
+_RIDGE = 1e-10
 #: No elevation is known better than this, metres: keeps the likelihood finite on exact planes.
 _FINEST = 1e-4
 #: Stands for the likelihood of a lambda whose system has no solution; finite, for Brent's method.
@@ -60,7 +60,6 @@ class Field:
     energy: str
     smoothing: float
     noise: float
-    score: float
     contradictory: bool = False
 
 
@@ -129,19 +128,20 @@ def choose(
     band, right = space.normal_equations(plane, z, weight)
     square = float((weight @ (z.reshape(len(z), -1) ** 2)).sum())
     names = {3: ("smooth", "rough"), 2: ("rough",)}.get(space.degree, ("flat",))
-    fields = []
+    found = []
     for name in names:
         likelihood = _Likelihood(space, name, band, right, square, len(plane), float(weight.sum()))
-        fields.append(likelihood.at(likelihood.best() if smoothing is None else math.log10(smoothing)))
-    least = min(field.score for field in fields)
-    best = [field for field in fields if field.score <= CLEARLY * least][-1] if least < math.inf else fields[0]
-    if not math.isfinite(best.score):
+        log = likelihood.best() if smoothing is None else math.log10(smoothing)
+        found.append((likelihood(log), log, likelihood))
+    value, log, likelihood = min(found, key=lambda one: one[0])
+    if value >= _UNSOLVABLE:
         raise FitError(
             f"No smoothing makes the system of {len(plane)} points and {space.size} control points solvable: the "
             "points lie on too few places. Give more points, or a larger conflict_distance."
         )
+    noise = likelihood.noise(log)
     spread = float(np.std(z, axis=0).max())
-    return replace(best, contradictory=best.noise > CONTRADICTION * max(spread, _FINEST))
+    return Field(likelihood.name, 10.0**log, noise, noise > CONTRADICTION * max(spread, _FINEST))
 
 
 class _Likelihood:
@@ -152,6 +152,7 @@ class _Likelihood:
     ) -> None:
         self.name, self.space, self.band, self.right, self.square = name, space, band, right, square
         self.energy = energy_band(space, name)
+        self.determinant = _log_pseudo_determinant(self.energy, ENERGIES[name][1])
         self.columns = 1 if right.ndim == 1 else right.shape[1]
         self.n, self.free = n, ENERGIES[name][1]
         self.weight = weight
@@ -164,15 +165,15 @@ class _Likelihood:
         return factor, coefficients, max(penalised, self.floor)
 
     def __call__(self, log: float) -> float:
-        """Return -2 log of the restricted likelihood, but for a constant."""
+        """Return -2 log of the restricted likelihood, but for a constant of the data."""
         try:
             factor, _, penalised = self._solve(log)
         except FitError:
             return _UNSOLVABLE
         degrees = max(self.n - self.free, 1)
         misfit = self.columns * degrees * math.log(penalised / (degrees * self.columns))
-        determinant = factor.logdet - (self.space.size - self.free) * log * math.log(10)
-        return misfit + self.columns * determinant
+        prior = self.determinant + (self.space.size - self.free) * log * math.log(10)
+        return misfit + self.columns * (factor.logdet - prior)
 
     def best(self) -> float:
         """Search log10 lambda: a coarse scan, then Brent's method between the neighbours of its best."""
@@ -185,22 +186,19 @@ class _Likelihood:
         found = minimize_scalar(self, bounds=(low, high), method="bounded", options={"xatol": 0.15})
         return float(found.x) if found.fun <= values[k] else float(grid[k])
 
-    def at(self, log: float) -> Field:
-        """Return the field at one lambda, with its noise and its score of generalised cross-validation."""
-        try:
-            _, coefficients, penalised = self._solve(log)
-            step = 0.1
-            up, down = self._solve(log + step)[0].logdet, self._solve(log - step)[0].logdet
-        except FitError:
-            return Field(self.name, math.nan, math.nan, math.inf)
-        # d log det(G + lambda E) / d log lambda = trace of lambda E K^-1 = size - effective parameters.
-        effective = self.space.size - (up - down) / (2 * step * math.log(10))
-        bending = 10.0**log * float((coefficients * band_times(self.energy, coefficients)).sum())
-        residual = max(penalised - bending, self.floor) / self.columns
-        left = max(self.n - effective, 0.01 * self.n, 1e-3)
+    def noise(self, log: float) -> float:
+        """Return the likeliest noise of a point, metres."""
+        _, _, penalised = self._solve(log)
         share = self.n / (max(self.n - self.free, 1) * self.columns * self.weight)
-        noise = math.sqrt(penalised * share)
-        return Field(self.name, 10.0**log, noise, math.sqrt(self.n * residual) / left)
+        return math.sqrt(penalised * share)
+
+
+def _log_pseudo_determinant(energy: Floats, free: int) -> float:
+    """Return log of the product of the eigenvalues of an energy that are not zero."""
+    ridge = _RIDGE * float(np.median(energy[0]))
+    held = energy.copy()
+    held[0] += ridge
+    return Factor(held).logdet - free * math.log(ridge)
 
 
 def smooth(space: TensorSpace, field: Field, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
