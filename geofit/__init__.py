@@ -26,7 +26,7 @@ __version__ = "0.1.0"
 
 __all__ = ["FitSettings", "GeofitError", "HorizonSurface", "PointSet", "Site", "fit_horizon", "io"]
 
-# scipy, pandas and OpenCASCADE are imported when they are first needed.
+# scipy and OpenCASCADE are imported when they are first needed.
 _LAZY = {"fit_horizon": "geofit.pipeline", "HorizonSurface": "geofit.surface", "io": "geofit.io"}
 
 

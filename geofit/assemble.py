@@ -85,8 +85,9 @@ def patches_of(
             control = net[rows, columns]
             degree_u = p
             if name == "core" and ruled_lines is not None:
-                degree_u, control = 1, control[::p]
-                knots_u = bspline.clamped_knots(np.unique(knots_u), 1)
+                nodes = np.abs(bspline.greville(knots_u, p)[:, None] - ruled_lines).argmin(axis=0)
+                degree_u, control = 1, control[nodes]
+                knots_u = bspline.clamped_knots(ruled_lines, 1)
             patches.append(Patch(name, (degree_u, p), knots_u * unit, knots_v * unit, control.copy()))
     return tuple(sorted(patches, key=lambda patch: patch.name != "core"))
 

@@ -272,6 +272,7 @@ def _doors(cells: Cells, cell: Ints, x: Floats, wanted: Bools) -> tuple[Bools, I
     return np.stack([hop_s, hop_t]), np.where(hop_s, behind_s, behind_t)
 
 
+@np.errstate(over="ignore")  # a flat model asks for an infinite step, which the box cuts
 def _box_step(x: Floats, g: Floats, h: Floats, held: Bools) -> Floats:
     """Step to the minimum of the quadratic model in the box [-1, 1]^2, with some coordinates held."""
     hss, hst, htt = h

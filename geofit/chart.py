@@ -16,6 +16,7 @@ from geofit.errors import FitError
 from geofit.fold import Loft, backtracking, loft
 from geofit.frame import Frame, best_plane_frame, map_frame, section_azimuth
 from geofit.points import PointSet
+from geofit.sections import section_labels
 from geofit.settings import FitSettings
 
 __all__ = ["Chart", "choose_chart"]
@@ -49,6 +50,8 @@ class Chart:
         What was chosen, and why.
     placed : (n,) array of bool
         Points whose place is known; the others are projected on the surface of these.
+    section : (n,) array of str
+        Section of each point, as named or as found; empty for the others.
     """
 
     frame: Frame
@@ -57,6 +60,7 @@ class Chart:
     area: Rectangle
     notes: tuple[str, ...]
     placed: NDArray[np.bool_]
+    section: NDArray[np.str_]
 
     @property
     def parametric(self) -> bool:
@@ -79,10 +83,14 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
     kind, reason = _choose_kind(points, settings)
     if kind == "sections":
         return _section_chart(points, reason)
-    frame = best_plane_frame(points) if kind == "best-plane" else map_frame(points, _direction(points, boundary))
+    section = section_labels(points)
+    upright = kind == "best-plane"
+    frame = best_plane_frame(points) if upright else map_frame(points, _direction(section, points, boundary))
     local = frame.to_local(points.xyz)
     places: Sequence[Floats] = [local[:, :2]]
     notes = [reason]
+    if section is not points.section and (section != "").any():
+        notes.append(f"{len(np.unique(section[section != '']))} section lines found in the points' plan")
     if boundary is not None and kind == "map":
         corners = frame.plan(boundary)
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -91,7 +99,7 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
             notes.append(f"{beyond.sum()} points lie beyond the study area; the surface is widened to hold them")
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)
-    return Chart(frame, local[:, :2], local[:, 2], _box(np.concatenate(places)), tuple(notes), placed)
+    return Chart(frame, local[:, :2], local[:, 2], _box(np.concatenate(places)), tuple(notes), placed, section)
 
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, str]:
@@ -129,9 +137,9 @@ def _dip(points: PointSet, plane: Frame) -> float:
     return float(np.degrees(np.arccos(np.clip(plane.axes[2, 2], -1, 1))))
 
 
-def _direction(points: PointSet, boundary: Floats | None) -> float | None:
+def _direction(section: NDArray[np.str_], points: PointSet, boundary: Floats | None) -> float | None:
     """Return the direction of v: along the sections, else along a tilted study area's longer side."""
-    along = section_azimuth(points)
+    along = section_azimuth(points.xyz[:, :2], section)
     if along is not None or boundary is None or len(boundary) < 3:
         return along
     best, angle = np.prod(np.ptp(boundary, axis=0)), None
@@ -157,7 +165,7 @@ def _section_chart(points: PointSet, reason: str) -> Chart:
     frame = replace(map_frame(points), kind="sections")
     local = frame.to_local(points.xyz)
     area = _box(surface.plane[surface.on_line])
-    return Chart(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line)
+    return Chart(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
 
 
 def _box(plane: Floats) -> Rectangle:

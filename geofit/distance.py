@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from geofit.cells import Cells, Place, descend, tabulate
-from geofit.elevation import elevation
+from geofit.elevation import elevation, plan_map
 from geofit.surface import Patch
 
 __all__ = ["Projection", "elevation", "project"]
@@ -84,6 +84,7 @@ def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
     target = np.asarray(xyz, float).reshape(-1, 3)
     surface = _prepare(tuple(patches))
     feet = Place.join([_nearest(surface, target[k : k + CHUNK]) for k in range(0, max(len(target), 1), CHUNK)])
+    feet = _no_farther_than_below(patches, surface.cells, target, feet)
     s, ds, dt, *_ = surface.cells.jets(feet)
     normal = np.cross(ds.T, dt.T) * surface.upwards
     away = target - s.T
@@ -98,6 +99,33 @@ def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
         v=v,
         converged=feet.converged,
     )
+
+
+def _no_farther_than_below(patches: Sequence[Patch], cells: Cells, target: Floats, feet: Place) -> Place:
+    """Walk again from the place above or below a point of a height field, where that is nearer than its foot.
+
+    Between points that pull it up and down within a span, a surface has more feet than the search finds.
+    """
+    found = np.linalg.norm(target - cells.points(feet).T, axis=1)
+    for index, patch in enumerate(patches):
+        mapping = plan_map(patch)
+        if mapping is None:
+            continue
+        u, v = mapping.parameters(target[:, :2].T)
+        u0, u1, v0, v1 = patch.domain
+        over = np.flatnonzero((u >= u0) & (u <= u1) & (v >= v0) & (v <= v1))
+        if not len(over):
+            continue
+        below = cells.locate(index, u[over], v[over])
+        nearer = np.abs(target[over, 2] - cells.points(below)[2]) < found[over] - 1e-12
+        if nearer.any():
+            again = descend(cells, below[nearer], target[over[nearer]].T)
+            cell, local, converged = feet.cell.copy(), feet.local.copy(), feet.converged.copy()
+            cell[over[nearer]], local[:, over[nearer]] = again.cell, again.local
+            converged[over[nearer]] = again.converged
+            feet = Place(cell, local, converged)
+            found[over[nearer]] = np.linalg.norm(target[over[nearer]] - cells.points(again).T, axis=1)
+    return feet
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,6 +7,7 @@
     ├── PointsError              arrays that are no set of points (shape, NaN, infinities)
     ├── SettingsError            a setting out of its range
     ├── FitError                 these points cannot be fitted in this way
+    │   └── ExactnessError       no control net within the cap passes through all of the core's points
     ├── StitchError              patches that do not make one valid shell
     ├── MissingDependencyError   an optional package is not installed; the text holds the install line
     └── Cancelled                the caller's progress function asked to stop
@@ -18,6 +19,7 @@ from __future__ import annotations
 
 __all__ = [
     "Cancelled",
+    "ExactnessError",
     "FitError",
     "GeofitError",
     "InputError",
@@ -87,6 +89,10 @@ class SettingsError(GeofitError, ValueError):
 
 class FitError(GeofitError):
     """The points cannot be fitted in the way that was asked for."""
+
+
+class ExactnessError(FitError):
+    """No control net within the cap passes through all of the core's points."""
 
 
 class StitchError(GeofitError):

@@ -10,10 +10,10 @@ name      energy                                       where it wins
 "rough"   second derivatives + 1/4 first derivatives   rugged horizons, where third derivatives overshoot
 ========= ============================================ ====================================================
 
-At short distances the first term rules, beyond the spacing the second, which calms the surface where no data are. Energy
-and lambda are those of the greatest restricted likelihood, in which the energy is a Gaussian prior of the
-surface (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36): one that is too stiff for the relief, or too loose, makes
-the data unlikely.
+At short distances the first term rules, beyond the spacing the second, which calms the surface where no data
+are. Energy and lambda are those of the greatest restricted likelihood, in which the energy is a Gaussian prior of
+the surface (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36): one that is too stiff for the relief, or too loose,
+makes the data unlikely.
 """
 
 from __future__ import annotations

@@ -19,6 +19,9 @@ __all__ = ["Loft", "backtracking", "loft"]
 
 Floats = NDArray[np.float64]
 
+#: A line is drawn in order if this much shorter than its points joined from side to side.
+ORDERED = 0.95
+
 
 @dataclass(frozen=True, eq=False)
 class Loft:
@@ -39,19 +42,23 @@ def _curves(points: PointSet) -> dict[str, NDArray[np.int64]]:
 def backtracking(points: PointSet, frame: Frame) -> float:
     """Return the share of the sections' length in the frame's plane that runs backwards.
 
-    Each section's points are taken in their order and projected on the line between its ends' halves; zero
-    for sections that go one way, whatever their direction.
+    Each section's points are taken in their order and projected on their principal direction in the plane. Zero
+    for sections that go one way, whatever their direction, and for those whose points stand in no order along a
+    line: joined in their order they are longer than joined from one side to the other.
     """
     back = total = 0.0
     for index in _curves(points).values():
-        plane = frame.to_local(points.xyz[index])[:, :2]
+        xyz = points.xyz[index]
+        plane = frame.to_local(xyz)[:, :2]
         centred = plane - plane.mean(axis=0)
-        direction = np.linalg.svd(centred, full_matrices=False)[2][0]
-        steps = np.diff(centred @ direction)
+        along = centred @ np.linalg.svd(centred, full_matrices=False)[2][0]
+        drawn, sorted_ = _chords(xyz)[-1], _chords(xyz[np.argsort(along, kind="stable")])[-1]
+        steps = np.diff(along)
         forward, backward = steps[steps > 0].sum(), -steps[steps < 0].sum()
-        back += min(forward, backward)
+        if drawn < ORDERED * sorted_:
+            back += min(forward, backward)
         # A steep section has next to no length in plan: measure against its length in space.
-        total += max(forward + backward, 0.2 * np.linalg.norm(np.diff(points.xyz[index], axis=0), axis=1).sum())
+        total += max(forward + backward, 0.2 * drawn)
     return back / total if total > 0 else 0.0
 
 

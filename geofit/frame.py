@@ -46,23 +46,23 @@ class Frame:
         return (xy - self.origin[:2]) @ self.axes[:2, :2].T
 
 
-def section_azimuth(points: PointSet) -> float | None:
+def section_azimuth(plan: Floats, section: NDArray[np.str_]) -> float | None:
     """Return the direction that most sections run in, radians anticlockwise from east, or None.
 
     The axial mean of the sections' principal directions, each weighted by its number of points; None where
     no section has three points in a line, or the sections run every way.
     """
     doubled, total = 0j, 0.0
-    for name in np.unique(points.section[points.section != ""]):
-        plan = points.xyz[points.section == name, :2]
-        if len(plan) < 3:
+    for name in np.unique(section[section != ""]):
+        line = plan[section == name]
+        if len(line) < 3:
             continue
-        centred = plan - plan.mean(axis=0)
+        centred = line - line.mean(axis=0)
         _, extent, directions = np.linalg.svd(centred, full_matrices=False)
         if extent[0] > 0 and extent[1] < 0.2 * extent[0]:
             angle = np.arctan2(directions[0, 1], directions[0, 0])
-            doubled += len(plan) * np.exp(2j * angle)
-            total += len(plan)
+            doubled += len(line) * np.exp(2j * angle)
+            total += len(line)
     if total == 0 or abs(doubled) < 0.3 * total:
         return None
     return float(np.angle(doubled) / 2)

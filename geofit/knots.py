@@ -47,7 +47,7 @@ def pair_sizes(plane: Floats, pairs: Ints, axis: int, factor: float) -> Floats:
     return np.column_stack([low, low + gap[mine, axis], factor * gap[mine, axis]])
 
 
-def graded_breaks(required: ArrayLike, largest: float, sizes: Floats, smallest: float = 0.0) -> Floats:
+def graded_breaks(required: ArrayLike, largest: float, sizes: Floats) -> Floats:
     """Return ascending breaks through the ``required`` ones, their spans following a size function.
 
     Parameters
@@ -58,8 +58,6 @@ def graded_breaks(required: ArrayLike, largest: float, sizes: Floats, smallest: 
         Longest span.
     sizes : (m, 3) array
         Rows (low, high, size): the spans between low and high are at most ``size`` long.
-    smallest : float
-        No span is asked to be shorter than this.
     """
     required = np.unique(np.asarray(required, float))
     x = np.linspace(required[0], required[-1], _SAMPLES + 1)
@@ -69,7 +67,6 @@ def graded_breaks(required: ArrayLike, largest: float, sizes: Floats, smallest: 
     for low, high, limit in sizes:
         first, last = np.searchsorted(middle, (low, high))
         size[max(first - 1, 0) : last + 1] = np.minimum(size[max(first - 1, 0) : last + 1], limit)
-    size = np.maximum(size, smallest)
     for i in range(1, _SAMPLES):
         size[i] = min(size[i], size[i - 1] + GROWTH * step)
     for i in range(_SAMPLES - 2, -1, -1):

@@ -1,7 +1,7 @@
 """The control net: from points on a chart to the coefficients of one tensor-product surface.
 
-The steps: choose the regional field on a coarse space; lay knots that follow the core's points; solve the field
-there; let the core pass through its points; approximate the periphery with what it borrows from the core.
+Here stand what every fit needs (the points in units, the spaces, the caps) and the approximation: all points, or
+those beside a core, whose net :mod:`geofit.core` makes.
 """
 
 from __future__ import annotations
@@ -16,24 +16,34 @@ from geofit import bspline
 from geofit.assemble import multiply_knots
 from geofit.chart import Chart
 from geofit.field import Field, cell_weights, choose, energy_band, plane_trend, smooth
-from geofit.knots import graded_breaks, neighbour_pairs, pair_sizes
 from geofit.partition import Split
 from geofit.periphery import approximate, borrowed
 from geofit.points import PointSet
 from geofit.settings import FitSettings
-from geofit.skin import Lines, least_change, ruled, section_lines, separate
 from geofit.tensor import CELLWISE, TensorSpace, values_at
 
-__all__ = ["Net", "approximate_all", "fit_with_core"]
+__all__ = [
+    "COARSE",
+    "EVEN",
+    "Data",
+    "Net",
+    "Periphery",
+    "approximate_all",
+    "cap_for",
+    "choose_field",
+    "degree_for",
+    "even_space",
+    "gather",
+    "in_patches",
+    "span_for",
+]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
 Stage = Callable[[str, float], None]
 
-#: Longest span beside a core, and of a surface without one, in units of the spacing of the sparse points.
-LONGEST, EVEN = 0.8, 0.6
-#: Spans between neighbours of one section, and of neighbouring sections, as a share of their distance.
-ALONG, ACROSS = 1.8, 1.0
+#: Longest span of a surface without a core, in units of the spacing of the points.
+EVEN = 0.6
 #: Shortest span that is still halved for a point outside its tolerance.
 FINEST = 0.05
 #: Control points of the space on which the field is chosen.
@@ -62,7 +72,7 @@ class Net:
 
 
 @dataclass(frozen=True, eq=False)
-class _Data:
+class Data:
     """The points that the fit honours, in units, about their trend."""
 
     plane: Floats
@@ -81,7 +91,8 @@ class _Data:
         return trend
 
 
-def _data(points: PointSet, chart: Chart, kept: NDArray[np.bool_], split: Split | None) -> _Data:
+def gather(points: PointSet, chart: Chart, kept: NDArray[np.bool_], split: Split | None) -> Data:
+    """Return the points that the fit honours, in units of the spacing of the sparse ones, about their trend."""
     area = chart.area
     size, n = (area[1] - area[0]) * (area[3] - area[2]), int(kept.sum())
     sparse = int((~split.inside & kept).sum()) if split is not None else 0
@@ -93,15 +104,15 @@ def _data(points: PointSet, chart: Chart, kept: NDArray[np.bool_], split: Split 
     trend = plane_trend(plane, value, np.ones(len(plane)))
     base = np.column_stack([np.ones(len(plane)), plane]) @ trend
     scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
-    return _Data(plane, value - base, points.accuracy[kept], scaled, unit, trend)
+    return Data(plane, value - base, points.accuracy[kept], scaled, unit, trend)
 
 
-def _degree(n: int) -> int:
+def degree_for(n: int) -> int:
     """Fewer than 16 points cannot hold a bicubic patch."""
     return 3 if n >= 16 else 2 if n >= 6 else 1
 
 
-def _uniform(area: Rectangle, span: float, degree: int) -> TensorSpace:
+def even_space(area: Rectangle, span: float, degree: int) -> TensorSpace:
     """Return a space of even spans no longer than ``span``."""
     counts = [max(int(np.ceil((area[k + 1] - area[k]) / span - 1e-9)), 1) for k in (0, 2)]
     return TensorSpace(
@@ -111,11 +122,12 @@ def _uniform(area: Rectangle, span: float, degree: int) -> TensorSpace:
     )
 
 
-def _cap(settings: FitSettings, n: int) -> int:
+def cap_for(settings: FitSettings, n: int) -> int:
+    """Return the cap of the number of control points."""
     return settings.max_control_points or int(np.clip(10 * n, 400, 60_000))
 
 
-def _in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpace) -> int:
+def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpace) -> int:
     """Return the control points of all patches: each seam adds knots, and a row that both sides count."""
     if core is None:
         return shape[0] * shape[1]
@@ -126,13 +138,14 @@ def _in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpa
     return rows[0] * rows[1]
 
 
-def _span_for(area: Rectangle, control_points: float, degree: int) -> float:
+def span_for(area: Rectangle, control_points: float, degree: int) -> float:
     """Return the span at which an even space has about so many control points."""
     side = max(np.sqrt(control_points) - degree, 1.0)
     return float(np.sqrt((area[1] - area[0]) * (area[3] - area[2])) / side)
 
 
-def _choose(data: _Data, space: TensorSpace, settings: FitSettings) -> Field:
+def choose_field(data: Data, space: TensorSpace, settings: FitSettings) -> Field:
+    """Choose the regional field on a space (see :func:`geofit.field.choose`)."""
     weight = cell_weights(space, data.plane, data.accuracy)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
     return choose(space, data.plane, data.value, weight, given)
@@ -142,31 +155,36 @@ def approximate_all(
     points: PointSet, chart: Chart, kept: NDArray[np.bool_], settings: FitSettings, stage: Stage
 ) -> Net:
     """Fit a surface without a core: the smoothest one within the interior tolerance, as far as knots allow."""
-    data = _data(points, chart, kept, None)
-    n, degree = len(data.plane), _degree(len(data.plane))
-    most = _cap(settings, n)
+    data = gather(points, chart, kept, None)
+    n, degree = len(data.plane), degree_for(len(data.plane))
+    most = cap_for(settings, n)
     stage("field", 0.25)
     if n >= CELLWISE:
         return _approximate_many(data, settings, most)
-    space = _uniform(data.area, max(EVEN, _span_for(data.area, most, degree)), degree)
-    field = _choose(data, space, settings)
+    space = even_space(data.area, max(EVEN, span_for(data.area, most, degree)), degree)
+    field = choose_field(data, space, settings)
     stage("periphery", 0.5)
     start = np.zeros((space.size, *data.value.shape[1:]))
-    periphery = _Periphery(data, np.ones(n, bool), None, field, settings, most)
+    periphery = Periphery(data, np.ones(n, bool), None, field, settings, most, refit=True)
     space, coefficients, frozen, rounds, notes = periphery.fit(space, start)
     return Net(space, coefficients + data.over_trend(space), frozen, None, None, data.unit, field, rounds, notes)
 
 
 @dataclass(frozen=True, eq=False)
-class _Periphery:
-    """The points to approximate, beside the core that lends its control points."""
+class Periphery:
+    """The points to approximate, beside the core that lends its control points.
 
-    data: _Data
+    Beside a core the regional field's fit stands already, and its core's edge is the patch's edge. ``refit``
+    solves for it anew: without a core, or where a break is allowed at the seams.
+    """
+
+    data: Data
     outer: NDArray[np.bool_]
     core: Rectangle | None
     field: Field
     settings: FitSettings
     most: int
+    refit: bool
 
     def fit(
         self, space: TensorSpace, start: Floats
@@ -180,7 +198,7 @@ class _Periphery:
         total = 0
         while True:
             frozen = np.zeros(space.size, bool) if self.core is None else borrowed(space, self.core).ravel()
-            energy = self.field.smoothing * energy_band(space, self.field.energy)
+            energy = self.field.smoothing * energy_band(space, self.field.energy) if self.refit else None
             weight = cell_weights(space, data.plane, data.accuracy)[self.outer]
             result = approximate(space, energy, start, frozen, plane, value, weight, tolerance, rounds)
             total += result.rounds
@@ -214,7 +232,7 @@ class _Periphery:
             _, axis, middle = max(choices)
             if middle not in new[axis]:
                 counts[axis] += 1
-                if _in_patches((counts[0], counts[1]), self.core, space) > self.most:
+                if in_patches((counts[0], counts[1]), self.core, space) > self.most:
                     break
                 new[axis][middle] = 1
         return new
@@ -232,7 +250,7 @@ class _Periphery:
         return (f"interior tolerance {tolerance:g} m not met at {count} points, worst {excess.max():.3f} m: {reason}",)
 
 
-def _approximate_many(data: _Data, settings: FitSettings, most: int) -> Net:
+def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:
     """Approximate more points than can be pulled one by one: refine while the fit gains by it.
 
     Energy and lambda, which do not depend on the number of points, are chosen on a part of them.
@@ -241,13 +259,13 @@ def _approximate_many(data: _Data, settings: FitSettings, most: int) -> Net:
     part = slice(None, None, max(n // PART, 1))
     weight = np.ones(n)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
-    coarse = _uniform(data.area, _span_for(data.area, LEVELS[0], 3), 3)
+    coarse = even_space(data.area, span_for(data.area, LEVELS[0], 3), 3)
     field = choose(coarse, data.plane[part], data.value[part], weight[part], given)
     best: tuple[float, TensorSpace, Floats] | None = None
     for count in LEVELS:
         if best is not None and count > min(most, n / 3):
             break
-        space = _uniform(data.area, _span_for(data.area, count, 3), 3)
+        space = even_space(data.area, span_for(data.area, count, 3), 3)
         coefficients, _ = smooth(space, field, data.plane, data.value, weight)
         misfit = data.value - values_at(space, coefficients, data.plane)
         score = float(np.sqrt(np.square(misfit).sum() * n)) / max(n - space.size, 1)
@@ -261,160 +279,3 @@ def _approximate_many(data: _Data, settings: FitSettings, most: int) -> Net:
     free = np.zeros(space.size, bool)
     total = coefficients + data.over_trend(space)
     return Net(space, total, free, None, None, data.unit, field, 1, (note,))
-
-
-def fit_with_core(
-    points: PointSet,
-    chart: Chart,
-    split: Split,
-    kept: NDArray[np.bool_],
-    settings: FitSettings,
-    stage: Stage,
-) -> Net:
-    """Fit a surface whose core passes through its points (paper, sec. 3.2)."""
-    assert split.core is not None
-    data = _data(points, chart, kept, split)
-    inside = split.inside[kept]
-    core = tuple(x / data.unit for x in split.core)
-    core = (core[0], core[1], core[2], core[3])
-    degree = _degree(len(data.plane))
-    most = _cap(settings, len(data.plane))
-    stage("field", 0.25)
-    coarse = _uniform(data.area, max(EVEN, _span_for(data.area, min(COARSE, most), degree)), degree)
-    field = _choose(data, coarse, settings)
-    stage("core", 0.4)
-    section = points.section[kept][inside]
-    lines = section_lines(data.plane[inside], section, 0.5 * (core[1] - core[0]))
-    linear = settings.across == "linear" and degree == 3
-    notes: tuple[str, ...] = ()
-    if linear and not lines.straight:
-        linear = False
-        notes = ("across='linear' needs at least two straight, named sections; the core is cubic across",)
-    breaks = _breaks(data, core, inside, field, coarse, lines, linear, most, settings)
-    knots = [bspline.clamped_knots(along, degree) for along in breaks]
-    space = TensorSpace(knots[0], knots[1], degree)
-    weight = cell_weights(space, data.plane, data.accuracy)
-    coefficients, _ = smooth(space, field, data.plane, data.value, weight)
-    space, coefficients, rule = _open_seams(space, coefficients, core, settings, linear)
-    coefficients = _skin(space, coefficients, core, data, inside, rule)
-    frozen = borrowed(space, core).ravel()
-    stage("periphery", 0.6)
-    outer = ~inside
-    if not outer.any() or frozen.all():
-        total = coefficients + data.over_trend(space)
-        cut = None if not outer.any() else core
-        return Net(space, total, frozen, cut, rule, data.unit, field, 0, notes)
-    periphery = _Periphery(data, outer, core, field, settings, most)
-    space, coefficients, frozen, rounds, more = periphery.fit(space, coefficients)
-    total = coefficients + data.over_trend(space)
-    return Net(space, total, frozen, core, rule, data.unit, field, rounds, notes + more)
-
-
-def _breaks(
-    data: _Data,
-    core: Rectangle,
-    inside: NDArray[np.bool_],
-    field: Field,
-    coarse: TensorSpace,
-    lines: Lines,
-    linear: bool,
-    most: int,
-    settings: FitSettings,
-) -> tuple[Floats, Floats]:
-    """Lay breaks that follow the core's points, and split them where two points pull one control point apart."""
-    plane, degree = data.plane[inside], coarse.degree
-    pairs = neighbour_pairs(plane)
-    area = data.area
-    required_u = np.concatenate([[area[0], core[0], core[1], area[1]], lines.u])
-    required_u = required_u[(required_u >= area[0]) & (required_u <= area[1])]
-    if linear:
-        required_u = np.concatenate([required_u, plane[:, 0]])
-    required_u = _apart(required_u, (area[0], core[0], core[1], area[1]), 1e-6)
-    required_v = np.array([area[2], core[2], core[3], area[3]])
-    sizes_u = np.empty((0, 3)) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
-    along = ALONG if lines.straight else ACROSS
-    sizes_v = pair_sizes(plane, pairs, 1, along)
-    weight = cell_weights(coarse, data.plane, data.accuracy)
-    trial, _ = smooth(coarse, field, data.plane, data.value, weight)
-    misfit = data.value[inside] - coarse.matrix(plane) @ trial
-    stretch, smallest = 1.0, 0.0
-    while True:
-        scale = np.array([1.0, 1.0, stretch])
-        breaks_u = graded_breaks(required_u, LONGEST * stretch, sizes_u * scale, smallest)
-        breaks_v = graded_breaks(required_v, LONGEST * stretch, sizes_v * scale, smallest)
-        knots = [bspline.clamped_knots(along, degree) for along in (breaks_u, breaks_v)]
-        space = TensorSpace(knots[0], knots[1], degree)
-        if _in_patches(space.shape, core, space) <= 0.9 * most:
-            break
-        stretch *= 1.15
-    if linear:
-        return breaks_u, breaks_v
-    return separate(breaks_u, breaks_v, plane, misfit, degree=degree, most=most, rounds=max(settings.max_iterations, 1))
-
-
-def _apart(values: Floats, fixed: tuple[float, ...], least: float) -> Floats:
-    """Return ascending values without those that all but repeat a fixed one or each other."""
-    result = np.unique(fixed)
-    for value in np.unique(values):
-        if np.abs(result - value).min() > least:
-            result = np.sort(np.append(result, value))
-    return result
-
-
-def _open_seams(
-    space: TensorSpace,
-    coefficients: Floats,
-    core: Rectangle,
-    settings: FitSettings,
-    linear: bool,
-) -> tuple[TensorSpace, Floats, Floats | None]:
-    """Raise the knots at the seams as far as the joint asks, and at the lines of a ruled core.
-
-    Simple knots join patches with one tangent plane and one curvature; a ruled core, which has none across,
-    needs a double knot to join by its tangent plane; a full knot allows a break.
-    """
-    p = space.degree
-    inner_u = [x for x in core[:2] if space.knots_u[0] < x < space.knots_u[-1]]
-    inner_v = [x for x in core[2:] if space.knots_v[0] < x < space.knots_v[-1]]
-    broken = settings.seam == "position"
-    at_u = dict.fromkeys(inner_u, p if broken else p - 1 if linear else 1)
-    at_v = dict.fromkeys(inner_v, p if broken else 1)
-    rule = None
-    if linear:
-        knots = np.unique(space.knots_u)
-        rule = knots[(knots >= core[0]) & (knots <= core[1])]
-        at_u.update(dict.fromkeys(rule[1:-1].tolist(), p))
-    space, coefficients = multiply_knots(space, coefficients, at_u, at_v)
-    return space, coefficients, rule
-
-
-def _skin(
-    space: TensorSpace,
-    coefficients: Floats,
-    core: Rectangle,
-    data: _Data,
-    inside: NDArray[np.bool_],
-    rule: Floats | None,
-) -> Floats:
-    """Let the surface pass through the core's points (eq. 2)."""
-    matrix = space.matrix(data.plane[inside])
-    value = data.value[inside]
-    if rule is None:
-        return coefficients + least_change(matrix, value - matrix @ coefficients)
-    # The unknowns are the section curves; the rows of control points between them lie on straight lines.
-    rows = np.flatnonzero(borrowed(space, core).any(axis=1))
-    nv = space.shape[1]
-    net = coefficients.reshape(space.shape)
-    abscissa = bspline.greville(space.knots_u, space.degree)[rows]
-    curves = np.array([np.interp(line, abscissa, np.arange(len(rows))) for line in rule])
-    low = np.floor(curves).astype(int).clip(0, len(rows) - 2)
-    share = (curves - low)[:, None]
-    start = ((1 - share) * net[rows[low]] + share * net[rows[low + 1]]).ravel()
-    spread = ruled(space, rule, rows)
-    columns = (rows[:, None] * nv + np.arange(nv)).ravel()
-    acting = matrix[:, columns] @ spread
-    start = start + least_change(acting, value - acting @ start)
-    result = coefficients.copy()
-    held = borrowed(space, core)[rows].ravel()
-    result[columns[held]] = (spread @ start)[held]
-    return result

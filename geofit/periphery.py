@@ -24,7 +24,7 @@ __all__ = ["Approximation", "approximate", "borrowed"]
 Floats = NDArray[np.float64]
 
 #: Pull towards the start where a break leaves control points free, relative to the energy's diagonal.
-_HOLD = 1e-7
+_HOLD = 1e-3
 #: Where a pulled point comes to lie, as a share of the tolerance.
 RIM = 0.9
 
@@ -51,7 +51,7 @@ def borrowed(space: TensorSpace, core: tuple[float, float, float, float]) -> NDA
 
 def approximate(
     space: TensorSpace,
-    energy: Floats,
+    energy: Floats | None,
     start: Floats,
     frozen: NDArray[np.bool_],
     plane: Floats,
@@ -60,14 +60,14 @@ def approximate(
     tolerance: float,
     rounds: int,
 ) -> Approximation:
-    """Fit the control points that are not frozen, then bring every point within the tolerance.
+    """Fit the control points that are not frozen where asked to, then bring every point within the tolerance.
 
     Parameters
     ----------
     space : TensorSpace
         The space of the whole surface.
-    energy : (bandwidth + 1, size) array
-        Band of lambda times the energy.
+    energy : (bandwidth + 1, size) array or None
+        Band of lambda times the energy; None: the start is the regional field's fit already.
     start : (size,) or (size, k) array
         Coefficients to start from; those that are frozen stay.
     frozen : (size,) array of bool
@@ -84,7 +84,7 @@ def approximate(
         Cap of the number of rounds; with none, points outside the tolerance stay there.
     """
     matrix = space.matrix(plane)
-    best = _solve(space, energy, start, frozen, plane, height, weight)
+    best = start if energy is None else _solve(space, energy, start, frozen, plane, height, weight)
     misfit = height - matrix @ best
     held = np.zeros(len(plane), bool)
     done = 0

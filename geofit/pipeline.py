@@ -16,9 +16,10 @@ from geofit.assemble import patches_of
 from geofit.chart import Chart, choose_chart
 from geofit.check import check
 from geofit.conflicts import settle
+from geofit.core import fit_with_core
 from geofit.distance import project
-from geofit.errors import FitError, PointsError
-from geofit.net import Net, approximate_all, fit_with_core
+from geofit.errors import ExactnessError, FitError, PointsError
+from geofit.net import Net, approximate_all
 from geofit.partition import Split, split_all, split_auto, split_none, split_rectangle
 from geofit.points import PointSet
 from geofit.progress import Progress, tell
@@ -113,7 +114,14 @@ def _fit_horizon(
     job = _Job(points, settings, corners, chart, split, kept, conflicts, name)
 
     clock.stage("fit", 0.2)
-    net = job.fit(kept & chart.placed, clock.stage)
+    try:
+        net = job.fit(kept & chart.placed, clock.stage)
+    except ExactnessError as error:
+        if settings.core != "auto":
+            raise
+        inside = np.zeros(len(points), bool)
+        job = replace(job, split=Split(None, inside, f"{split.reason}, but all points are approximated: {error}"))
+        net = job.fit(kept & chart.placed, clock.stage)
     if not chart.placed.all():
         job, net = _correct(job, net, clock)
 

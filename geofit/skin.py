@@ -14,6 +14,7 @@ between them.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +23,7 @@ from scipy.sparse import csr_array, eye_array, kron
 from scipy.sparse.linalg import splu
 
 from geofit import bspline
-from geofit.errors import FitError
+from geofit.errors import ExactnessError
 from geofit.knots import neighbour_pairs
 from geofit.tensor import TensorSpace
 
@@ -33,9 +34,11 @@ Ints = NDArray[np.int64]
 
 #: How many times the largest misfit of a core point the change of a control point may be.
 OVERSHOOT = 10.0
+#: The same, beyond which the surface is not worth having.
+SWING = 100.0
 #: Largest distance at which the linear algebra may leave a core point from the surface, metres.
 EXACT = 1e-8
-#: Damping of changes that may leave a misfit, relative to the Gram matrix's largest diagonal.
+#: Damping of changes that may leave a misfit, relative to what a point's own control points weigh.
 DAMPING = 0.01
 
 
@@ -82,7 +85,7 @@ def least_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | No
 
     Raises
     ------
-    FitError
+    ExactnessError
         If the points cannot all be met: fewer control points than points near some place.
     """
     acting = matrix if free is None else matrix * free.astype(float)
@@ -91,12 +94,15 @@ def least_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | No
     try:
         solver = splu(gram, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except RuntimeError:
-        raise FitError(_unmet(len(misfit), np.inf)) from None
+        raise ExactnessError(_unmet(f"the system of its {len(misfit)} points is singular")) from None
     change = acting.T @ solver.solve(misfit)
     change += acting.T @ solver.solve(misfit - acting @ change)
     left = float(np.abs(misfit - acting @ change).max(initial=0.0))
     if not left <= EXACT:
-        raise FitError(_unmet(len(misfit), left))
+        raise ExactnessError(_unmet(f"not all {len(misfit)} points can be met exactly ({left:.1e} m is left)"))
+    swing = float(np.abs(change).max(initial=0.0))
+    if swing > SWING * max(float(np.abs(misfit).max(initial=0.0)), 1e-3):
+        raise ExactnessError(_unmet(f"meeting all {len(misfit)} points would swing the surface by {swing:.3g} m"))
     return np.asarray(change)
 
 
@@ -104,25 +110,31 @@ def damped_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_]) ->
     """Return a small change of the free control points that takes most of a misfit away.
 
     Unlike :func:`least_change` it does not force points apart that share their control points: what they
-    contradict each other by is left. Parameters as there.
+    contradict each other by is left, and so is what only the fringes of the free control points could mend.
+    Parameters as there.
     """
     acting = csr_array(matrix * free.astype(float))
     gram = (acting @ acting.T).tocsc()
-    diagonal = gram.diagonal()
-    gram.setdiag(diagonal + DAMPING * max(float(diagonal.max(initial=0.0)), 1e-12))
+    whole = float(matrix.power(2).sum(axis=1).max())
+    gram.setdiag(gram.diagonal() + DAMPING * whole)
     return np.asarray(acting.T @ splu(gram).solve(misfit))
 
 
-def _unmet(points: int, left: float) -> str:
+def _unmet(what: str) -> str:
     return (
-        f"The control points cannot meet all {points} points exactly (misfit {left:.1e} m is left). "
-        "Points nearer to each other than the knots are too many for the cap: raise max_control_points, raise "
-        "conflict_distance, or approximate (core='none')."
+        f"The core cannot be interpolated: {what}. Points lie nearer to each other than the allowed control points. "
+        "Raise max_control_points or conflict_distance, or approximate (core='none')."
     )
 
 
 def separate(
-    breaks_u: Floats, breaks_v: Floats, plane: Floats, misfit: Floats, *, degree: int, most: int, rounds: int
+    breaks_u: Floats,
+    breaks_v: Floats,
+    plane: Floats,
+    misfit: Floats,
+    degree: int,
+    allowed: Callable[[tuple[int, int]], bool],
+    rounds: int,
 ) -> tuple[Floats, Floats]:
     """Add knots until no control point has to move far to meet two neighbouring points.
 
@@ -136,8 +148,8 @@ def separate(
         Distance of the field from them, metres.
     degree : int
         Degree of the splines.
-    most : int
-        Cap of the number of control points.
+    allowed : callable
+        Whether a net of so many control points (in u, in v) stays below the cap.
     rounds : int
         Cap of the number of rounds.
     """
@@ -150,21 +162,23 @@ def separate(
         if not len(strained):
             break
         new_u, new_v = _between(pairs, strained, plane, breaks_u, breaks_v)
-        grown = (space.shape[0] + len(new_u)) * (space.shape[1] + len(new_v))
-        if grown > most or grown == space.size:
+        grown = (space.shape[0] + len(new_u), space.shape[1] + len(new_v))
+        if grown == space.shape or not allowed(grown):
             break
         breaks_u, breaks_v = np.union1d(breaks_u, new_u), np.union1d(breaks_v, new_v)
     return breaks_u, breaks_v
 
 
 def _strain(space: TensorSpace, plane: Floats, misfit: Floats) -> Floats:
-    """Return how far the control points near each point must move to meet all points."""
+    """Return how far the control points near each point must move to meet all points; inf where they cannot."""
     matrix = space.matrix(plane)
     gram = (matrix @ matrix.T).tocsc()
     gram.setdiag(gram.diagonal() * (1 + 1e-10))
-    change = np.abs(matrix.T @ splu(gram).solve(misfit)).reshape(space.size, -1).max(axis=1)
+    change = matrix.T @ splu(gram).solve(misfit)
     index, _ = space.rows(plane)
-    return np.asarray(change[index].max(axis=1))
+    moved = np.abs(change).reshape(space.size, -1).max(axis=1)[index].max(axis=1)
+    left = np.abs(misfit - matrix @ change).reshape(len(plane), -1).max(axis=1)
+    return np.where(left > 1e-4 * np.abs(misfit).max(), np.inf, moved)
 
 
 def _between(pairs: Ints, strained: Ints, plane: Floats, breaks_u: Floats, breaks_v: Floats) -> tuple[Floats, Floats]:
@@ -180,6 +194,8 @@ def _between(pairs: Ints, strained: Ints, plane: Floats, breaks_u: Floats, break
     chosen_u, chosen_v = [], []
     for point in strained:
         mine = np.flatnonzero((pairs[tight] == point).any(axis=1))
+        if not len(mine):
+            continue
         k = mine[np.argmin(ratio[mine])]
         if along_v[k] and near_v[k] > 0.3 * gap[k, 1]:
             chosen_v.append(middle[k, 1])

@@ -27,6 +27,8 @@ Ints = NDArray[np.int64]
 
 #: From this many points on, normal equations are summed by cells instead of by points.
 CELLWISE = 20_000
+#: Added to a unit diagonal where rounding has made a system indefinite: a pull to the trend far below any noise.
+RIDGES = (0.0, 1e-12, 1e-10)
 _CHUNK = 65_536
 
 
@@ -193,13 +195,17 @@ class Factor:
         size = band.shape[1]
         for k in range(len(band)):
             scaled[k, : size - k] *= self._scale[k:]
-        try:
-            self._band = cholesky_banded(scaled, lower=True, check_finite=False, overwrite_ab=True)
-        except LinAlgError:
-            raise FitError(
-                "The system of the fit is not positive definite: too few points, or points that contradict "
-                "each other, leave control points free. Use fewer knots, or a larger smoothing."
-            ) from None
+        for ridge in RIDGES:
+            scaled[0] += ridge
+            try:
+                self._band = cholesky_banded(scaled, lower=True, check_finite=False)
+                return
+            except LinAlgError:
+                continue
+        raise FitError(
+            "The system of the fit is not positive definite: too few points, or points that contradict "
+            "each other, leave control points free. Use fewer knots, or a larger smoothing."
+        )
 
     def solve(self, right: Floats) -> Floats:
         """Solve for one (size,) or several (size, k) right-hand sides."""

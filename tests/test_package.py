@@ -23,7 +23,7 @@ FLOORS = (
     ("surface",),
     ("cells", "distance", "elevation"),
     ("check", "occ", "seams", "storage", "trim"),
-    ("adjust", "assemble", "chart", "conflicts", "field", "fold", "knots", "net", "partition", "periphery", "skin"),
+    ("adjust", "assemble", "chart", "conflicts", "core", "field", "fold", "knots", "net", "partition", "periphery", "sections", "skin"),
     ("stitch",),
     ("pipeline",),
     ("io", "sample"),
