@@ -56,7 +56,11 @@ def equal_accuracy(surface: HorizonSurface, tolerance: float) -> Storage:
     turned = (samples - samples.mean(axis=0)) @ _axes(normal).T
     plan, unique = np.unique(np.round(turned[:, :2], 6), axis=0, return_index=True)
     height = turned[unique, 2]
-    return Storage(tolerance, _tin(plan, height, tolerance), _grid(plan, height, tolerance))
+    from threadpoolctl import threadpool_limits
+
+    # Qhull hands LAPACK one 2 x 2 matrix a triangle: starting threads for each costs a hundred times the work.
+    with threadpool_limits(limits=1):
+        return Storage(tolerance, _tin(plan, height, tolerance), _grid(plan, height, tolerance))
 
 
 def _sample(patches: tuple[Patch, ...]) -> tuple[Floats, Floats]:
