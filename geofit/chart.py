@@ -132,6 +132,10 @@ def _dip(points: PointSet, plane: Frame) -> float:
     extent, axes = np.linalg.svd(xyz[:, :2], full_matrices=False)[1:]
     if extent[1] < 0.02 * extent[0]:
         along = xyz[:, :2] @ axes[0]
+        rise = np.abs(np.diff(xyz[np.argsort(along, kind="stable"), 2])).sum()
+        if rise > max(4.0, len(xyz) / 6) * np.ptp(xyz[:, 2]):
+            # Up and down from point to point: scattered over a vertical plane, no section of a horizon.
+            return 90.0
         steep = np.linalg.svd(np.column_stack([along, xyz[:, 2]]), full_matrices=False)[2][0]
         return float(np.degrees(np.arctan2(abs(steep[1]), abs(steep[0]))))
     return float(np.degrees(np.arccos(np.clip(plane.axes[2, 2], -1, 1))))

@@ -20,7 +20,6 @@ Floats = NDArray[np.float64]
 CORE_LIMIT, GAP_LIMIT, ANGLE_LIMIT = 1e-6, 1e-6, 0.1
 #: How far beyond the range of the data an elevation may go, as a share of that range.
 RANGE_SHARE = 0.5
-_LATTICE = 40
 
 
 def sigma(residuals: Floats) -> float:
@@ -132,8 +131,7 @@ def _shape_checks(surface: HorizonSurface) -> list[Check]:
     low, high = np.inf, -np.inf
     normals = []
     for patch in surface.patches:
-        u0, u1, v0, v1 = patch.domain
-        u, v = np.meshgrid(np.linspace(u0, u1, _LATTICE + 1), np.linspace(v0, v1, _LATTICE + 1), indexing="ij")
+        u, v = np.meshgrid(_lattice(patch.knots_u), _lattice(patch.knots_v), indexing="ij")
         su, sv = patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1)
         lengths = np.linalg.norm(su, axis=-1) * np.linalg.norm(sv, axis=-1)
         normals.append((np.cross(su, sv) / np.maximum(lengths, 1e-300)[..., None]).reshape(-1, 3))
@@ -154,3 +152,9 @@ def _shape_checks(surface: HorizonSurface) -> list[Check]:
         text = f"elevations reach {beyond:.1f} m beyond the data's range"
         checks.append(Check("elevation range", beyond <= limit, beyond, limit, "m", text))
     return checks
+
+
+def _lattice(knots: Floats) -> Floats:
+    """Return the ends and the middle of every span: no wiggle of one control point falls between them."""
+    breaks = np.unique(knots)
+    return np.sort(np.concatenate([breaks, (breaks[1:] + breaks[:-1]) / 2]))

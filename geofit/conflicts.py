@@ -62,7 +62,12 @@ def _describe(points: PointSet, winner: int, loser: int, difference: float) -> C
     if difference == 0:
         text = f"{names[1]} repeats {names[0]}"
     else:
-        stated = not np.isnan(points.accuracy[[winner, loser]]).all()
-        reason = "the better stated accuracy" if stated else "the source nearer to the rock, or the first"
+        stated = np.where(np.isnan(points.accuracy), np.inf, points.accuracy)
+        if stated[winner] < stated[loser]:
+            reason = "the better stated accuracy"
+        elif _TRUST.get(points.kind[winner], 3) < _TRUST.get(points.kind[loser], 3):
+            reason = "the source nearer to the rock"
+        else:
+            reason = "the first"
         text = f"{names[1]} differs by {difference:+.3f} m from {names[0]} at one place; kept: {reason}"
     return Conflict(winner, loser, difference, text)

@@ -26,16 +26,14 @@ from geofit.net import (
     cap_for,
     choose_field,
     degree_for,
-    even_space,
     gather,
     in_patches,
-    span_for,
 )
 from geofit.partition import Split
 from geofit.periphery import borrowed
 from geofit.points import PointSet
 from geofit.settings import FitSettings
-from geofit.skin import Lines, least_change, ruled, section_lines, separate
+from geofit.skin import Lines, across_curves, least_change, ruled, section_lines, separate
 from geofit.tensor import TensorSpace
 
 __all__ = ["fit_with_core"]
@@ -73,7 +71,7 @@ def fit_with_core(
     core = (scaled[0], scaled[1], scaled[2], scaled[3])
     degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane))
     stage("field", 0.25)
-    coarse = even_space(data.area, max(EVEN, span_for(data.area, min(COARSE, most), degree)), degree)
+    coarse = _coarse_space(data, core, inside, degree, min(COARSE, most))
     field = choose_field(data, coarse, settings)
     stage("core", 0.4)
     lines = section_lines(data.plane[inside], chart.section[kept][inside], 0.5 * (core[1] - core[0]))
@@ -96,7 +94,9 @@ def fit_with_core(
         except ExactnessError:
             rule = None
             notes = ("a core linear across its sections cannot meet all of its points; it is cubic across",)
-    if rule is None:
+    if rule is None and chart.parametric and lines.straight:
+        coefficients = _lofted(space, smoothed, data, inside, lines.u)
+    elif rule is None:
         space, coefficients = _skinned(space, smoothed, core, data, inside, settings, None)
     stage("periphery", 0.6)
     outer = ~inside
@@ -108,6 +108,22 @@ def fit_with_core(
     space, coefficients, frozen, rounds, more = periphery.fit(space, coefficients)
     total = coefficients + data.over_trend(space)
     return Net(space, total, frozen, core, rule, data.unit, field, rounds, notes + more)
+
+
+def _coarse_space(data: Data, core: Rectangle, inside: NDArray[np.bool_], degree: int, most: int) -> TensorSpace:
+    """Return the space on which the field is chosen: spans as fine as the points of the core, and of the rest."""
+    dense = float(np.sqrt((core[1] - core[0]) * (core[3] - core[2]) / inside.sum()))
+    span, area = EVEN, data.area
+    while True:
+        breaks = [
+            graded_breaks([*area[k : k + 2], *core[k : k + 2]], span, np.array([[*core[k : k + 2], span * dense]]))
+            for k in (0, 2)
+        ]
+        knots = [bspline.clamped_knots(along, degree) for along in breaks]
+        space = TensorSpace(knots[0], knots[1], degree)
+        if space.size <= most or span > 1e3:
+            return space
+        span *= 1.1
 
 
 def _breaks(
@@ -199,6 +215,21 @@ def _skinned(
     mine = held[rows].ravel()
     result[columns[mine]] = (spread @ start)[mine]
     return space, result
+
+
+def _lofted(space: TensorSpace, coefficients: Floats, data: Data, inside: NDArray[np.bool_], lines: Floats) -> Floats:
+    """Lay a parametric surface through its section curves, each curve through its points.
+
+    The hinges of a fold are sharper than the spacing of its sections: the regional field would round them off
+    between the sections, where the curves on both sides carry them on.
+    """
+    through = bspline.collocation(space.knots_u, space.degree, lines)
+    net = coefficients.reshape(*space.shape, -1)
+    start = np.einsum("ki,ijc->kjc", through, net).reshape(len(lines) * space.shape[1], *coefficients.shape[1:])
+    spread = across_curves(space, lines)
+    value = data.value[inside]
+    acting = space.matrix(data.plane[inside]) @ spread
+    return np.asarray(spread @ (start + least_change(acting, value - acting @ start)))
 
 
 def _inner(edges: tuple[float, float], knots: Floats) -> list[float]:

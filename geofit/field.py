@@ -42,6 +42,8 @@ ENERGIES: dict[str, tuple[dict[int, float], int]] = {
 _LOG_RANGE = (-9.0, 3.0)
 #: Noise above this share of the values' own spread contradicts any tolerance below it.
 CONTRADICTION = 0.5
+#: Fewer points than these cannot tell noise from relief.
+ENOUGH = 16
 #: Part of an energy's diagonal that stands in for what the energy leaves free, in its determinant.
 _RIDGE = 1e-10
 #: No elevation is known better than this, metres: keeps the likelihood finite on exact planes.
@@ -83,7 +85,7 @@ def plane_trend(plane: Floats, z: Floats, weight: Floats) -> Floats:
 
 
 def cell_weights(space: TensorSpace, plane: Floats, accuracy: Floats) -> Floats:
-    """Return the weight of each point: relative accuracy, shared among the points of one knot cell.
+    """Return the weight of each point: relative accuracy, shared where a knot cell holds more points than most.
 
     Points nearer to each other than the knots say one thing together; sharing keeps one dense section from
     deciding how noisy and how rough the whole area is. Points without a stated accuracy take the median.
@@ -95,7 +97,7 @@ def cell_weights(space: TensorSpace, plane: Floats, accuracy: Floats) -> Floats:
         relative[stated] = np.clip(middle / accuracy[stated], 0.1, 10.0) ** 2
     index, _ = space.rows(plane)
     _, cell, count = np.unique(index[:, 0], return_inverse=True, return_counts=True)
-    return np.asarray(relative / count[cell])
+    return np.asarray(relative * np.minimum(1.0, np.median(count) / count[cell]))
 
 
 def choose(
@@ -141,7 +143,8 @@ def choose(
         )
     noise = likelihood.noise(log)
     spread = float(np.std(z, axis=0).max())
-    return Field(likelihood.name, 10.0**log, noise, noise > CONTRADICTION * max(spread, _FINEST))
+    contradictory = len(plane) >= ENOUGH and noise > CONTRADICTION * max(spread, _FINEST)
+    return Field(likelihood.name, 10.0**log, noise, contradictory)
 
 
 class _Likelihood:

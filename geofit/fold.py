@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.signal import find_peaks
 
 from geofit.frame import Frame
 from geofit.points import PointSet
@@ -21,6 +22,8 @@ Floats = NDArray[np.float64]
 
 #: A line is drawn in order if this much shorter than its points joined from side to side.
 ORDERED = 0.95
+#: How far a line must run back, as a share of its extent, for a turning point to be a hinge.
+PROMINENT = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,30 +107,36 @@ def _chords(xyz: Floats) -> Floats:
 
 
 def _aligned(lines: list[Floats]) -> list[Floats]:
-    """Return v in 0..1 for each point of each line: one sense, chord length, hinges at one v."""
-    parameters = []
+    """Return v in 0..1 for each point of each line: one sense, chord length, each hinge at one v."""
+    parameters, hinges = [], []
     reference: Floats | None = None
     for xyz in lines:
         chord = _chords(xyz)
         v = chord / chord[-1]
         shape = np.column_stack([np.interp(np.linspace(0, 1, 50), v, xyz[:, k]) for k in range(3)])
-        if reference is not None and np.linalg.norm(shape - reference) > np.linalg.norm(shape[::-1] - reference):
-            v, shape = 1 - v, shape[::-1]
-        reference = shape
-        parameters.append(v)
-    hinges = [_hinge(xyz, v) for xyz, v in zip(lines, parameters, strict=True)]
-    known = [h for h in hinges if h is not None]
-    if len(known) < len(lines):
+        turned = reference is not None and np.linalg.norm(shape - reference) > np.linalg.norm(shape[::-1] - reference)
+        reference = shape[::-1] if turned else shape
+        found = _hinges(xyz, v)
+        parameters.append(1 - v if turned else v)
+        hinges.append(1 - found[::-1] if turned else found)
+    if len({len(found) for found in hinges}) > 1 or not len(hinges[0]):
         return parameters
-    middle = float(np.mean(known))
-    return [np.interp(v, [0.0, h, 1.0], [0.0, middle, 1.0]) for v, h in zip(parameters, known, strict=True)]
+    middle = np.concatenate([[0.0], np.mean(hinges, axis=0), [1.0]])
+    return [
+        np.interp(v, np.concatenate([[0.0], found, [1.0]]), middle) for v, found in zip(parameters, hinges, strict=True)
+    ]
 
 
-def _hinge(xyz: Floats, v: Floats) -> float | None:
-    """Return v where the line turns back the most: the turning point farthest from the chord of its ends."""
+def _hinges(xyz: Floats, v: Floats) -> Floats:
+    """Return v at the turning points of a line, in order: where it runs back by a share of its extent."""
     plan = xyz[:, :2] - xyz[:, :2].mean(axis=0)
     along = plan @ np.linalg.svd(plan, full_matrices=False)[2][0]
-    ends = np.interp(v, [v[0], v[-1]], [along[0], along[-1]])
-    k = int(np.argmax(np.abs(along - ends)))
-    turned = 0 < k < len(v) - 1 and (along[k] - along[0]) * (along[k] - along[-1]) > 0
-    return float(v[k]) if turned else None
+    least = PROMINENT * float(np.ptp(along))
+    turns = np.sort(np.concatenate([find_peaks(sign * along, prominence=least)[0] for sign in (1, -1)]))
+    return np.array([_summit(v[k - 1 : k + 2], along[k - 1 : k + 2]) for k in turns])
+
+
+def _summit(v: Floats, along: Floats) -> float:
+    """Return v at the summit of the parabola through three points."""
+    a, b, _ = np.polyfit(v - v[1], along - along[1], 2)
+    return float(np.clip(v[1] - b / (2 * a), v[0], v[2])) if a else float(v[1])

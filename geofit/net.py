@@ -35,7 +35,6 @@ __all__ = [
     "even_space",
     "gather",
     "in_patches",
-    "span_for",
 ]
 
 Floats = NDArray[np.float64]
@@ -112,9 +111,13 @@ def degree_for(n: int) -> int:
     return 3 if n >= 16 else 2 if n >= 6 else 1
 
 
-def even_space(area: Rectangle, span: float, degree: int) -> TensorSpace:
-    """Return a space of even spans no longer than ``span``."""
-    counts = [max(int(np.ceil((area[k + 1] - area[k]) / span - 1e-9)), 1) for k in (0, 2)]
+def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSpace:
+    """Return a space of even spans no longer than ``span``, or as long as the cap of control points asks for."""
+    while True:
+        counts = [max(int(np.ceil((area[k + 1] - area[k]) / span - 1e-9)), 1) for k in (0, 2)]
+        if (counts[0] + degree) * (counts[1] + degree) <= most or max(counts) == 1:
+            break
+        span *= 1.02
     return TensorSpace(
         bspline.clamped_knots(np.linspace(area[0], area[1], counts[0] + 1), degree),
         bspline.clamped_knots(np.linspace(area[2], area[3], counts[1] + 1), degree),
@@ -138,12 +141,6 @@ def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpac
     return rows[0] * rows[1]
 
 
-def span_for(area: Rectangle, control_points: float, degree: int) -> float:
-    """Return the span at which an even space has about so many control points."""
-    side = max(np.sqrt(control_points) - degree, 1.0)
-    return float(np.sqrt((area[1] - area[0]) * (area[3] - area[2])) / side)
-
-
 def choose_field(data: Data, space: TensorSpace, settings: FitSettings) -> Field:
     """Choose the regional field on a space (see :func:`geofit.field.choose`)."""
     weight = cell_weights(space, data.plane, data.accuracy)
@@ -161,7 +158,7 @@ def approximate_all(
     stage("field", 0.25)
     if n >= CELLWISE:
         return _approximate_many(data, settings, most)
-    space = even_space(data.area, max(EVEN, span_for(data.area, most, degree)), degree)
+    space = even_space(data.area, EVEN, degree, most)
     field = choose_field(data, space, settings)
     stage("periphery", 0.5)
     start = np.zeros((space.size, *data.value.shape[1:]))
@@ -259,13 +256,13 @@ def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:
     part = slice(None, None, max(n // PART, 1))
     weight = np.ones(n)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
-    coarse = even_space(data.area, span_for(data.area, LEVELS[0], 3), 3)
+    coarse = even_space(data.area, EVEN, 3, LEVELS[0])
     field = choose(coarse, data.plane[part], data.value[part], weight[part], given)
     best: tuple[float, TensorSpace, Floats] | None = None
     for count in LEVELS:
         if best is not None and count > min(most, n / 3):
             break
-        space = even_space(data.area, span_for(data.area, count, 3), 3)
+        space = even_space(data.area, EVEN, 3, count)
         coefficients, _ = smooth(space, field, data.plane, data.value, weight)
         misfit = data.value - values_at(space, coefficients, data.plane)
         score = float(np.sqrt(np.square(misfit).sum() * n)) / max(n - space.size, 1)

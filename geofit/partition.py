@@ -80,12 +80,12 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     if len(cluster) < FEWEST:
         return _uniform(plane, area, "the dense places hold fewer than 20 points each")
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
-    width, height = high - low
-    if min(width, height) < 0.08 * max(width, height):
+    length, width = _extents(plane[cluster])
+    if width < 0.08 * length:
         return split_none(
             plane,
-            f"the {len(cluster)} dense points lie along a line {max(width, height):.0f} m long and "
-            f"{min(width, height):.0f} m wide: one section makes no core, all points are approximated",
+            f"the {len(cluster)} dense points lie along a line {length:.0f} m long and {width:.0f} m wide: "
+            "one section makes no core, all points are approximated",
         )
     core = _widen((low[0], high[0], low[1], high[1]), plane, area)
     inside = _within(plane, core)
@@ -137,6 +137,14 @@ def _largest_cluster(plane: Floats, reach: float) -> NDArray[np.bool_]:
     label = connected_components(graph, directed=False)[1]
     largest: NDArray[np.bool_] = np.equal(label, np.argmax(np.bincount(label)))
     return largest
+
+
+def _extents(plane: Floats) -> tuple[float, float]:
+    """Return the length and width of a cluster along its principal directions, but for a tenth of outliers."""
+    centred = plane - np.median(plane, axis=0)
+    turned = centred @ np.linalg.svd(centred, full_matrices=False)[2].T
+    length, width = np.quantile(turned, 0.95, axis=0) - np.quantile(turned, 0.05, axis=0)
+    return float(length), float(width)
 
 
 def _trimmed_box(plane: Floats, width: float) -> tuple[Floats, Floats]:

@@ -95,10 +95,10 @@ class PointSet:
             self._set(name, _column(name, getattr(self, name), n, np.str_))
         self._set("accuracy", _column("accuracy", self.accuracy, n, np.float64))
         self._set("row", _column("row", self.row, n, np.int64))
-        if n and np.nanmin(self.accuracy, initial=np.inf) <= 0:
-            worst = int(np.nanargmin(self.accuracy))
+        wrong = np.flatnonzero((self.accuracy <= 0) | np.isinf(self.accuracy))
+        if wrong.size:
             raise PointsError(
-                f"accuracy[{worst}] is {self.accuracy[worst]:g} m; one standard deviation must be above 0. "
+                f"accuracy[{wrong[0]}] is {self.accuracy[wrong[0]]:g} m; one standard deviation must be above 0. "
                 "Use nan where the source states none."
             )
 

@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 #: Places at which every seam is measured.
 SAMPLES = 200
-#: Two edges are one seam if they run together within this share of their length.
+#: Two edges are one seam if they run together within this share of their length, and of their patches' width.
 TOGETHER = 0.01
 #: Below this (metres) a seam is closed: equal parameters are equal places.
 CLOSED = 1e-9
@@ -45,16 +45,18 @@ def seams(surface: HorizonSurface | Sequence[Patch], samples: int = SAMPLES) -> 
     patches = surface.patches if isinstance(surface, HorizonSurface) else tuple(surface)
     edges = [(index, edge) for index in range(len(patches)) for edge in EDGES]
     marks = [_edge(patches[index], edge, np.linspace(0, 1, 5)) for index, edge in edges]
+    widths = [_width(patches[index], edge) for index, edge in edges]
     found = []
     for a, (first, edge_a) in enumerate(edges):
         for b in range(a + 1, len(edges)):
             second, edge_b = edges[b]
-            if second != first and (turned := _together(marks[a], marks[b])) is not None:
+            reach = TOGETHER * min(widths[a], widths[b])
+            if second != first and (turned := _together(marks[a], marks[b], reach)) is not None:
                 found.append(_measure(patches[first], edge_a, patches[second], edge_b, turned, samples))
     return tuple(found)
 
 
-def _together(a: Floats, b: Floats) -> bool | None:
+def _together(a: Floats, b: Floats, reach: float) -> bool | None:
     """Whether two edges (5 places each) run together: False as they stand, True if one is turned round."""
     length = np.linalg.norm(np.diff(a, axis=0), axis=1).sum()
     for turned in (False, True):
@@ -63,9 +65,16 @@ def _together(a: Floats, b: Floats) -> bool | None:
         # roughly.
         ends = np.linalg.norm((a - other)[[0, -1]], axis=1).max()
         middle = np.linalg.norm(a[2] - other, axis=1).min()
-        if ends <= TOGETHER * length and middle <= 0.3 * length:
+        if ends <= min(TOGETHER * length, reach) and middle <= 0.3 * length:
             return turned
     return None
+
+
+def _width(patch: Patch, edge: str) -> float:
+    """Return how far the patch reaches away from its edge."""
+    opposite = {"u0": "u1", "u1": "u0", "v0": "v1", "v1": "v0"}[edge]
+    middle = np.array([0.5])
+    return float(np.linalg.norm(_edge(patch, edge, middle) - _edge(patch, opposite, middle)))
 
 
 def _edge(patch: Patch, edge: str, share: Floats, du: int = 0, dv: int = 0) -> Floats:

@@ -84,7 +84,7 @@ class FitSettings:
             object.__setattr__(self, "core", _polygon(self.core))
         if self.smoothing != "auto":
             _positive("smoothing", self.smoothing, "the auto value's unit, or the word 'auto'")
-        if not isinstance(self.max_iterations, int) or self.max_iterations < 0:
+        if not isinstance(self.max_iterations, int) or isinstance(self.max_iterations, bool) or self.max_iterations < 0:
             raise SettingsError(f"max_iterations is {self.max_iterations!r}; a whole number >= 0 is needed.")
         most = self.max_control_points
         if most is not None and (not isinstance(most, int) or isinstance(most, bool) or most < 16):

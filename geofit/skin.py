@@ -27,7 +27,7 @@ from geofit.errors import ExactnessError
 from geofit.knots import neighbour_pairs
 from geofit.tensor import TensorSpace
 
-__all__ = ["Lines", "damped_change", "least_change", "ruled", "section_lines", "separate"]
+__all__ = ["Lines", "across_curves", "damped_change", "least_change", "ruled", "section_lines", "separate"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -153,6 +153,9 @@ def separate(
     rounds : int
         Cap of the number of rounds.
     """
+    # Ties are settled by place, not by the order of the points.
+    order = np.lexsort(plane.T)
+    plane, misfit = plane[order], misfit[order]
     pairs = neighbour_pairs(plane)
     limit = OVERSHOOT * max(float(np.abs(misfit).max(initial=0.0)), 1e-3)
     for _ in range(rounds):
@@ -239,4 +242,29 @@ def ruled(space: TensorSpace, lines: Floats, rows: Ints) -> csr_array:
     weights = np.zeros((len(rows), len(lines)))
     np.put_along_axis(weights, k[:, None], (1 - t)[:, None], axis=1)
     np.put_along_axis(weights, k[:, None] + 1, t[:, None], axis=1)
+    return csr_array(kron(csr_array(weights), eye_array(space.shape[1])))
+
+
+def across_curves(space: TensorSpace, lines: Floats) -> csr_array:
+    """Return the matrix from section curves to the control points of the smoothest surface through them.
+
+    Parameters
+    ----------
+    space : TensorSpace
+        Space with a knot at each inner line.
+    lines : (k,) array
+        Where the section curves lie in u.
+
+    Returns
+    -------
+    matrix : (nu * nv, k * nv) sparse array
+        Across the sections every row of control points takes the least energy of second derivatives (of first
+        ones for two curves) that passes through the curves: skinning in the sense of The NURBS Book, sec. 10.3.
+    """
+    count, k = space.shape[0], len(lines)
+    through = bspline.collocation(space.knots_u, space.degree, lines)
+    energy = bspline.energy_matrix(space.knots_u, space.degree, 2 if k > 2 else 1)
+    system = np.block([[energy / np.trace(energy), through.T], [through, np.zeros((k, k))]])
+    right = np.concatenate([np.zeros((count, k)), np.eye(k)])
+    weights = np.linalg.lstsq(system, right, rcond=None)[0][:count]
     return csr_array(kron(csr_array(weights), eye_array(space.shape[1])))

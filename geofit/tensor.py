@@ -27,8 +27,9 @@ Ints = NDArray[np.int64]
 
 #: From this many points on, normal equations are summed by cells instead of by points.
 CELLWISE = 20_000
-#: Added to a unit diagonal where rounding has made a system indefinite: a pull to the trend far below any noise.
-RIDGES = (0.0, 1e-12, 1e-10)
+#: Added to a unit diagonal, more where rounding has made a system indefinite: it settles what neither data nor
+#: energy hold by the trend, far below any noise.
+RIDGES = (1e-13, 1e-12, 1e-10)
 _CHUNK = 65_536
 
 

@@ -65,9 +65,6 @@ def test_the_source_nearer_to_the_rock_is_kept_where_no_accuracy_settles_it(bett
             assert len(conflicts) == 1
 
 
-@pytest.mark.xfail(
-    strict=True, reason="the text names the accuracy as the reason although both points state the same one"
-)
 def test_the_reason_is_the_one_that_settled_it():
     _, conflicts = settled([[0, 0, 1], [0, 0, 2]], kind=["borehole", "section"], accuracy=0.3)
     assert "the source nearer to the rock" in conflicts[0].text

@@ -128,9 +128,7 @@ def test_valley_crease_does_not_stall_the_walk():
     roof = height_field(13, 13, 3, (120.0, 120.0), 3, lambda x, y: np.abs(x - 60.0) + np.abs(y - 60.0))
     rng = np.random.default_rng(3)
     xyz = np.column_stack([rng.uniform(20, 100, (40, 2)), rng.uniform(-40, 90, 40)])
-    np.testing.assert_allclose(
-        np.abs(project([roof], xyz).distance), brute_force([roof], xyz, 200), atol=1e-7
-    )
+    np.testing.assert_allclose(np.abs(project([roof], xyz).distance), brute_force([roof], xyz, 200), atol=1e-7)
 
 
 def test_beside_the_surface_the_foot_is_on_the_edge():
@@ -223,8 +221,6 @@ def test_cells_reproduce_the_patch():
         u, v = rng.uniform(0, 1, 300), rng.uniform(0, 300, 300)
         place = cells.locate(0, u, v)
         half = cells.half[:, place.cell]
-        for jet, (a, b) in zip(
-            cells.jets(place), [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)], strict=True
-        ):
+        for jet, (a, b) in zip(cells.jets(place), [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)], strict=True):
             expected = one.evaluate(u, v, a, b).T * half[0] ** a * half[1] ** b
             np.testing.assert_allclose(jet, expected, atol=1e-9)

@@ -145,7 +145,7 @@ def test_cutting_and_joining_gives_the_same_points(xyz, cut):
 
 def test_with_replaces_columns_and_checks_them():
     points = three(hole="B1")
-    higher = points.with_(xyz=points.xyz + [0, 0, 10])
+    higher = points.with_(xyz=points.xyz + np.array([0, 0, 10]))
     assert higher.hole.tolist() == ["B1"] * 3
     assert higher.xyz[0, 2] == 11
     with pytest.raises(PointsError, match="not finite"):

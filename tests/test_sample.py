@@ -51,9 +51,7 @@ def _files(folder: Path) -> dict[str, bytes]:
 
 def test_the_committed_folder_is_what_the_generator_writes(written: tuple[Path, dict[str, int]]) -> None:
     new, old = _files(written[0]), _files(COMMITTED)
-    assert sorted(new) == sorted(old), (
-        "Run python -m geofit.sample sample_data, and remove what it does not write."
-    )
+    assert sorted(new) == sorted(old), "Run python -m geofit.sample sample_data, and remove what it does not write."
     different = [name for name in new if new[name] != old[name]]
     assert not different, "Run python -m geofit.sample sample_data and commit it."
     assert sum(map(len, old.values())) < 2e6
@@ -158,9 +156,7 @@ def test_the_files_are_as_varied_as_real_ones(written: tuple[Path, dict[str, int
     assert b";" in files["structures.csv"]
     assert b"." not in files["structures.csv"]
     stations = [line.split(",") for line in files["survey.csv"].decode().splitlines()[1:]]
-    dips = {
-        hole: [float(row[3]) for row in stations if row[0] == hole] for hole in {row[0] for row in stations}
-    }
+    dips = {hole: [float(row[3]) for row in stations if row[0] == hole] for hole in {row[0] for row in stations}}
     assert sum(60 < d[0] < 70 for d in dips.values()) == 8
     assert sum(len(set(d)) > 2 for d in dips.values()) >= 15
     assert len(dips) < 60

@@ -70,9 +70,7 @@ def test_trimmed_shell_keeps_its_seams_and_follows_the_outline(outline, seams_le
     import cadquery
 
     dense = np.stack(np.meshgrid(np.linspace(0, 1000, 801), np.linspace(0, 700, 561), indexing="ij"), -1)
-    cross = np.cross(
-        whole.evaluate(*np.moveaxis(dense, 2, 0), 1, 0), whole.evaluate(*np.moveaxis(dense, 2, 0), 0, 1)
-    )
+    cross = np.cross(whole.evaluate(*np.moveaxis(dense, 2, 0), 1, 0), whole.evaluate(*np.moveaxis(dense, 2, 0), 0, 1))
     inside = shapely.contains_xy(shapely.Polygon(outline), dense[..., 0], dense[..., 1])
     expected = np.linalg.norm(cross, axis=2)[inside].mean() * shapely.Polygon(outline).area
     assert cadquery.Shell(shape).Area() == pytest.approx(expected, rel=2e-3)
@@ -172,8 +170,7 @@ def test_one_surface_keeps_a_position_seam():
     kinked = [
         replace(
             p,
-            control=p.control
-            + np.array([0, 0, 1.0]) * (p.control[..., :1] - parts[3].control[0, 0, 0]) * 0.1,
+            control=p.control + np.array([0, 0, 1.0]) * (p.control[..., :1] - parts[3].control[0, 0, 0]) * 0.1,
         )
         if p.name.startswith("p0")
         else p
@@ -198,7 +195,5 @@ def test_surface_modules_do_not_load_opencascade():
 
     rooms = "geofit.seams, geofit.stitch, geofit.distance, geofit.io.step"
     code = f"import {rooms}, sys; print('OCP' in sys.modules)"
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
-    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
     assert done.stdout.strip() == "False"
