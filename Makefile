@@ -27,7 +27,7 @@ real: .venv/.installed-test
 	$(BIN)/python benchmarks/real.py
 
 bench: .venv/.installed-test
-	@set -e; for script in $(filter-out benchmarks/real.py,$(wildcard benchmarks/*.py)); do $(BIN)/python $$script; done
+	@set -e; for script in benchmarks/fit.py benchmarks/distance.py; do $(BIN)/python $$script; done
 
 clean:
 	rm -rf .venv build demo_out real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
@@ -44,7 +44,7 @@ python:
 	@touch $@
 
 .venv/.installed-test: .venv/.installed
-	$(INSTALL) --editable '.[gui,test]'
+	$(INSTALL) --editable '.[gui,gis,las,xlsx,ifc,geoh5,test]'
 	@touch $@
 
 .venv/.installed-lint: .venv/.installed-test

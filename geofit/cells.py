@@ -245,6 +245,7 @@ def _descend(cells: Cells, start: Place, target: Floats) -> Place:
     return Place(cell, local, done)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # a collapsed edge has no metric; its walk is held
 def _convex(hessian: Floats, metric: Floats, held: Bools) -> tuple[Bools, Floats]:
     """Whether Hessians (3, n) are well positive definite, and the Hessians made so where they are not.
 

@@ -1,4 +1,4 @@
-"""The command line: ``geofit demo | fit | check | info``.
+"""The command line: ``geofit demo | fit | check | info | import | export | section``.
 
 Exit codes: 0 every sigma < epsilon; 1 some verdict FAIL; 2 bad input or usage; 130 stopped.
 Everything heavy is imported inside the commands, so that ``geofit --help`` answers at once.
@@ -73,6 +73,11 @@ _SurfaceColumn = Annotated[str | None, typer.Option("--surface", help="CSV: colu
 _SectionColumn = Annotated[str | None, typer.Option("--section", help="CSV: column of the section's name.")]
 _Sep = Annotated[str | None, typer.Option(help="CSV: separator: one character, 'tab' or 'space'. Default: found.")]
 _Decimal = Annotated[str | None, typer.Option(help="CSV: decimal mark, '.' or ','. Default: found.")]
+_Tolerance = Annotated[float, typer.Option(help="Largest distance of triangles and lines from the surface, m.")]
+_FORMATS = (
+    "step, iges, brep, dxf (contours), dxf-mesh, ifc, landxml, tsurf, geoh5, vtp, vtm, obj, ply, stl, glb, "
+    "gpkg (contours), asc, grd, tif (grids)"
+)
 _FROM_SITE = "Default: the site file's, else"
 
 
@@ -260,6 +265,114 @@ def info(
     return 0
 
 
+@app.command(name="import")
+@guarded
+def import_(
+    files: Annotated[list[Path], typer.Argument(metavar="FILES...", help="Tables, drawings, maps, grids of one site.")],
+    site: Annotated[Path, typer.Option(metavar="OUT.toml", help="The site file to write; mapping and issues beside.")],
+    mapping: Annotated[Path | None, typer.Option(help="Mapping (TOML) of columns that a guess would miss.")] = None,
+    crs: Annotated[str, typer.Option(help="Coordinate system of the site, EPSG:number; degrees are projected.")] = "",
+    base: Annotated[list[str] | None, typer.Option(help="Code whose base is a horizon; may be repeated.")] = None,
+    top: Annotated[list[str] | None, typer.Option(help="Code whose top is a horizon; may be repeated.")] = None,
+    as_json: _Json = False,
+) -> int:
+    """Recognise files and bind them in a site file. Exit code 1: no horizon yet, 2: no row can be used."""
+    from dataclasses import asdict, astuple
+
+    from geofit.importing import import_files
+    from geofit.io.mapping import load_mappings
+
+    mappings = load_mappings(mapping) if mapping is not None else ()
+    limits = {"base": tuple(base or ()), "top": tuple(top or ())}
+    with listening() as progress:
+        found = import_files(files, site, mappings=mappings, crs=crs, progress=progress, **limits)
+    print_issues(found.issues, str(found.issue_file))
+    print_counts(found.counts)
+    sizes = {name: len(points) for name, points in found.site.horizons.items()}
+    if as_json:
+        places = {"site": found.site_file, "mapping": found.mapping_file, "issues": found.issue_file}
+        counts = [asdict(count) for count in found.counts]
+        print_json({**{key: str(file) for key, file in places.items()}, "horizons": sizes, "files": counts})
+    else:
+        print_table(("file", "rows", "used", "listed"), [tuple(map(str, astuple(count))) for count in found.counts])
+        print_table(("horizon", "points"), [(name, str(size)) for name, size in sizes.items()])
+    if not sizes:
+        say("The site has no horizon yet: add intervals, sections, traces or picks.")
+    say(f"Site file: {found.site_file}. Kinds and columns, to be corrected by hand: {found.mapping_file}")
+    return found.exit_code
+
+
+@app.command()
+@guarded
+def export(
+    surfaces: Annotated[list[Path], typer.Argument(metavar="SURFACE.step...", help="STEP files, ours or any other.")],
+    to: Annotated[str, typer.Option(help=f"Format: {_FORMATS}.")],
+    out: Annotated[Path, typer.Option(help="The file; horizons get one each where the format holds one.")],
+    points: Annotated[
+        Path | None,
+        typer.Option(metavar="SITE_OR_CSV", help="site.toml or table of points: deviations; a site's holes and CRS."),
+    ] = None,
+    value: Annotated[str, typer.Option(help="What a grid holds: elevation, deviation or thickness.")] = "elevation",
+    tolerance: _Tolerance = 0.05,
+    interval: Annotated[float | None, typer.Option(help="Metres between contours. Default: chosen.")] = None,
+    cell: Annotated[float | None, typer.Option(help="Metres between grid nodes. Default: chosen.")] = None,
+    crs: Annotated[str | None, typer.Option(help="Coordinate system, EPSG:number. Default: the site's.")] = None,
+    as_json: _Json = False,
+) -> int:
+    """Write horizons in other formats."""
+    from geofit.exporting import Request, read_surfaces
+    from geofit.exporting import export as write
+
+    site = None if points is None else _read(points, {}, None)
+    if site is not None:
+        print_issues(site.issues)
+    request = Request(
+        tolerance=tolerance,
+        interval=interval,
+        cell=cell,
+        value=value,
+        points=site.horizons if site else None,
+        holes=site.holes if site else (),
+        site=site.name if site else surfaces[0].stem,
+        crs=crs if crs is not None else site.crs if site else "",
+    )
+    files = write(read_surfaces(surfaces), to, out, request)
+    if as_json:
+        print_json({"files": [str(file) for file in files]})
+    else:
+        print_table(("file", "bytes"), [(str(file), str(file.stat().st_size)) for file in files])
+    return 0
+
+
+@app.command()
+@guarded
+def section(
+    surfaces: Annotated[list[Path], typer.Argument(metavar="SURFACE.step...", help="STEP files, ours or any other.")],
+    line: Annotated[str, typer.Option(help="x0,y0,x1,y1 (further corners may follow), or a table with x and y; m.")],
+    out: _Out,
+    tolerance: _Tolerance = 0.05,
+    as_json: _Json = False,
+) -> int:
+    """Cut every horizon along a line: drawing (DXF), table (CSV) and picture (PNG)."""
+    from geofit.exporting import read_line, read_surfaces
+    from geofit.exporting import section as cut
+
+    cuts, files = cut(read_surfaces(surfaces), read_line(line), out, tolerance)
+    rows = [(name, i, one) for name, lines in cuts.items() for i, one in enumerate(lines, 1)]
+    if as_json:
+        lengths = [{"horizon": n, "line": i, "distance": one.distance[[0, -1]].tolist()} for n, i, one in rows]
+        print_json({"files": [str(file) for file in files], "lines": lengths})
+    else:
+        header = ("horizon", "line", "along, m", "z, m")
+        print_table(header, [(n, str(i), _span(one.distance), _span(one.xyz[:, 2])) for n, i, one in rows])
+        say(f"Drawing, table and picture: {out}")
+    return 0
+
+
+def _span(values: Any) -> str:
+    return f"{values.min():.1f} .. {values.max():.1f}"
+
+
 def _deliver(
     site: Site,
     out: Path,
@@ -321,7 +434,16 @@ def _read(source: Path, columns: dict[str, str | None], boundary: Path | None) -
             )
         site = read_site(source)
         return site if area is None else replace(site, boundary=area)
-    picks = read_points(source, progress=None, **columns)
+    picks = read_points(
+        source,
+        x=columns.get("x"),
+        y=columns.get("y"),
+        z=columns.get("z"),
+        surface=columns.get("surface"),
+        section=columns.get("section"),
+        sep=columns.get("sep"),
+        decimal=columns.get("decimal"),
+    )
     return Site(
         name=source.stem,
         horizons=picks.horizons,

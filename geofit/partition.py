@@ -197,7 +197,10 @@ def _widen(core: Rectangle, plane: Floats, area: Rectangle) -> Rectangle:
 def _within(plane: Floats, core: Rectangle) -> NDArray[np.bool_]:
     edge = 1e-9 * max(core[1] - core[0], core[3] - core[2], 1.0)
     u, v = plane.T
-    return (u >= core[0] - edge) & (u <= core[1] + edge) & (v >= core[2] - edge) & (v <= core[3] + edge)
+    inside: NDArray[np.bool_] = (
+        (u >= core[0] - edge) & (u <= core[1] + edge) & (v >= core[2] - edge) & (v <= core[3] + edge)
+    )
+    return inside
 
 
 def _density(count: int, area: Rectangle, hole: Rectangle | None = None) -> float:

@@ -45,7 +45,8 @@ def find_sections(plan: Floats) -> NDArray[np.str_]:
         than two lines are found.
     """
     none = np.full(len(plan), "", dtype="<U12")
-    distance, index = KDTree(plan).query(plan, k=3)
+    found_at = KDTree(plan).query(plan, k=3)
+    distance, index = np.asarray(found_at[0]), np.asarray(found_at[1])
     apart = distance[:, 1:].ravel() > 0
     step = (plan[index[:, 1:]] - plan[:, None]).reshape(-1, 2)[apart]
     if len(step) == 0:

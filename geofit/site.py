@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from geofit.points import PointSet
 from geofit.settings import FitSettings
 
-__all__ = ["Ground", "Hole", "ImportIssue", "Section", "Site", "TableCount"]
+__all__ = ["Ground", "Hole", "ImportIssue", "Orientations", "Section", "Site", "TableCount"]
 
 Floats = NDArray[np.float64]
 
@@ -87,6 +87,25 @@ class Ground:
 
 
 @dataclass(frozen=True, eq=False)
+class Orientations:
+    """Dips of bedding, joints or faults that were measured in the field: arrays of equal length n.
+
+    ``xyz`` (n, 3) metres; ``azimuth`` of the line of steepest descent, clockwise from grid north, and ``dip``
+    below the horizontal, degrees; ``horizon`` that each belongs to, empty where none is named; ``file``, ``row``.
+    """
+
+    xyz: Floats
+    azimuth: Floats
+    dip: Floats
+    horizon: NDArray[np.str_]
+    file: NDArray[np.str_]
+    row: NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.xyz)
+
+
+@dataclass(frozen=True, eq=False)
 class Site:
     """Everything that was read of one site.
 
@@ -110,6 +129,8 @@ class Site:
         Label of the coordinate system, as the file states it; empty if it does not.
     inputs : mapping of str to str
         SHA-256 of each file that was read, by its name.
+    orientations : Orientations or None
+        Structural dip measurements.
     """
 
     name: str
@@ -123,3 +144,4 @@ class Site:
     counts: tuple[TableCount, ...] = ()
     crs: str = ""
     inputs: Mapping[str, str] = field(default_factory=dict)
+    orientations: Orientations | None = None

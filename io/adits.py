@@ -25,21 +25,17 @@ def load_adits(source: Source, journal: Journal, region: Region | None = None) -
     """Read adit paths: rows of one adit are its corners in order; an adit of one corner is listed."""
     rows = read_rows(source, ADIT_PATH, journal)
     name = rows.text("adit")
-    x, y, z = rows.numbers("x"), rows.numbers("y"), rows.numbers("z", no_data=True)
+    (x, y), z = rows.places(), rows.numbers("z", no_data=True)
     check_axes(rows, x, y, region)
     adits = []
     for adit in dict.fromkeys(name[i] for i in np.flatnonzero(rows.ok).tolist()):
         corners = np.array([i for i in np.flatnonzero(rows.ok) if name[i] == adit])
         xyz = np.column_stack([x, y, z])[corners]
         for k in np.flatnonzero((np.diff(xyz, axis=0) == 0).all(axis=1)).tolist():
-            rows.reject(
-                int(corners[k + 1]), "x", "The corner repeats the one before", "Remove one of the two."
-            )
+            rows.reject(int(corners[k + 1]), "x", "The corner repeats the one before", "Remove one of the two.")
         corners = corners[rows.ok[corners]]
         if len(corners) < 2:
-            rows.reject(
-                int(corners[0]), "adit", f"Adit {adit} has one corner only", "Two or more corners are needed."
-            )
+            rows.reject(int(corners[0]), "adit", f"Adit {adit} has one corner only", "Two or more corners are needed.")
             continue
         xyz = np.column_stack([x, y, z])[corners]
         adits.append(Hole(adit, "adit", chainage(xyz), xyz))

@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.io.axes import Region, check_axes
-from geofit.io.columns import COLLAR, INTERVALS
-from geofit.io.desurvey import WellPath, minimum_curvature
+from geofit.io.columns import COLLAR, INTERVALS, plain_name
+from geofit.io.desurvey import Desurvey, WellPath, desurvey
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source, as_source
 from geofit.io.surveys import Stations, read_stations
-from geofit.site import Hole, ImportIssue, TableCount
+from geofit.site import Ground, Hole, ImportIssue, TableCount
 
 __all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreholes"]
 
@@ -70,6 +70,9 @@ def read_boreholes(
     survey: str | Path | Source | None = None,
     intervals: Sequence[str | Path | Source] = (),
     dip: DipSign | None = None,
+    *,
+    declination: float = 0.0,
+    method: Desurvey = "minimum-curvature",
 ) -> Boreholes:
     """Read collar, survey and interval tables.
 
@@ -83,6 +86,11 @@ def read_boreholes(
         Tables with hole, from, to, code.
     dip : {"down-positive", "down-negative"}, optional
         Sign of the dips; if it is not stated the majority's sign is down, with a warning.
+
+    declination : float
+        Degrees to add to the azimuths, east positive; 0 where they are relative to grid north.
+    method : {"minimum-curvature", "tangential"}
+        Path between two stations.
 
     Returns
     -------
@@ -101,6 +109,8 @@ def read_boreholes(
         [as_source(table) for table in intervals],
         dip,
         journal,
+        declination=declination,
+        method=method,
     )
     return Boreholes(
         found.holes,
@@ -120,29 +130,46 @@ def load_boreholes(
     dip: DipSign | None,
     journal: Journal,
     region: Region | None = None,
+    *,
+    declination: float = 0.0,
+    method: Desurvey = "minimum-curvature",
+    ground: Ground | None = None,
 ) -> Boreholes:
     """Read boreholes; the journal receives what is found."""
-    collars = _read_collars(collar, dip, journal, region)
-    stations = read_stations(survey, dip, list(collars), journal) if survey is not None else {}
-    logs = tuple(_read_log(source, collars, journal) for source in intervals)
-    paths, ends, holes = {}, {}, []
+    collars = _read_collars(collar, dip, journal, region, declination, ground)
+    stations = read_stations(survey, dip, list(collars), journal, declination) if survey is not None else {}
+    paths = {}
     for name, mouth in collars.items():
         surveyed = stations.get(name) or mouth.stations or Stations.vertical()
-        deepest = [float(log.base[log.hole == name].max(initial=0.0)) for log in logs]
-        ends[name] = mouth.end if np.isfinite(mouth.end) else max([float(surveyed.depth[-1]), *deepest])
-        path = minimum_curvature(mouth.xyz, surveyed.depth, surveyed.azimuth, surveyed.dip)
-        paths[name] = path
+        paths[name] = desurvey(method, mouth.xyz, surveyed.depth, surveyed.azimuth, surveyed.dip)
+    logs = tuple(_read_log(source, collars, paths, journal) for source in intervals)
+    deepest: dict[str, float] = {}
+    for log in logs:
+        for name, base in zip(log.hole.tolist(), log.base.tolist(), strict=True):
+            deepest[name] = max(base, deepest.get(name, 0.0))
+    ends, holes = {}, []
+    for name, path in paths.items():
+        end = collars[name].end
+        ends[name] = end if np.isfinite(end) else max(float(path.depth[-1]), deepest.get(name, 0.0))
         depth = np.union1d(path.depth[path.depth < ends[name]], [0.0, ends[name]])
         holes.append(Hole(name, "borehole", depth, path.at(depth)))
     return Boreholes(tuple(holes), paths, ends, logs)
 
 
 def _read_collars(
-    source: Source, dip: DipSign | None, journal: Journal, region: Region | None
+    source: Source,
+    dip: DipSign | None,
+    journal: Journal,
+    region: Region | None,
+    declination: float,
+    ground: Ground | None,
 ) -> dict[str, _Collar]:
     rows = read_rows(source, COLLAR, journal)
     name = rows.text("hole")
-    x, y, z = rows.numbers("x"), rows.numbers("y"), rows.numbers("z", no_data=True)
+    x, y = rows.places()
+    z = rows.numbers("z", required=ground is None, no_data=True)
+    if ground is not None:
+        _drape(rows, x, y, z, ground)
     end = rows.numbers("depth", required=False)
     for i in np.flatnonzero(end < 0).tolist():
         rows.reject(i, "depth", "The hole's depth is negative", "Give the length of the hole in metres.")
@@ -164,32 +191,85 @@ def _read_collars(
         k = places.setdefault((x[i], y[i], z[i]), i)
         if k != i:
             rows.warn(i, "hole", f"The collar lies exactly where hole {name[k]} (row {rows.line[k]}) starts")
-    attitudes = _collar_stations(rows, name, dip)
+    attitudes = _collar_stations(rows, name, dip, declination)
     rows.close()
     if not first:
-        raise InputError(
-            "No row of the collar table can be used", "See the listed rows.", file=source.name
-        ) from None
-    return {
-        hole: _Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole))
-        for hole, i in first.items()
-        if rows.ok[i]
-    }
+        raise InputError("No row of the collar table can be used", "See the listed rows.", file=source.name) from None
+    return {hole: _Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole)) for hole, i in first.items() if rows.ok[i]}
 
 
-def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None) -> dict[str, Stations]:
+def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
+    """Give the collars without an elevation that of the ground."""
+    blank = np.flatnonzero(np.isnan(z) & rows.ok)
+    z[blank] = ground.elevation(x[blank], y[blank])
+    for i in blank.tolist():
+        if np.isnan(z[i]):
+            rows.reject(i, "z", "The collar has no elevation and lies off the ground's grid", "Give its elevation.")
+        else:
+            rows.warn(
+                i, "z", f"The collar has no elevation; the ground's, {z[i]:.2f} m, is taken", "Give its elevation."
+            )
+
+
+def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None, declination: float) -> dict[str, Stations]:
     """Return the straight holes whose azimuth and dip stand in the collar table."""
     if not {"azimuth", "dip"} <= set(rows.columns):
         return {}
-    return Stations.from_rows(rows, name, np.zeros(len(rows)), dip, blank_is_vertical=True)
+    return Stations.from_rows(rows, name, np.zeros(len(rows)), dip, blank_is_vertical=True, declination=declination)
 
 
-def _read_log(source: Source, collars: Mapping[str, _Collar], journal: Journal) -> IntervalLog:
+def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
+    """Whether the limits are elevations: as stated, by their names, or because they descend below the collar."""
+    if rows.source.measure is not None:
+        return rows.source.measure == "elevation"
+    named = [plain_name(rows.table.header[rows.columns[role]])[0] for role in ("from", "to")]
+    sound = np.isfinite(top) & np.isfinite(base) & np.isfinite(mouth)
+    falls = (top > base) & (top <= mouth + 1.0) & sound
+    if all(any(word in name for word in ("elev", "高程", "标高")) for name in named):
+        reason = "by their names"
+    elif sound.sum() >= 3 and falls.sum() > 0.6 * sound.sum() and np.ptp(mouth[sound]) > 0:
+        reason = f"because {falls.sum()} of {sound.sum()} intervals descend from the collar's elevation"
+    else:
+        return False
+    rows.journal.add(
+        "warning",
+        rows.file,
+        f"The limits are taken as elevations, {reason}",
+        'State measure = "depth" where they are depths.',
+        column=rows.table.header[rows.columns["from"]],
+    )
+    return True
+
+
+def _to_depths(rows: Rows, name: list[str], paths: Mapping[str, WellPath], limits: Floats, role: str) -> Floats:
+    """Return the depths along the holes of limits that are elevations."""
+    depth = np.full(len(limits), np.nan)
+    groups: dict[str, list[int]] = {}
+    for i in np.flatnonzero(rows.ok).tolist():
+        groups.setdefault(name[i], []).append(i)
+    for hole, members in groups.items():
+        path = paths[hole]
+        # Collar and log are rounded apart: a limit a few centimetres above the mouth is the mouth.
+        z = limits[members]
+        mouth = float(path.xyz[0, 2])
+        depth[members] = path.depth_of(np.where((z > mouth) & (z < mouth + 0.05), mouth, z))
+    for i in np.flatnonzero(np.isnan(depth) & rows.ok).tolist():
+        rows.reject(i, role, f"The hole has no elevation {limits[i]:g} m below its collar", "Correct the elevation.")
+    return depth
+
+
+def _read_log(
+    source: Source, collars: Mapping[str, _Collar], paths: Mapping[str, WellPath], journal: Journal
+) -> IntervalLog:
     rows = read_rows(source, INTERVALS, journal)
     name, code = np.array(rows.text("hole")), np.array(rows.text("code"))
     top, base = rows.numbers("from"), rows.numbers("to")
     end = np.array([collars[h].end if h in collars else np.nan for h in name])
     rows.require_known("hole", name.tolist(), collars, "collar table")
+    mouth = np.array([collars[h].xyz[2] if h in collars else np.nan for h in name])
+    if _by_elevation(rows, top, base, mouth):
+        top = _to_depths(rows, name.tolist(), paths, top, "from")
+        base = _to_depths(rows, name.tolist(), paths, base, "to")
     for mask, role, reason, remedy in (
         (top < 0, "from", "The interval starts above the collar", "Depths count from the collar, downwards."),
         (base < top, "to", "The interval is reversed: it ends above its start", "Exchange from and to."),

@@ -15,6 +15,7 @@ from geofit.io.journal import Journal
 from geofit.io.rows import read_rows
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
+from geofit.io.vector import RING
 
 __all__ = ["load_boundary", "read_boundary"]
 
@@ -39,7 +40,7 @@ def read_boundary(path: str | Path | Source) -> Floats:
 
 def load_boundary(source: Source, journal: Journal) -> Floats:
     """Read the study area; the journal receives the guesses."""
-    if source.path.suffix.casefold() in (".json", ".geojson"):
+    if source.path.suffix.casefold() in (".json", ".geojson") and not source.target:
         corners = _from_geojson(source, journal)
         journal.count(source.name, len(corners), 0)
     else:
@@ -53,12 +54,16 @@ def load_boundary(source: Source, journal: Journal) -> Floats:
 
 def _from_table(source: Source, journal: Journal) -> Floats:
     rows = read_rows(source, BOUNDARY, journal)
-    corners = np.column_stack([rows.numbers("x"), rows.numbers("y")])
+    corners = np.column_stack(rows.places())
+    if RING in rows.table.header and len(set(rows.table.columns[rows.table.header.index(RING)])) > 1:
+        raise InputError(
+            "The map has several lines or rings; one polygon without holes is needed",
+            "Export the outline of the study area alone.",
+            file=source.name,
+        )
     rows.close()
     if rows.table.read > rows.ok.sum():
-        bad = next(
-            issue for issue in journal.issues if issue.file == source.name and issue.severity == "error"
-        )
+        bad = next(issue for issue in journal.issues if issue.file == source.name and issue.severity == "error")
         raise InputError(
             f"A corner of the boundary cannot be read: {bad.reason}",
             bad.remedy,

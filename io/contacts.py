@@ -69,9 +69,7 @@ def load_contacts(boreholes: Boreholes, code: str, limit: Limit, journal: Journa
     return PointSet.concatenate([_contacts_of(boreholes, log, code, limit, journal) for log in carrying])
 
 
-def _contacts_of(
-    boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit, journal: Journal
-) -> PointSet:
+def _contacts_of(boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit, journal: Journal) -> PointSet:
     found: list[tuple[str, float, int]] = []
     unseen: list[str] = []
     for group in np.split(np.arange(len(log.hole)), np.flatnonzero(log.hole[1:] != log.hole[:-1]) + 1):

@@ -1,4 +1,4 @@
-"""The ground from an ESRI ASCII grid."""
+"""The ground from an ESRI ASCII grid, a Surfer grid or a GeoTIFF."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
 from geofit.site import Ground
 
-__all__ = ["load_ground", "read_ground"]
+__all__ = ["grid_unit", "load_ground", "read_ground"]
 
 _KEYS = {
     "ncols",
@@ -29,28 +29,44 @@ _KEYS = {
 
 
 def read_ground(path: str | Path | Source) -> Ground:
-    """Read an ESRI ASCII grid; cells without data are nan.
+    """Read a grid of elevations; cells without data are nan.
+
+    The file's first bytes tell ESRI ASCII, Surfer 6 (ASCII and binary), Surfer 7 and GeoTIFF (extra ``gis``)
+    apart.
 
     Raises
     ------
     InputError
-        If the head is incomplete, a cell is no number, or the cells are not ncols x nrows.
+        If the head is incomplete, a cell is no number, or the cells are not columns x rows.
+    MissingDependencyError
+        If rasterio is not installed.
     """
     return load_ground(as_source(path), Journal())
 
 
 def load_ground(source: Source, journal: Journal) -> Ground:
-    """Read an ESRI ASCII grid; the journal receives the count of lines and of cells without data."""
-    text, _ = decode(journal.read(source), source.name, source.encoding)
+    """Read a grid; the journal receives the count of lines or rows and of cells without data."""
+    data = journal.read(source)
+    if data[:4] in (b"DSAA", b"DSBB", b"DSRB"):
+        from geofit.io.surfer import read_surfer
+
+        return read_surfer(data, source, journal)
+    if data[:4] in (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"):
+        from geofit.io.raster import read_raster
+
+        return read_raster(source, journal)
+    return _read_esri(data, source, journal)
+
+
+def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
+    text, _ = decode(data, source.name, source.encoding)
     lines = text.splitlines()
     head: dict[str, float] = {}
     at = 0
     while at < len(lines) and (not lines[at].strip() or lines[at].split()[0].casefold() in _KEYS):
         words = lines[at].split()
         if words:
-            head[words[0].casefold()] = _number(
-                words[-1] if len(words) == 2 else "", source.name, at + 1, words[0]
-            )
+            head[words[0].casefold()] = _number(words[-1] if len(words) == 2 else "", source.name, at + 1, words[0])
         at += 1
     columns, rows = _size(head, "ncols", source.name), _size(head, "nrows", source.name)
     dx, dy = (head.get(key, head.get("cellsize", float("nan"))) for key in ("dx", "dy"))
@@ -81,7 +97,15 @@ def load_ground(source: Source, journal: Journal) -> Ground:
         journal.add("note", source.name, f"{int(blank.sum())} of {z.size} cells have no data")
     journal.count(source.name, len(body), 0)
     x, y = np.arange(columns, dtype=np.float64), np.arange(rows, dtype=np.float64)
-    return Ground(west + dx * x, south + dy * y, z.reshape(rows, columns)[::-1].copy())
+    scale = grid_unit(source)
+    return Ground(scale * (west + dx * x), scale * (south + dy * y), scale * z.reshape(rows, columns)[::-1].copy())
+
+
+def grid_unit(source: Source) -> float:
+    """Return the metres of the unit that the user states; a grid does not say its own."""
+    from geofit.io.units import metres_of
+
+    return 1.0 if source.unit is None else metres_of(source.unit, source.name)
 
 
 def _number(word: str, file: str, row: int, column: str) -> float:

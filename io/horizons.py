@@ -38,9 +38,7 @@ class HorizonNames:
         return named
 
     @staticmethod
-    def split(
-        rows: Rows, horizon: Sequence[str], xyz: NDArray[np.float64], **columns: Any
-    ) -> dict[str, PointSet]:
+    def split(rows: Rows, horizon: Sequence[str], xyz: NDArray[np.float64], **columns: Any) -> dict[str, PointSet]:
         """Return the used rows as one set of points a horizon, in file order."""
         used = np.flatnonzero(rows.ok)
         names = np.array(horizon, dtype=np.str_)

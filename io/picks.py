@@ -13,6 +13,7 @@ from geofit.io.axes import Region, check_axes
 from geofit.io.columns import PICKS, Schema
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
+from geofit.io.mapping import ColumnMapping
 from geofit.io.places import list_places
 from geofit.io.rows import read_rows
 from geofit.io.source import Source
@@ -44,6 +45,7 @@ def read_points(
     decimal: str | None = None,
     encoding: str | None = None,
     progress: Progress | None = None,
+    mapping: ColumnMapping | None = None,
 ) -> Picks:
     """Read a text table of points.
 
@@ -58,6 +60,8 @@ def read_points(
         Separator, decimal mark and encoding, where the guess is wrong.
     progress : callable, optional
         Called as ``progress(stage, fraction)``.
+    mapping : ColumnMapping, optional
+        How the table is read, where the other arguments do not say so.
 
     Returns
     -------
@@ -77,9 +81,12 @@ def read_points(
         encoding=encoding,
         columns={role: column for role, column in given.items() if column is not None},
     )
+    if mapping is not None:
+        source = mapping.fill(source)
     journal = Journal()
     tell(progress, "read", 0.0)
-    horizons = load_picks(source, HorizonNames(), journal, alone=Path(path).stem)
+    horizons = load_picks(source, HorizonNames(), journal, alone=Path(path).stem, progress=progress)
+    tell(progress, "compare places", 0.8)
     for name, points in horizons.items():
         list_places(name, points, journal)
     tell(progress, "read", 1.0)
@@ -94,6 +101,7 @@ def load_picks(
     kind: str = "point",
     region: Region | None = None,
     alone: str | None = None,
+    progress: Progress | None = None,
 ) -> dict[str, PointSet]:
     """Read picks; ``kind`` and ``alone`` stand where the file names no kind and no horizon."""
     required = dict(PICKS.required)
@@ -101,7 +109,12 @@ def load_picks(
     if alone is None:
         required = {"horizon": optional.pop("horizon"), **required}
     rows = read_rows(source, Schema("picks", required, optional), journal)
-    x, y, z = rows.numbers("x"), rows.numbers("y"), rows.numbers("z", no_data=True)
+    tell(progress, "check rows", 0.4)
+    (x, y), z = rows.places(), rows.numbers("z", no_data=True)
+    if source.measure == "depth":
+        z = -z
+        journal.add("note", source.name, "z is a depth below 0; it is turned into an elevation")
+    tell(progress, "check rows", 0.6)
     accuracy = rows.numbers("accuracy", required=False)
     for i in np.flatnonzero((accuracy <= 0) & rows.ok).tolist():
         rows.reject(i, "accuracy", "The accuracy is not above 0", "Give one standard deviation in metres.")
@@ -115,8 +128,7 @@ def load_picks(
             None,
         )
         raise InputError(
-            f"None of {rows.table.read} rows can be used"
-            + (f"; row {first.row}: {first.reason}" if first else ""),
+            f"None of {rows.table.read} rows can be used" + (f"; row {first.row}: {first.reason}" if first else ""),
             first.remedy if first else "",
             file=source.name,
             column=first.column if first else None,

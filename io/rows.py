@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.io.columns import Schema, find_columns
+from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
+from geofit.io.crs import is_code, project
+from geofit.io.formats import read_any_table
+from geofit.io.guess import find_columns
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
-from geofit.io.tables import Table, parse_numbers, read_table
+from geofit.io.tables import Table, parse_numbers
+from geofit.io.units import length_factors
 
 __all__ = ["NO_DATA", "Rows", "read_rows"]
 
@@ -28,10 +33,12 @@ class Rows:
     """The rows of a table under their roles.
 
     ``ok`` (n,) is True for rows that are still used; :meth:`reject` lists a row and takes it out.
+    ``factors`` holds the metres of one unit of the length columns that are not in metres.
     """
 
-    def __init__(self, table: Table, columns: dict[str, int], journal: Journal) -> None:
-        self.table, self.columns, self.journal = table, columns, journal
+    def __init__(self, table: Table, columns: dict[str, int], source: Source, journal: Journal) -> None:
+        self.table, self.columns, self.source, self.journal = table, columns, source, journal
+        self.factors = length_factors(table, columns, source, journal)
         self.file = table.name
         self.line = table.lines
         self.ok: Mask = np.ones(len(table), dtype=bool)
@@ -72,21 +79,33 @@ class Rows:
                 self.reject(i, role, f"The {role} is empty", "Complete the cell.")
         if no_data:
             for i in np.flatnonzero(np.isin(values, NO_DATA)).tolist():
-                self.reject(
-                    i, role, f"The {role} is a mark for 'no data'", "Complete the cell or remove the row."
-                )
-        return values
+                self.reject(i, role, f"The {role} is a mark for 'no data'", "Complete the cell or remove the row.")
+        return values * self.factors[role] if role in self.factors else values
 
-    def reject(
-        self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "error"
-    ) -> None:
+    def places(self) -> tuple[Floats, Floats]:
+        """Return easting and northing (n,) in metres, projected where the source's system is not the wanted one.
+
+        Raises
+        ------
+        InputError
+            If a coordinate system is unknown.
+        """
+        x, y = self.numbers("x"), self.numbers("y")
+        crs, target = self.source.crs or _degrees(self.table, self.columns), self.source.target
+        if not (is_code(crs) and is_code(target)) or crs is None or target is None:
+            return x, y
+        east, north = project(x, y, crs, target, self.file)
+        lost = np.isnan(east) & np.isfinite(x) & np.isfinite(y)
+        for i in np.flatnonzero(lost & self.ok).tolist():
+            self.reject(i, "x", f"The place cannot be projected from {crs} to {target}", "Correct the coordinates.")
+        return east, north
+
+    def reject(self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "error") -> None:
         """List row i and do not use it."""
         self.ok[i] = False
         self._list(severity, i, role, reason, remedy)
 
-    def warn(
-        self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "warning"
-    ) -> None:
+    def warn(self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "warning") -> None:
         """List row i but use it."""
         self._list(severity, i, role, reason, remedy)
 
@@ -123,5 +142,13 @@ class Rows:
 def read_rows(source: Source | str | Path, schema: Schema, journal: Journal) -> Rows:
     """Read a table and find its columns."""
     source = as_source(source)
-    table = read_table(source, journal)
-    return Rows(table, find_columns(table, schema, source, journal), journal)
+    table = read_any_table(source, journal, schema.name)
+    if table.crs and not source.crs:
+        source = replace(source, crs=table.crs)
+    return Rows(table, find_columns(table, schema, source, journal), source, journal)
+
+
+def _degrees(table: Table, columns: dict[str, int]) -> str | None:
+    """Return the system of longitude and latitude where the columns of x and y are named so."""
+    names = [plain_name(table.header[columns[role]])[0] for role in ("x", "y") if role in columns]
+    return "EPSG:4326" if len(names) == 2 and all(name in GEOGRAPHIC for name in names) else None

@@ -93,9 +93,7 @@ def read_drawing(source: Source, horizons: HorizonNames, journal: Journal, *, sc
             uv.append(vertex)
             names.append(horizon)
             numbers.append(count)
-    return Drawn(
-        np.array(uv, dtype=np.float64).reshape(-1, 2), names, np.array(numbers, dtype=np.int64), listed
-    )
+    return Drawn(np.array(uv, dtype=np.float64).reshape(-1, 2), names, np.array(numbers, dtype=np.int64), listed)
 
 
 def _open(source: Source, journal: Journal) -> tuple[int, list[_Entity]]:

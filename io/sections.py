@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.errors import InputError
-from geofit.io.columns import SECTION
+from geofit.io.axes import Region, check_axes
+from geofit.io.columns import SECTION, SECTION_LINES, TRACES, Schema
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.polyline import along, chainage
@@ -18,7 +19,7 @@ from geofit.io.source import Source
 from geofit.points import PointSet
 from geofit.site import Section
 
-__all__ = ["Drawing", "lift", "load_section"]
+__all__ = ["Drawing", "lift", "load_level", "load_lines", "load_section"]
 
 Floats = NDArray[np.float64]
 
@@ -62,9 +63,71 @@ def load_section(
     for i in np.flatnonzero(_off_line(section, uv[:, 0]) & rows.ok).tolist():
         rows.reject(i, "distance", *_off_line_text(section, uv[i, 0]))
     rows.close()
-    return horizons.split(
-        rows, horizon, lift(section.line, uv[:, 0], uv[:, 1]), kind="section", section=section.name
-    )
+    return horizons.split(rows, horizon, lift(section.line, uv[:, 0], uv[:, 1]), kind="section", section=section.name)
+
+
+def load_lines(source: Source, journal: Journal, region: Region | None = None) -> dict[str, Floats]:
+    """Read the lines of sections in plan: rows of one section are its corners in order.
+
+    Returns
+    -------
+    dict of str to (k, 2) array
+        Corners of each section; one with less than two different corners is listed.
+    """
+    rows = read_rows(source, SECTION_LINES, journal)
+    name = rows.text("section")
+    x, y = rows.places()
+    check_axes(rows, x, y, region)
+    lines: dict[str, Floats] = {}
+    for section in dict.fromkeys(name[i] for i in np.flatnonzero(rows.ok).tolist()):
+        corners = np.array([i for i in np.flatnonzero(rows.ok) if name[i] == section])
+        xy = np.column_stack([x, y])[corners]
+        for k in np.flatnonzero((np.diff(xy, axis=0) == 0).all(axis=1)).tolist():
+            rows.reject(int(corners[k + 1]), "x", "The corner repeats the one before", "Remove one of the two.")
+        corners = corners[rows.ok[corners]]
+        if len(corners) < 2:
+            rows.reject(
+                int(corners[0]), "section", f"The line of section {section} has one corner only", "Add the others."
+            )
+        else:
+            lines[section] = np.column_stack([x, y])[corners]
+    rows.close()
+    return lines
+
+
+def load_level(
+    source: Source,
+    elevation: float,
+    drawing: Drawing,
+    horizons: HorizonNames,
+    journal: Journal,
+    region: Region | None = None,
+) -> dict[str, PointSet]:
+    """Read a plan drawn at one level, DXF or a table of horizon, x, y; kind "section".
+
+    ``drawing`` turns the drawing's coordinates into easting and northing.
+    """
+    section = f"level {elevation:g}"
+    if source.path.suffix.casefold() == ".dxf":
+        drawn = read_drawing(source, horizons, journal, scale_stated=drawing.scale != 1.0)
+        if not len(drawn.uv) and not drawn.listed:
+            raise InputError("The drawing is empty", "Draw the horizons in model space.", file=source.name)
+        xy = drawing.metres(drawn.uv)
+        journal.count(source.name, len(xy) + drawn.listed, drawn.listed)
+        xyz, names = np.column_stack([xy, np.full(len(xy), elevation)]), np.array(drawn.horizon, dtype=np.str_)
+        return {
+            name: PointSet(
+                xyz[names == name], kind="section", section=section, row=drawn.number[names == name], file=source.name
+            )
+            for name in dict.fromkeys(names.tolist())
+        }
+    rows = read_rows(source, Schema("traces", TRACES.required, {}), journal)
+    horizon = horizons.of(rows)
+    x, y = drawing.metres(np.column_stack(rows.places())).T
+    check_axes(rows, x, y, region)
+    rows.close()
+    xyz = np.column_stack([x, y, np.full(len(rows), elevation)])
+    return horizons.split(rows, horizon, xyz, kind="section", section=section)
 
 
 def _from_dxf(
@@ -90,9 +153,7 @@ def _from_dxf(
     xyz = lift(section.line, uv[:, 0], uv[:, 1])
     names = np.array(drawn.horizon, dtype=np.str_)
     return {
-        name: PointSet(
-            xyz[chosen], kind="section", section=section.name, row=drawn.number[chosen], file=source.name
-        )
+        name: PointSet(xyz[chosen], kind="section", section=section.name, row=drawn.number[chosen], file=source.name)
         for name in dict.fromkeys(names[~off].tolist())
         for chosen in [np.flatnonzero((names == name) & ~off)]
     }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
@@ -18,21 +18,25 @@ from geofit.io.axes import Region, region_of
 from geofit.io.boreholes import Boreholes, load_boreholes
 from geofit.io.boundary import load_boundary
 from geofit.io.contacts import Limit, load_contacts
+from geofit.io.crs import is_code
+from geofit.io.desurvey import METHODS
 from geofit.io.grid import load_ground
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
+from geofit.io.mapping import load_mappings
+from geofit.io.orientations import load_orientations
 from geofit.io.picks import load_picks
 from geofit.io.places import list_places
-from geofit.io.sections import Drawing, load_section
-from geofit.io.site_keys import HORIZON, SETTINGS, TABLE, TOP, Reader
+from geofit.io.site_drawings import gather, read_sections
+from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
 from geofit.io.source import Source
 from geofit.io.traces import load_traces
 from geofit.points import KINDS, PointSet
 from geofit.progress import Progress, tell
 from geofit.settings import FitSettings
-from geofit.site import Ground, Hole, Section, Site
+from geofit.site import Ground, Hole, Orientations, Site
 
-__all__ = ["read_site"]
+__all__ = ["load_site", "read_site"]
 
 Floats = NDArray[np.float64]
 
@@ -70,13 +74,27 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
     InputError
         If the site file has an unknown key, a file cannot be used at all, or a horizon has no point.
     """
+    site = load_site(path, progress)
+    if not site.horizons:
+        raise Reader(Path(path)).fail(
+            "The site has no horizon", "Add a [[horizon]] table and files that hold its points."
+        )
+    return site
+
+
+def load_site(path: str | Path, progress: Progress | None = None) -> Site:
+    """Read a site file, which may have no horizon yet; see :func:`read_site`."""
     source = Source(path=Path(path))
     journal = Journal()
     reader = Reader(source.path)
     top = _parse(journal.read(source), source.name)
     reader.keys(top, TOP, "The site file")
     label = reader.get(top, "site", dict, "the site file") or {}
-    reader.keys(label, ("name", "crs"), "[site]")
+    reader.keys(label, ("name", "crs", "mapping"), "[site]")
+    crs = reader.get(label, "crs", str, "[site]") or ""
+    reader.target = crs if is_code(crs) else None
+    if mapping := reader.get(label, "mapping", str, "[site]"):
+        reader.mappings = load_mappings(source.path.parent / mapping)
     horizons = [_horizon(reader, table) for table in reader.tables(top, "horizon")]
     names = HorizonNames([horizon.name for horizon in horizons])
     if len(set(map(str.casefold, names.names))) < len(horizons):
@@ -86,18 +104,23 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
     boundary, ground, region = _surroundings(reader, top, journal)
     tell(progress, "read boreholes and adits", 0.1)
     gathered: dict[str, list[PointSet]] = {name: [] for name in names.names}
-    boreholes = _boreholes(reader, top, journal, region)
+    boreholes = [_boreholes(reader, table, journal, region, ground) for table in reader.tables(top, "boreholes")]
     _gather_contacts(reader, gathered, boreholes, horizons, journal)
     adits = _adits(reader, top, names, journal, region, gathered)
     tell(progress, "read sections", 0.4)
-    sections = _sections(reader, top, names, journal, region, gathered)
+    sections = read_sections(reader, top, names, journal, region, gathered)
     tell(progress, "read traces and picks", 0.7)
     for table in reader.tables(top, "traces"):
-        _gather(gathered, load_traces(reader.source(table, "[traces]"), ground, names, journal, region))
+        gather(gathered, load_traces(reader.source(table, "[traces]", kind="traces"), ground, names, journal, region))
     for table in reader.tables(top, "picks"):
         kind = reader.get(table, "kind", str, "[picks]") or "point"
-        picks = reader.source(table, "[picks]", ("kind",))
-        _gather(gathered, load_picks(picks, names, journal, kind=kind, region=region))
+        picks = reader.source(table, "[picks]", ("kind", "horizon"), "picks")
+        alone = reader.get(table, "horizon", str, "[picks]")
+        gather(gathered, load_picks(picks, names, journal, kind=kind, region=region, alone=alone))
+    attitudes = [
+        load_orientations(reader.source(table, "[orientations]", kind="orientations"), journal, region)
+        for table in reader.tables(top, "orientations")
+    ]
 
     points, settings = {}, {}
     stated = {horizon.name: horizon for horizon in horizons}
@@ -106,10 +129,6 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
         settings[name] = horizon.settings
         points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon)
         list_places(name, points[name], journal, horizon.settings.conflict_distance)
-    if not points:
-        raise reader.fail(
-            "The site has no horizon", "Add a [[horizon]] table and files that hold its points."
-        )
     tell(progress, "read", 1.0)
     return Site(
         name=reader.get(label, "name", str, "[site]") or source.path.parent.name,
@@ -117,12 +136,13 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
         settings=settings,
         boundary=boundary,
         ground=ground,
-        holes=((boreholes.holes if boreholes else ()) + adits),
+        holes=tuple(hole for campaign in boreholes for hole in campaign.holes) + adits,
         sections=sections,
         issues=tuple(journal.issues),
         counts=tuple(journal.counts),
-        crs=reader.get(label, "crs", str, "[site]") or "",
+        crs=crs,
         inputs=dict(journal.inputs),
+        orientations=_joined(attitudes),
     )
 
 
@@ -165,10 +185,10 @@ def _surroundings(
 ) -> tuple[Floats | None, Ground | None, Region | None]:
     boundary = ground = region = None
     if "ground" in top:
-        ground = load_ground(reader.source(top["ground"], "[ground]"), journal)
+        ground = load_ground(reader.source(top["ground"], "[ground]", kind="ground"), journal)
         region = region_of(np.array([[ground.x[0], ground.y[0]], [ground.x[-1], ground.y[-1]]]))
     if "boundary" in top:
-        boundary = load_boundary(reader.source(top["boundary"], "[boundary]"), journal)
+        boundary = load_boundary(reader.source(top["boundary"], "[boundary]", kind="boundary"), journal)
         if region is not None:
             _compare(reader, boundary, region)
         region = region_of(boundary)
@@ -189,36 +209,37 @@ def _compare(reader: Reader, boundary: Floats, ground: Region) -> None:
 
 
 def _boreholes(
-    reader: Reader, top: Mapping[str, Any], journal: Journal, region: Region | None
-) -> Boreholes | None:
-    table = reader.get(top, "boreholes", dict, "the site file")
-    if table is None:
-        return None
+    reader: Reader, table: Mapping[str, Any], journal: Journal, region: Region | None, ground: Ground | None
+) -> Boreholes:
     where = "[boreholes]"
-    reader.keys(table, ("collar", "survey", "intervals", "dip"), where)
+    reader.keys(table, ("collar", "survey", "intervals", "dip", "declination", "desurvey"), where)
     if "collar" not in table:
         raise reader.fail(f"{where} has no 'collar'", 'Write collar = "collar.csv".', "collar")
     dip = reader.get(table, "dip", str, where)
     if dip not in (None, "down-positive", "down-negative"):
-        raise reader.fail(
-            "The sign of the dips is unknown", 'Write "down-positive" or "down-negative".', "dip", dip
-        )
+        raise reader.fail("The sign of the dips is unknown", 'Write "down-positive" or "down-negative".', "dip", dip)
+    method = reader.get(table, "desurvey", str, where) or METHODS[0]
+    if method not in METHODS:
+        raise reader.fail("The way to desurvey is unknown", f"Write {' or '.join(METHODS)}.", "desurvey", method)
     intervals = table.get("intervals", [])
     intervals = intervals if isinstance(intervals, list) else [intervals]
     return load_boreholes(
-        reader.source(table["collar"], f"collar in {where}"),
-        reader.source(table["survey"], f"survey in {where}") if "survey" in table else None,
-        [reader.source(entry, f"intervals in {where}") for entry in intervals],
+        reader.source(table["collar"], f"collar in {where}", kind="collar"),
+        reader.source(table["survey"], f"survey in {where}", kind="survey") if "survey" in table else None,
+        [reader.source(entry, f"intervals in {where}", kind="intervals") for entry in intervals],
         dip,
         journal,
         region,
+        declination=reader.get(table, "declination", float, where) or 0.0,
+        method="tangential" if method == "tangential" else "minimum-curvature",
+        ground=ground,
     )
 
 
 def _gather_contacts(
     reader: Reader,
     gathered: dict[str, list[PointSet]],
-    boreholes: Boreholes | None,
+    boreholes: list[Boreholes],
     horizons: list[_Horizon],
     journal: Journal,
 ) -> None:
@@ -226,14 +247,17 @@ def _gather_contacts(
         code = horizon.top if horizon.top is not None else horizon.base
         if code is None:
             continue
-        if boreholes is None or not boreholes.logs:
+        logged = [campaign for campaign in boreholes if campaign.logs]
+        if not logged:
             raise reader.fail(
                 f"horizon '{horizon.name}' is a limit of '{code}', but the site has no intervals",
                 'Add intervals = ["lithology.csv"] to [boreholes], or remove top and base.',
                 "top" if horizon.top is not None else "base",
             )
         limit: Limit = "top" if horizon.top is not None else "base"
-        gathered[horizon.name].append(load_contacts(boreholes, code, limit, journal))
+        # A code need not occur in every campaign; where it occurs in none the first one says so.
+        carrying = [c for c in logged if any((log.code == code).any() for log in c.logs)] or logged[:1]
+        gathered[horizon.name] += [load_contacts(campaign, code, limit, journal) for campaign in carrying]
 
 
 def _adits(
@@ -250,77 +274,17 @@ def _adits(
     reader.keys(table, ("path", "contacts"), "[adits]")
     if "path" not in table:
         raise reader.fail("[adits] has no 'path'", 'Write path = "adits.csv".', "path")
-    adits = load_adits(reader.source(table["path"], "path in [adits]"), journal, region)
+    adits = load_adits(reader.source(table["path"], "path in [adits]", kind="adit path"), journal, region)
     if "contacts" in table:
-        contacts = reader.source(table["contacts"], "contacts in [adits]")
-        _gather(gathered, load_adit_contacts(contacts, adits, names, journal))
+        contacts = reader.source(table["contacts"], "contacts in [adits]", kind="adit contacts")
+        gather(gathered, load_adit_contacts(contacts, adits, names, journal))
     return adits
 
 
-def _sections(
-    reader: Reader,
-    top: Mapping[str, Any],
-    names: HorizonNames,
-    journal: Journal,
-    region: Region | None,
-    gathered: dict[str, list[PointSet]],
-) -> tuple[Section, ...]:
-    sections: list[Section] = []
-    for table in reader.tables(top, "section"):
-        name = reader.need(table, "name", str, "[[section]]", 'Write name = "...".')
-        where = f"section '{name}'"
-        if any(section.name == name for section in sections):
-            raise reader.fail(f"Two sections have the name '{name}'", "Give each its own.", "name")
-        reader.keys(table, (*TABLE, "name", "line", "scale", "origin"), where)
-        remedy = "Write line = [[x, y], [x, y]], the corners of the section line in plan."
-        line = _pairs(reader, reader.need(table, "line", list, where, remedy), f"line of {where}", remedy)
-        if len(line) < 2 or not (np.diff(line, axis=0) != 0).any(axis=1).all():
-            raise reader.fail(
-                f"The line of {where} needs two or more different corners", remedy, "line", line.tolist()
-            )
-        _check_line(reader, line, where, region)
-        scale = reader.get(table, "scale", float, where)
-        if scale is not None and scale <= 0:
-            raise reader.fail(
-                f"scale in {where} must be above 0", "Give drawing units a metre.", "scale", scale
-            )
-        remedy = "Write origin = [u, v], the drawing's coordinates of distance 0 and elevation 0."
-        origin = _pairs(reader, [table.get("origin", [0.0, 0.0])], f"origin of {where}", remedy)[0]
-        drawing = Drawing(scale=1.0 if scale is None else scale, origin=(float(origin[0]), float(origin[1])))
-        sections.append(Section(name, line))
-        source = reader.source(table, where, ("name", "line", "scale", "origin"))
-        _gather(gathered, load_section(source, sections[-1], drawing, names, journal))
-    return tuple(sections)
-
-
-def _pairs(reader: Reader, value: Any, where: str, remedy: str) -> Floats:
-    try:
-        pairs = np.array(value, dtype=np.float64)
-    except (ValueError, TypeError):
-        pairs = np.empty(0)
-    if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
-        raise reader.fail(f"The {where} is no list of finite pairs", remedy, value=value)
-    return pairs
-
-
-def _check_line(reader: Reader, line: Floats, where: str, region: Region | None) -> None:
-    if region is None:
-        return
-    west, east, south, north = region
-    x, y = line.mean(axis=0)
-    if (west <= y <= east and south <= x <= north) and not (west <= x <= east and south <= y <= north):
-        raise reader.fail(
-            f"x and y look exchanged in the line of {where}: it lies far outside the study area, and inside "
-            "it with x and y swapped",
-            "x is the easting, y the northing.",
-            "line",
-            line.tolist(),
-        )
-
-
-def _gather(gathered: dict[str, list[PointSet]], found: Mapping[str, PointSet]) -> None:
-    for name, points in found.items():
-        gathered.setdefault(name, []).append(points)
+def _joined(sets: list[Orientations]) -> Orientations | None:
+    if not sets:
+        return None
+    return Orientations(**{f.name: np.concatenate([getattr(s, f.name) for s in sets]) for f in fields(Orientations)})
 
 
 def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> PointSet:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from geofit.errors import InputError
+from geofit.io.mapping import ColumnMapping
 from geofit.io.source import Source
 from geofit.settings import FitSettings
 
@@ -18,24 +19,40 @@ __all__ = ["HORIZON", "SETTINGS", "TABLE", "TOP", "Reader"]
 SETTINGS = tuple(f.name for f in fields(FitSettings))
 
 #: Keys of a table that names a text file.
-TABLE = ("file", "encoding", "sep", "decimal", "columns")
+TABLE = ("file", "table", "encoding", "sep", "decimal", "columns", "unit", "measure", "crs")
 HORIZON = ("name", "top", "base", "accuracy", *SETTINGS)
-TOP = ("site", "boundary", "ground", "boreholes", "adits", "section", "traces", "picks", "horizon")
+TOP = (
+    "site",
+    "boundary",
+    "ground",
+    "boreholes",
+    "adits",
+    "section_lines",
+    "section",
+    "level",
+    "traces",
+    "picks",
+    "orientations",
+    "horizon",
+)
 
 _KINDS = {str: "a text", dict: "a table", list: "a list", float: "a number"}
 
 
 class Reader:
-    """Takes typed values out of one site file; every complaint names the file and the key."""
+    """Takes typed values out of one site file; every complaint names the file and the key.
+
+    ``mappings`` fill in what the site file does not state of a table, ``target`` is the site's coordinate system.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path, self.file = path, path.name
+        self.mappings: tuple[ColumnMapping, ...] = ()
+        self.target: str | None = None
 
     def fail(self, reason: str, remedy: str, key: str | None = None, value: Any = None) -> InputError:
         """Return the error for a key."""
-        return InputError(
-            reason, remedy, file=self.file, column=key, value=None if value is None else str(value)
-        )
+        return InputError(reason, remedy, file=self.file, column=key, value=None if value is None else str(value))
 
     def keys(self, table: Mapping[str, Any], allowed: Iterable[str], where: str) -> None:
         """Refuse keys that are not allowed, naming the nearest that is."""
@@ -74,14 +91,15 @@ class Reader:
             raise self.fail(f"'{key}' is no table", f"Write [{key}] or [[{key}]] above its keys.", key)
         return value
 
-    def source(self, value: Any, where: str, more: Iterable[str] = ()) -> Source:
-        """Return the file that a text or a table with ``file`` names; ``more`` keys are someone else's."""
+    def source(self, value: Any, where: str, more: Iterable[str] = (), kind: str = "") -> Source:
+        """Return the file that a text or a table with ``file`` names; ``more`` keys are someone else's.
+
+        ``kind`` is the mapping's name for its rows.
+        """
         if isinstance(value, str):
             value = {"file": value}
         if not isinstance(value, dict):
-            raise self.fail(
-                f"{where} must name a file", 'Write "name.csv" or { file = "name.csv" }.', value=value
-            )
+            raise self.fail(f"{where} must name a file", 'Write "name.csv" or { file = "name.csv" }.', value=value)
         self.keys(value, (*TABLE, *more), where)
         file = self.need(value, "file", str, where, 'Write file = "name.csv".')
         columns = self.get(value, "columns", dict, where) or {}
@@ -93,11 +111,20 @@ class Reader:
                     role,
                     column,
                 )
-        return Source(
+        source = Source(
             path=self.path.parent / file,
             name=file,
             encoding=self.get(value, "encoding", str, where),
             sep=self.get(value, "sep", str, where),
             decimal=self.get(value, "decimal", str, where),
             columns=columns,
+            table=self.get(value, "table", str, where) or "",
+            unit=self.get(value, "unit", str, where),
+            measure=self.get(value, "measure", str, where),
+            crs=self.get(value, "crs", str, where),
+            target=self.target,
         )
+        for mapping in self.mappings:
+            if mapping.suits(file, source.table, kind):
+                return mapping.fill(source)
+        return source

@@ -94,9 +94,7 @@ def _utf16(data: bytes) -> list[str]:
 def _looks_chinese(data: bytes) -> bool:
     """Whether the bytes above 127 come in pairs of the common characters of GB 2312."""
     high = re.findall(rb"[\x80-\xff]+", data)
-    common = sum(
-        len(re.findall(rb"[\xa1-\xa3\xb0-\xd7][\xa1-\xfe]", run)) for run in high if len(run) % 2 == 0
-    )
+    common = sum(len(re.findall(rb"[\xa1-\xa3\xb0-\xd7][\xa1-\xfe]", run)) for run in high if len(run) % 2 == 0)
     return common * 2 > 0.6 * sum(map(len, high)) > 0
 
 

@@ -25,6 +25,15 @@ class Source:
         Text encoding, separator of cells ("space" or " " for runs of blanks, "tab"), decimal mark.
     columns : mapping of str to str or int
         Column of a role: its header, or its number counted from 1.
+    table : str
+        Sheet of a workbook, group of an AGS file, layer of a GeoPackage, where the file has several.
+    unit : str, optional
+        Unit of all lengths: "m", "ft", "ft-us" (survey foot), "km", "cm" or "mm".
+    measure : {"depth", "elevation"}, optional
+        Whether from, to (of intervals) or z (of picks) count downwards or are elevations.
+    crs, target : str, optional
+        Coordinate system of x and y, and the one that is wanted: where both are codes that differ, the places
+        are projected (extra ``gis``).
     """
 
     path: Path
@@ -33,10 +42,17 @@ class Source:
     sep: str | None = None
     decimal: str | None = None
     columns: Mapping[str, str | int] = field(default_factory=dict)
+    table: str = ""
+    unit: str | None = None
+    measure: str | None = None
+    crs: str | None = None
+    target: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
-        object.__setattr__(self, "name", self.name or self.path.name)
+        name = self.name or self.path.name
+        mark = f" [{self.table}]" if self.table else ""
+        object.__setattr__(self, "name", name if name.endswith(mark) else name + mark)
         words = {"tab": "\t", "space": " ", "comma": ",", "semicolon": ";", "\\t": "\t"}
         object.__setattr__(self, "sep", words.get(self.sep, self.sep) if self.sep is not None else None)
         if self.sep is not None and len(self.sep) != 1:
@@ -46,9 +62,9 @@ class Source:
                 file=self.name,
             )
         if self.decimal not in (None, ".", ","):
-            raise InputError(
-                f"The decimal mark {self.decimal!r} is unknown", "Give '.' or ','.", file=self.name
-            )
+            raise InputError(f"The decimal mark {self.decimal!r} is unknown", "Give '.' or ','.", file=self.name)
+        if self.measure not in (None, "depth", "elevation"):
+            raise InputError(f"The measure {self.measure!r} is unknown", "Give 'depth' or 'elevation'.", file=self.name)
         if self.decimal == "," and self.sep == ",":
             raise InputError(
                 "The comma cannot be both separator and decimal mark",

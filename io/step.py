@@ -17,13 +17,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from geofit.io.step_check import read_back
-from geofit.io.step_text import canonical
 from numpy.typing import NDArray
 
 from geofit import __version__
 from geofit.accuracy import ReadBack
 from geofit.errors import InputError
+from geofit.io.step_check import read_back
+from geofit.io.step_text import canonical
 from geofit.occ import along, edges_with_faces, faces_of, from_geom, placement
 from geofit.points import PointSet
 from geofit.stitch import shell
@@ -360,9 +360,7 @@ def _surface(shape: StepShape, whole: bool = False) -> HorizonSurface:
     if not origin.any() and np.abs(first).max() > 1e4:
         origin = np.round(first, -2)
         patches = [_moved(patch, np.eye(3), -origin) for patch in patches]
-    surface = HorizonSurface(
-        patches=tuple(patches), origin=origin, points=PointSet(np.empty((0, 3))), name=shape.name
-    )
+    surface = HorizonSurface(patches=tuple(patches), origin=origin, points=PointSet(np.empty((0, 3))), name=shape.name)
     outline = _outline(shape) if is_height_field(surface) else None
     if outline is None or needed(surface.with_(outline=outline), 1e-6) is None:
         return surface

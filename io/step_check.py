@@ -30,9 +30,7 @@ SAMPLES = 200
 MEASURED = 2000
 
 
-def read_back(
-    surface: HorizonSurface, shape: StepShape, found: HorizonSurface, written: Any, path: Path
-) -> ReadBack:
+def read_back(surface: HorizonSurface, shape: StepShape, found: HorizonSurface, written: Any, path: Path) -> ReadBack:
     """Check a horizon as it stands in the file against the one that was written.
 
     Parameters
@@ -197,9 +195,7 @@ def _distances(surface: HorizonSurface, shape: StepShape, found: HorizonSurface)
     return distance, how
 
 
-def _occ_lengths(
-    shape: StepShape, xyz: Floats, patch: NDArray[np.int64], chosen: Any, ours: Floats
-) -> Floats:
+def _occ_lengths(shape: StepShape, xyz: Floats, patch: NDArray[np.int64], chosen: Any, ours: Floats) -> Floats:
     from OCP.BRep import BRep_Tool
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeVertex
     from OCP.BRepExtrema import BRepExtrema_DistShapeShape
@@ -293,11 +289,7 @@ def _outline_check(surface: HorizonSurface, shape: StepShape, free: list[Any]) -
     ring = shapely.LinearRing(surface.outline - surface.origin[:2])
     points = np.concatenate([along(edge, 24)[:, :2] for edge in free])
     off = float(shapely.distance(ring, shapely.points(points)).max())
-    reach = (
-        "the free edges follow the outline"
-        if off <= limit
-        else "the surface does not reach its whole outline"
-    )
+    reach = "the free edges follow the outline" if off <= limit else "the surface does not reach its whole outline"
     return Check(name, True if off <= limit else None, off, limit, "m", reach)
 
 

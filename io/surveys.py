@@ -22,6 +22,8 @@ Floats = NDArray[np.float64]
 
 #: A hole that turns by more between two stations has a wrong sign or a wrong row, degrees.
 SHARPEST_TURN = 90.0
+#: The azimuth of a steeper hole does not matter, degrees.
+VERTICAL = 89.99
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,7 @@ class Stations:
         sign: Literal["down-positive", "down-negative"] | None,
         *,
         blank_is_vertical: bool = False,
+        declination: float = 0.0,
     ) -> dict[str, Stations]:
         """Return the stations of each hole; rows that cannot be used are listed."""
         azimuth, dip = (
@@ -55,21 +58,16 @@ class Stations:
         for i in np.flatnonzero((np.isnan(azimuth) & np.isfinite(dip)) & rows.ok).tolist():
             rows.reject(i, "azimuth", "The azimuth of an inclined hole is empty", "Complete the cell.")
         for i in np.flatnonzero((np.abs(dip) > 90.0) & rows.ok).tolist():
-            rows.reject(
-                i, "dip", "The dip is not between -90 and 90 degrees", "Give the angle from horizontal."
-            )
+            rows.reject(i, "dip", "The dip is not between -90 and 90 degrees", "Give the angle from horizontal.")
         for i in np.flatnonzero((np.abs(azimuth) > 360.0) & rows.ok).tolist():
-            rows.reject(
-                i, "azimuth", "The azimuth is not between 0 and 360 degrees", "Give degrees from north."
-            )
+            rows.reject(i, "azimuth", "The azimuth is not between 0 and 360 degrees", "Give degrees from north.")
+        azimuth = azimuth + declination
         dip = _downwards(rows, dip, sign)
         chosen = rows.ok & np.isfinite(dip)
         result: dict[str, Stations] = {}
         order = np.lexsort((np.arange(len(name)), depth, np.array(name)))
         order = order[chosen[order]]
-        for group in np.split(
-            order, np.flatnonzero(np.array(name)[order][1:] != np.array(name)[order][:-1]) + 1
-        ):
+        for group in np.split(order, np.flatnonzero(np.array(name)[order][1:] != np.array(name)[order][:-1]) + 1):
             kept = _sound(rows, group, depth, azimuth, dip)
             if kept.size:
                 result[name[kept[0]]] = Stations(depth[kept], azimuth[kept], dip[kept])
@@ -81,8 +79,11 @@ def read_stations(
     sign: Literal["down-positive", "down-negative"] | None,
     holes: Sequence[str],
     journal: Journal,
+    declination: float = 0.0,
 ) -> dict[str, Stations]:
     """Read a survey table; stations of unknown holes, repeated and impossible ones are listed.
+
+    ``declination`` (degrees, east positive) is added to the azimuths, which are grid azimuths without one.
 
     A hole whose first station lies below 0 goes straight to it, a hole with one station is straight: each is
     listed as a warning.
@@ -91,10 +92,16 @@ def read_stations(
     name, depth = rows.text("hole"), rows.numbers("depth")
     rows.require_known("hole", name, holes, "collar table")
     for i in np.flatnonzero((depth < 0) & rows.ok).tolist():
-        rows.reject(
-            i, "depth", "The station lies above the collar", "Depths count from the collar, downwards."
+        rows.reject(i, "depth", "The station lies above the collar", "Depths count from the collar, downwards.")
+    stations = Stations.from_rows(rows, name, depth, sign, declination=declination)
+    if not declination and any(np.abs(station.dip).min() < VERTICAL for station in stations.values()):
+        journal.add(
+            "note",
+            rows.file,
+            "The azimuths are taken as relative to grid north",
+            "State declination = ... (degrees, east positive) where they are magnetic.",
+            column=rows.table.header[rows.columns["azimuth"]],
         )
-    stations = Stations.from_rows(rows, name, depth, sign)
     first: dict[str, int] = {}
     for i in np.flatnonzero(rows.ok).tolist():
         if name[i] not in first or depth[i] < depth[first[name[i]]]:
@@ -153,9 +160,7 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
     return -dip if down == "down-negative" else dip
 
 
-def _sound(
-    rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats, dip: Floats
-) -> NDArray[np.int64]:
+def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats, dip: Floats) -> NDArray[np.int64]:
     """Return the stations of one hole without repeated depths and impossible turns, which are listed."""
     kept: list[int] = []
     for i in map(int, group):

@@ -13,7 +13,7 @@ from geofit.io.journal import Journal
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, split_line
 from geofit.io.source import Source
 
-__all__ = ["Table", "parse_numbers", "read_table"]
+__all__ = ["Table", "parse_numbers", "read_table", "unique_names"]
 
 Floats = NDArray[np.float64]
 
@@ -26,7 +26,8 @@ class Table:
     """Rows of one text file.
 
     ``columns[j][i]`` is the cell of column j in row i as it stands in the file, ``lines[i]`` the line of
-    row i counted from 1. ``read`` counts the rows of the file; those that are not in ``columns`` have cells
+    row i counted from 1 (the feature's number in a map format). ``crs`` is the coordinate system that the file
+    itself names. ``read`` counts the rows of the file; those that are not in ``columns`` have cells
     beyond the header's and are listed in the journal already. ``named``: the file has a header.
     """
 
@@ -40,6 +41,7 @@ class Table:
     encoding: str
     sep: str
     decimal: str
+    crs: str = ""
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -76,7 +78,7 @@ def read_table(source: Source, journal: Journal) -> Table:
     width = len(first)
     while named and width > 1 and not first[width - 1].strip():
         width -= 1
-    header = _unique([cell.strip() for cell in first[:width]]) if named else _numbered(width)
+    header = unique_names([cell.strip() for cell in first[:width]]) if named else _numbered(width)
     body = start + taken if named else start
     units: tuple[str, ...] = ()
     if named and below and is_units_row(split_line(below[0], sep)):
@@ -129,14 +131,9 @@ def _skip_titles(lines: list[str], start: int, sep: str, name: str, journal: Jou
     widths = [sum(bool(cell.strip()) for cell in split_line(lines[i], sep)) for i in filled]
     k = 0
     while (
-        k + 1 < len(filled)
-        and widths[k] == 1
-        and sep != " "
-        and sum(w > 1 for w in widths[k:]) > len(widths[k:]) // 2
+        k + 1 < len(filled) and widths[k] == 1 and sep != " " and sum(w > 1 for w in widths[k:]) > len(widths[k:]) // 2
     ):
-        journal.add(
-            "note", name, "A title above the header is not read", row=filled[k] + 1, value=lines[filled[k]]
-        )
+        journal.add("note", name, "A title above the header is not read", row=filled[k] + 1, value=lines[filled[k]])
         k += 1
     return filled[k] if filled else start
 
@@ -210,7 +207,8 @@ def _quoted(lines: list[str], i: int, sep: str) -> tuple[list[str], int]:
     return alone, 1
 
 
-def _unique(names: list[str]) -> tuple[str, ...]:
+def unique_names(names: list[str]) -> tuple[str, ...]:
+    """Return headers of which none is empty and no two are alike."""
     seen: dict[str, int] = {}
     unique = []
     for j, name in enumerate(names):

@@ -33,7 +33,7 @@ def load_traces(
     """
     rows = read_rows(source, TRACES, journal)
     horizon = horizons.of(rows)
-    x, y = rows.numbers("x"), rows.numbers("y")
+    x, y = rows.places()
     z = rows.numbers("z", required=False, no_data=True)
     check_axes(rows, x, y, region)
     blank = np.flatnonzero(np.isnan(z) & rows.ok)
@@ -47,8 +47,6 @@ def load_traces(
     if blank.size and ground is not None:
         z[blank] = ground.elevation(x[blank], y[blank])
         for i in blank[np.isnan(z[blank])].tolist():
-            rows.reject(
-                i, "x", "The point lies off the ground's grid", "Extend the grid or add its elevation."
-            )
+            rows.reject(i, "x", "The point lies off the ground's grid", "Extend the grid or add its elevation.")
     rows.close()
     return horizons.split(rows, horizon, np.column_stack([x, y, z]), kind="outcrop")

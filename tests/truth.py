@@ -75,7 +75,7 @@ def paper_arrangement(
         section += [f"S{i + 1:02d}"] * section_points
     side = np.where(rng.uniform(size=periphery) < 0.5, 0.0, x1 + 60.0)
     xyz.append(np.column_stack([side + rng.uniform(0, x0 - 60.0, periphery), rng.uniform(0, size, periphery)]))
-    plan = np.concatenate(xyz) + (EASTING, NORTHING)
+    plan = np.concatenate(xyz) + np.array([EASTING, NORTHING])
     z = height(plan[:, 0], plan[:, 1]) + rng.normal(0, noise, len(plan))
     points = PointSet(
         np.column_stack([plan, z]),

@@ -53,10 +53,7 @@ def score(error: np.ndarray) -> Score:
 def folds(points: PointSet, count: int = FOLDS, seed: int = SEED) -> np.ndarray:
     """Return the fold of each point (n,): the points of one hole, or of one place, stay together."""
     places = np.unique(points.xyz[:, :2], axis=0, return_inverse=True)[1].reshape(-1)
-    names = np.where(points.hole != "", points.hole, places.astype(str))
-    _, group = np.unique(names, return_inverse=True)
-    # Holes that start at one place stay together as well.
-    _, group = np.unique(group, return_inverse=True)
+    _, group = np.unique(np.where(points.hole != "", points.hole, places.astype(str)), return_inverse=True)
     shuffled = np.random.default_rng(seed).permutation(group.max() + 1) % count
     return shuffled[group]
 

@@ -19,8 +19,8 @@ __all__ = ["SETS", "RealSet", "data_folder", "rectangle"]
 KIMBERLINA_WELLS, WEKA_HOLES = 30, 15
 #: Share of Claudius' cloud that is given beside the section, by the file's own random number.
 CLAUDIUS_SHARE = 0.2
-#: Codes of Copper Creek that are taken, the most frequent first.
-COPPER_CODES = 4
+#: Limits of frequent codes of Copper Creek.
+COPPER_LIMITS = ("top of pqd", "top of GHv", "top of bx", "base of gd")
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,16 +107,18 @@ def _kimberlina(folder: Path) -> RealSet:
     table = folder / "kimberlina" / "kim_ready.csv"
     depth = read_points(table, z="base", surface="formation")
     altitude = read_points(table, z="altitude", surface="formation")
-    mouth = {row: z for points in altitude.horizons.values() for row, z in zip(points.row, points.xyz[:, 2])}
+    mouth = {
+        row: z for points in altitude.horizons.values() for row, z in zip(points.row, points.xyz[:, 2], strict=True)
+    }
     horizons = {}
     for name, points in depth.horizons.items():
         if len(np.unique(points.hole)) >= KIMBERLINA_WELLS:
             xyz = points.xyz.copy()
-            xyz[:, 2] = [mouth[row] - z for row, z in zip(points.row, xyz[:, 2])]
+            xyz[:, 2] = [mouth[row] - z for row, z in zip(points.row, xyz[:, 2], strict=True)]
             horizons[f"base of {name}"] = points.with_(xyz=xyz, kind="borehole")
     site = _site("Kimberlina", horizons, depth)
     words = f"all wells; elevation = altitude - base; formations with at least {KIMBERLINA_WELLS} wells"
-    return RealSet("Kimberlina", site, words, scale=FitSettings(epsilon=25.0, interior_tolerance=20.0))
+    return RealSet("Kimberlina", site, words)
 
 
 def _limits(holes: Boreholes) -> dict[str, PointSet]:
@@ -140,12 +142,12 @@ def _weka_hills(folder: Path) -> RealSet:
 def _copper_creek(folder: Path) -> RealSet:
     path = folder / "copper_creek"
     holes = read_boreholes(path / "collar.csv", path / "survey.csv", [path / "lithology.csv"])
-    limits = list(_limits(holes).items())
-    pairs = [limits[k : k + 2] for k in range(0, 2 * COPPER_CODES, 2)]
-    horizons = dict(max(pair, key=lambda limit: len(limit[1])) for pair in pairs)
-    site = _site("Copper Creek", horizons, holes, holes=holes.holes)
-    words = f"of the {COPPER_CODES} codes with most intervals the limit that more holes see, all contacts given"
-    return RealSet("Copper Creek", site, words, scale=FitSettings(epsilon=50.0, interior_tolerance=40.0))
+    limits = _limits(holes)
+    site = _site("Copper Creek", {name: limits[name] for name in COPPER_LIMITS}, holes, holes=holes.holes)
+    words = (
+        "limits of four frequent codes, all contacts given (gdp and mgp take up to a minute a fit: too long for folds)"
+    )
+    return RealSet("Copper Creek", site, words)
 
 
 SETS: dict[str, Callable[[Path], RealSet]] = {

@@ -49,8 +49,7 @@ FILES = {
         "ncols 3\nnrows 2\nxllcorner 499500\nyllcorner 3099500\ncellsize 1000\nNODATA_value -9999\n"
         "120 120 120\n100 100 100\n"
     ),
-    "collar.csv": "hole,x,y,z,depth\nB1,500100,3100100,110,50\n"
-    "B2,500200,3100100,111,60\nB3,500300,3100100,112,40\n",
+    "collar.csv": "hole,x,y,z,depth\nB1,500100,3100100,110,50\nB2,500200,3100100,111,60\nB3,500300,3100100,112,40\n",
     "survey.csv": "hole,depth,azimuth,dip\nB2,0,90,60\nB2,30,90,60\n",
     "lithology.csv": (
         "hole,from,to,code\nB1,0,5,Q\nB1,5,12,T2\nB1,12,20,T2\nB1,20,50,T1\nB2,0,20,T2\nB2,20,60,T1\nB3,0,40,T2\n"
@@ -60,8 +59,7 @@ FILES = {
     "adit_contacts.csv": "adit,chainage,horizon\nPD1,50,T2-T1\n",
     "sections/C1.csv": "horizon,distance,elevation\nT2-T1,0,80\nT2-T1,250,81\nT2-T1,600,82\n",
     "outcrops.csv": "horizon,x,y\nT2-T1,500500,3100500\n",
-    "geophysics.csv": "horizon,x,y,z,kind,accuracy\n"
-    "T2-T1,500600,3100600,70,,0.5\nT2-T1,500700,3100600,71,map,\n",
+    "geophysics.csv": "horizon,x,y,z,kind,accuracy\nT2-T1,500600,3100600,70,,0.5\nT2-T1,500700,3100600,71,map,\n",
 }
 
 

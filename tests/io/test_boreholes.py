@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geofit.errors import InputError
-from geofit.io import read_boreholes, take_contacts
+from geofit.io import Source, read_boreholes, take_contacts
 
 COLLAR = "hole,x,y,z,depth\nB1,0,0,100,50\n"
 
@@ -104,9 +104,7 @@ def test_hole_without_survey_is_vertical_and_vertical_needs_no_azimuth(write):
 
 def test_first_station_below_the_collar(write):
     holes = survey(write, "B1,40,90,45\nB1,80,90,45\n")
-    np.testing.assert_allclose(
-        holes.paths["B1"].at(40), [[40 * np.sqrt(0.5), 0, -40 * np.sqrt(0.5)]], atol=1e-12
-    )
+    np.testing.assert_allclose(holes.paths["B1"].at(40), [[40 * np.sqrt(0.5), 0, -40 * np.sqrt(0.5)]], atol=1e-12)
     assert any("no station at depth 0" in issue.reason for issue in holes.issues)
 
 
@@ -114,3 +112,43 @@ def test_attitude_in_the_collar_table(write):
     collar = write("hole,x,y,z,depth,azimuth,dip\nB1,0,0,0,10,90,30\n", "collar.csv")
     holes = read_boreholes(collar, dip="down-positive")
     np.testing.assert_allclose(holes.holes[0].xyz[-1], [10 * np.sqrt(0.75), 0, -5], atol=1e-12)
+
+
+COLLARS = "hole,x,y,z,depth\nA,0,0,100,50\nB,50,0,103,50\n"
+
+
+def test_limits_as_elevations(write):
+    collar = write(COLLARS, "collar.csv")
+    survey = write("hole,depth,azimuth,dip\nB,0,90,30\n", "survey.csv")
+    log = "hole,from,to,code\nA,100,88,Q\nA,88,50,T\nB,103,98,Q\nB,98,78,T\nB,98,120,T\n"
+    holes = read_boreholes(collar, survey, [write(log, "log.csv")])
+    assert any("taken as elevations" in issue.reason for issue in holes.issues if issue.severity == "warning")
+    np.testing.assert_allclose(holes.logs[0].base, [12, 50, 10, 50], atol=1e-6)
+    assert (holes.counts[2].read, holes.counts[2].used) == (5, 4)
+    stated = read_boreholes(collar, survey, [Source(path=write(log, "log.csv"), measure="depth")])
+    assert stated.counts[2].used == 0
+    named = "hole,top elevation,base elevation,code\nA,100,88,Q\n"
+    assert read_boreholes(collar, None, [write(named, "n.csv")]).logs[0].base.tolist() == [12]
+
+
+def test_declination_turns_the_azimuths(write):
+    collar, survey = write(COLLARS, "collar.csv"), write("hole,depth,azimuth,dip\nB,0,80,60\n", "survey.csv")
+    grid = read_boreholes(collar, survey, dip="down-positive")
+    assert any("relative to grid north" in issue.reason for issue in grid.issues if issue.severity == "note")
+    magnetic = read_boreholes(collar, survey, dip="down-positive", declination=10.0)
+    np.testing.assert_allclose(magnetic.holes[1].xyz[-1], [75, 0, 103 - 50 * np.sin(np.pi / 3)], atol=1e-9)
+
+
+def test_tangential_is_asked_for(write):
+    collar = write(COLLARS, "collar.csv")
+    survey = write("hole,depth,azimuth,dip\nA,0,0,90\nA,20,90,60\n", "survey.csv")
+    holes = read_boreholes(collar, survey, dip="down-positive", method="tangential")
+    np.testing.assert_allclose(holes.holes[0].xyz[-1], [15, 0, 80 - 30 * np.sin(np.pi / 3)], atol=1e-9)
+    curved = read_boreholes(collar, survey, dip="down-positive")
+    assert curved.holes[0].xyz[-1, 0] > 15.1
+
+
+@pytest.mark.parametrize(("unit", "metres"), [("ft", 0.3048), ("ft-us", 1200 / 3937), ("m", 1.0)])
+def test_stated_units(write, unit, metres):
+    holes = read_boreholes(Source(path=write("hole,x,y,z_ft,depth\nA,10,20,100,50\n"), unit=unit))
+    np.testing.assert_allclose(holes.holes[0].xyz[-1], np.array([10, 20, 50]) * metres, atol=1e-9)

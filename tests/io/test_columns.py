@@ -6,8 +6,9 @@ import pytest
 
 from geofit.errors import InputError
 from geofit.io import columns
-from geofit.io.columns import find_columns
+from geofit.io.guess import find_columns
 from geofit.io.journal import Journal
+from geofit.io.rows import read_rows
 from geofit.io.source import Source
 from geofit.io.tables import read_table
 
@@ -83,6 +84,9 @@ def test_no_header_is_taken_in_order_with_a_warning(write):
         find(write("1,2,3,4\n4,5,6,7\n"), columns.PICKS)
 
 
-def test_feet_are_warned_of(write):
-    _, journal = find(write("hole,x,y,z_ft\nB1,1,2,3\n"), columns.COLLAR)
+def test_feet_are_converted_and_warned_of(write):
+    journal = Journal()
+    rows = read_rows(Source(path=write("hole,x,y,z_ft\nB1,1,2,3\n")), columns.COLLAR, journal)
+    assert rows.numbers("z").tolist() == [3 * 0.3048]
+    assert rows.numbers("x").tolist() == [1.0]
     assert any("feet" in issue.reason for issue in journal.issues if issue.severity == "warning")

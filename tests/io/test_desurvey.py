@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.io.desurvey import minimum_curvature
+from geofit.io.desurvey import METHODS, desurvey, minimum_curvature, tangential
 
 
 def random_survey(seed, stations=30):
@@ -34,9 +34,7 @@ def test_places_between_stations_agree_with_wellpathpy(seed):
     places = np.linspace(0, depth[-1], 101)
     position = wellpathpy.deviation(md=depth, inc=90 - dip, azi=azimuth).minimum_curvature().resample(places)
     expected = np.column_stack([position.easting, position.northing, -position.depth])
-    np.testing.assert_allclose(
-        minimum_curvature((0, 0, 0), depth, azimuth, dip).at(places), expected, atol=1e-6
-    )
+    np.testing.assert_allclose(minimum_curvature((0, 0, 0), depth, azimuth, dip).at(places), expected, atol=1e-6)
 
 
 def test_places_between_stations_lie_on_the_circle():
@@ -73,3 +71,23 @@ def test_straight_before_the_first_station_and_beyond_the_last():
 def test_tiny_doglegs_keep_their_digits():
     path = minimum_curvature((0, 0, 0), [0, 100], [0, 1e-7], [60, 60])
     np.testing.assert_allclose(np.linalg.norm(path.xyz[1]), 100, rtol=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_tangential_agrees_with_wellpathpy(seed):
+    wellpathpy = pytest.importorskip("wellpathpy")
+    depth, azimuth, dip = random_survey(seed)
+    position = wellpathpy.deviation(md=depth, inc=90 - dip, azi=azimuth).tan_method(choice="low")
+    expected = np.column_stack([position.easting, position.northing, -position.depth])
+    path = tangential((0, 0, 0), depth, azimuth, dip)
+    np.testing.assert_allclose(path.xyz, expected, atol=1e-6)
+    np.testing.assert_allclose(path.at(0.5 * (depth[3] + depth[4]))[0], 0.5 * (path.xyz[3] + path.xyz[4]), atol=1e-9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_depth_of_an_elevation(method):
+    depth, azimuth, dip = random_survey(3)
+    path = desurvey(method, (0, 0, 100), depth, azimuth, dip)
+    wanted = np.linspace(0, depth[-1] + 30, 57)
+    np.testing.assert_allclose(path.depth_of(path.at(wanted)[:, 2]), wanted, atol=1e-5)
+    assert np.isnan(path.depth_of([101.0]))[0]

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from geofit.io import read_boreholes, read_points, take_contacts
+from geofit.io import Source, read_boreholes, read_points, take_contacts
+from geofit.io.formats import read_any_table
+from geofit.io.journal import Journal
 
 
 @pytest.fixture
@@ -79,3 +81,25 @@ def test_picks(folder, file, columns, used, listed):
     picks = read_points(folder(name) / table, **columns)
     assert (picks.counts[0].used, picks.counts[0].listed) == (used, listed)
     assert sum(map(len, picks.horizons.values())) == used
+
+
+def test_ags_of_kai_tak_and_east_west_rail(folder):
+    path = folder("ags")
+    holes = read_boreholes(path / "kaitak_ags3.ags", intervals=[path / "kaitak_ags3.ags"])
+    assert [(c.read, c.used, c.listed) for c in holes.counts] == [(80, 80, 0), (1603, 1603, 0)]
+    journal = Journal()
+    table = read_any_table(Source(path=path / "east_west_rail_ags4.ags", table="LOCA"), journal)
+    assert (len(table), table.read) == (1788, 1788)
+    for encoding, name in (("cp1252", "cp1252"), ("cp1252", "latin1"), ("utf-8", "utf8")):
+        found = read_any_table(Source(path=path / f"4.1-rule1-{name}.ags", table="LOCA"), journal)
+        assert found.encoding == encoding
+
+
+def test_ags_against_the_ags_package(folder):
+    theirs = pytest.importorskip("python_ags4.AGS4")
+    path = folder("ags") / "east_west_rail_ags4.ags"
+    groups, _ = theirs.AGS4_to_dict(str(path))
+    for name in ("LOCA", "GEOL", "ABBR"):
+        table = read_any_table(Source(path=path, table=name), Journal())
+        for header, cells in zip(table.header, table.columns, strict=True):
+            assert list(cells) == groups[name][header][2:]

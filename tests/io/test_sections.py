@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from geofit.errors import InputError
+from geofit.io import read_site
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.sections import Drawing, load_section
@@ -89,3 +90,50 @@ def test_broken_drawing_is_a_clear_error(tmp_path, content):
 def test_empty_drawing_is_a_clear_error(drawing):
     with pytest.raises(InputError, match="empty"):
         load(drawing[1]())
+
+
+def test_lines_of_sections_from_a_table_and_levels(make_site, files):
+    site = make_site(**{
+        "lines.csv": "section,x,y\nC1,500000,3100000\n"
+        + 2 * "C1,500300,3100400\n"
+        + "C1,500300,3100900\nC2,1,2\n",
+        "plan.csv": "horizon,x,y\nT2-T1,500400,3100450\nnone,1,2\n",
+    })  # fmt: skip
+    text = site.read_text(encoding="utf-8")
+    expected = read_site(site).horizons["T2-T1"].xyz
+    start, end = text.index("line = "), text.index('file = "sections')
+    text = (
+        text[:start]
+        + text[end:]
+        + "[section_lines]\nfile = 'lines.csv'\n[[level]]\nelevation = 88\nfile = 'plan.csv'\n"
+    )
+    site.write_text(text, encoding="utf-8")
+    read = read_site(site)
+    np.testing.assert_array_equal(read.sections[0].line, [[500000, 3100000], [500300, 3100400], [500300, 3100900]])
+    points = read.horizons["T2-T1"]
+    level = points.section == "level 88"
+    np.testing.assert_array_equal(points.xyz[level], [[500400, 3100450, 88]])
+    np.testing.assert_array_equal(points.xyz[~level], expected)
+    counts = {count.file: (count.read, count.used, count.listed) for count in read.counts}
+    assert counts["lines.csv"] == (5, 3, 2)
+    assert counts["plan.csv"] == (2, 1, 1)
+
+
+def test_orientations_are_kept(make_site):
+    site = make_site(**{
+        "dips.csv": "x,y,z,azimuth,dip,horizon\n500100,3100100,80,350,20,T2-T1\n500100,3100200,80,0,95,\n",
+        "normals.csv": "X;Y;Z;OrientX;OrientY;OrientZ\n500100;3100100;80;0;-1;-1\n500100;3100100;80;0;0;0\n",
+        "strikes.csv": "x,y,z,strike,dip\n500100,3100100,80,300,20\n",
+    })  # fmt: skip
+    text = site.read_text(encoding="utf-8")
+    for name in ("dips", "normals", "strikes"):
+        text += f"[[orientations]]\nfile = '{name}.csv'\n"
+    site.write_text(text, encoding="utf-8")
+    read = read_site(site)
+    found = read.orientations
+    np.testing.assert_allclose(found.azimuth, [350, 0, 30])
+    np.testing.assert_allclose(found.dip, [20, 45, 20])
+    assert found.horizon.tolist() == ["T2-T1", "", ""]
+    assert found.row.tolist() == [2, 2, 2]
+    counts = {count.file: (count.read, count.used, count.listed) for count in read.counts}
+    assert counts["dips.csv"] == counts["normals.csv"] == (2, 1, 1)

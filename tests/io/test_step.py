@@ -174,9 +174,7 @@ def test_a_gap_hidden_in_the_edge_tolerance_is_found(tmp_path):
     path = tmp_path / "hidden.step"
     path.write_text("")
     found = checks(
-        read_back(
-            surface, StepShape("hidden", shape, TopLoc_Location(), ("one", "two")), surface, shape, path
-        )
+        read_back(surface, StepShape("hidden", shape, TopLoc_Location(), ("one", "two")), surface, shape, path)
     )
     assert found["validity"].passed
     assert found["seam gap"].passed is False

@@ -16,9 +16,7 @@ def read(path, **stated):
     return read_table(Source(path=path, **stated), journal), journal
 
 
-@pytest.mark.parametrize(
-    "encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "utf-32", "gb18030"]
-)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "utf-32", "gb18030"])
 def test_chinese_header_in_every_encoding(write, encoding):
     text = "孔号,坐标X,坐标Y,孔口高程,岩性\nZK1,500000.5,3100000,1200,强风化花岗岩\n"
     table, _ = read(write(text, encoding=encoding))

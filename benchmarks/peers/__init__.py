@@ -1,0 +1,1 @@
+"""What geofit is compared with: OpenCASCADE's plate and a plain sparse P-spline."""

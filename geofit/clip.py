@@ -1,0 +1,203 @@
+"""Cutting triangles along a plan polygon, without cracks between neighbours."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["clip", "inside"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Vertices nearer to the outline than this (metres) are on it.
+ON = 1e-7
+
+
+def clip(points: Floats, triangles: Ints, uv: Floats, outline: Floats) -> tuple[Floats, Ints, Ints, Floats]:
+    """Return the part of a mesh over a plan polygon.
+
+    Corners of the outline become vertices first, then each of its sides cuts the triangles that it runs
+    through. A new vertex belongs to the edge that it divides, so both triangles at the edge get the same one.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Vertices, metres.
+    triangles : (m, 3) array of int
+        Their numbers; several may stand over one place (an overturned fold).
+    uv : (m, 3, 2) array
+        Anything linear on each triangle, at its corners.
+    outline : (k, 2) array
+        Corners of a simple polygon, not closed.
+
+    Returns
+    -------
+    points, triangles, parent, uv
+        Vertices (the old ones first), triangles, the triangle that each comes from, its corners' ``uv``.
+    """
+    outline = _distinct(outline)
+    touched = _touched(points[triangles, :2], outline)
+    rest, near = np.flatnonzero(~touched), np.flatnonzero(touched)
+    # Only the triangles along the outline are worked on, with their own vertices.
+    used, numbers = np.unique(triangles[near], return_inverse=True)
+    work = _Work(points[used], numbers.reshape(-1, 3), uv[near])
+    for corner in outline:
+        work.insert(corner)
+    for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        work.split(start, end)
+    made = len(work.points) - len(used)
+    back = np.concatenate([used, len(points) + np.arange(made)])
+    every = np.concatenate([points, work.points[len(used) :]])
+    cut = np.concatenate([triangles[rest], back[work.triangles]]).astype(np.int64)
+    parent = np.concatenate([rest, near[work.parent]])
+    keep = inside(outline, every[cut, :2].mean(axis=1))
+    return every, cut[keep], parent[keep], np.concatenate([uv[rest], work.uv])[keep]
+
+
+def _touched(plan: Floats, outline: Floats) -> NDArray[np.bool_]:
+    """Which triangles (m, 3, 2) a side of the outline may run through or along: some too many, never too few."""
+    low, high = plan.min(axis=1) - ON, plan.max(axis=1) + ON
+    touched = np.zeros(len(plan), bool)
+    for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        box = (low <= np.maximum(start, end)).all(axis=1) & (high >= np.minimum(start, end)).all(axis=1)
+        some = np.flatnonzero(box & ~touched)
+        way = (end - start) / np.linalg.norm(end - start)
+        off = (plan[some] - start) @ np.array([-way[1], way[0]])
+        touched[some] = (off.min(axis=1) <= ON) & (off.max(axis=1) >= -ON)
+    return touched
+
+
+def inside(outline: Floats, plan: Floats) -> NDArray[np.bool_]:
+    """Whether (n, 2) places are inside a polygon (k, 2), by the parity of crossings."""
+    odd = np.zeros(len(plan), bool)
+    x, y = plan.T
+    for (x0, y0), (x1, y1) in zip(outline, np.roll(outline, -1, axis=0), strict=True):
+        if y0 != y1:
+            crosses = (y0 > y) != (y1 > y)
+            odd ^= crosses & (x < x0 + (y - y0) * ((x1 - x0) / (y1 - y0)))
+    return odd
+
+
+def _distinct(outline: Floats) -> Floats:
+    apart = np.linalg.norm(outline - np.roll(outline, 1, axis=0), axis=1) > ON
+    return np.asarray(outline[apart])
+
+
+class _Work:
+    """A mesh while it is being cut."""
+
+    def __init__(self, points: Floats, triangles: Ints, uv: Floats) -> None:
+        self.points = points.copy()
+        self.triangles, self.uv = triangles.copy(), uv.copy()
+        self.parent = np.arange(len(triangles))
+
+    def insert(self, corner: Floats) -> None:
+        """Make a corner of the outline a vertex of every sheet that stands over it."""
+        plan = self.points[self.triangles, :2]
+        near = (plan.min(axis=1) - ON <= corner).all(axis=1) & (plan.max(axis=1) + ON >= corner).all(axis=1)
+        divided: dict[tuple[int, int], int] = {}
+        for k in np.flatnonzero(near):
+            distance, share = _heights(plan[k], corner)
+            if distance is None or distance.min() < -ON:
+                continue
+            if np.linalg.norm(plan[k] - corner, axis=1).min() <= ON:
+                continue
+            close = int(np.argmin(distance))
+            if distance[close] <= ON:
+                # On an edge: its two triangles are halved at one vertex.
+                i, j = (close + 1) % 3, (close + 2) % 3
+                a, b = int(self.triangles[k, i]), int(self.triangles[k, j])
+                t = share[j] / (share[i] + share[j])
+                key = (min(a, b), max(a, b))
+                if key not in divided:
+                    divided[key] = self._new(self.points[a] + t * (self.points[b] - self.points[a]), corner)
+                self._halve(int(k), i, j, divided[key], t)
+            else:
+                number = self._new(share @ self.points[self.triangles[k]], corner)
+                self._fan(int(k), number, share)
+
+    def split(self, start: Floats, end: Floats) -> None:
+        """Cut the triangles that one side of the outline runs through along it."""
+        length = np.linalg.norm(end - start)
+        direction = (end - start) / length
+        plan = self.points[:, :2] - start
+        off = direction[0] * plan[:, 1] - direction[1] * plan[:, 0]
+        along = plan @ direction
+        sign = np.where(np.abs(off) <= ON, 0, np.sign(off)).astype(int)
+        signs = sign[self.triangles]
+        crossed = np.flatnonzero((signs.min(axis=1) < 0) & (signs.max(axis=1) > 0))
+        divided: dict[tuple[int, int], tuple[int, float]] = {}
+        for k in crossed.tolist():
+            numbers = self.triangles[k].tolist()
+            ends = [along[n] for n in numbers if sign[n] == 0]
+            cuts = []
+            for i in range(3):
+                a, b = numbers[i], numbers[(i + 1) % 3]
+                if sign[a] * sign[b] < 0:
+                    t = off[a] / (off[a] - off[b])
+                    ends.append(along[a] + t * (along[b] - along[a]))
+                    cuts.append(i)
+            if not 0 < 0.5 * (ends[0] + ends[1]) < length:
+                continue
+            halves = [k]
+            for i in cuts:
+                a, b = numbers[i], numbers[(i + 1) % 3]
+                key = (min(a, b), max(a, b))
+                if key not in divided:
+                    t = off[key[0]] / (off[key[0]] - off[key[1]])
+                    first, second = self.points[key[0]], self.points[key[1]]
+                    divided[key] = self._new(first + t * (second - first)), t
+                number, t = divided[key]
+                piece = next(h for h in halves if {a, b} <= set(self.triangles[h].tolist()))
+                at = self.triangles[piece].tolist()
+                i, j = at.index(key[0]), at.index(key[1])
+                halves.append(self._halve(piece, i, j, number, t))
+
+    def _new(self, point: Floats, plan: Floats | None = None) -> int:
+        point = np.array(point)
+        if plan is not None:
+            point[:2] = plan
+        self.points = np.vstack([self.points, point])
+        return len(self.points) - 1
+
+    def _halve(self, k: int, i: int, j: int, number: int, t: float) -> int:
+        """Divide triangle k at a vertex on its edge (i, j), at t from i; return the number of the new half."""
+        uv = self.uv[k, i] + t * (self.uv[k, j] - self.uv[k, i])
+        self._copy(k, 1)
+        self.triangles[k, j] = number
+        self.uv[k, j] = uv
+        self.triangles[-1, i] = number
+        self.uv[-1, i] = uv
+        return len(self.triangles) - 1
+
+    def _fan(self, k: int, number: int, share: Floats) -> None:
+        """Divide triangle k into three at a vertex inside it."""
+        uv = share @ self.uv[k]
+        self._copy(k, 2)
+        for place, corner in ((k, 0), (-1, 1), (-2, 2)):
+            self.triangles[place, corner] = number
+            self.uv[place, corner] = uv
+
+    def _copy(self, k: int, times: int) -> None:
+        self.triangles = np.concatenate([self.triangles, np.repeat(self.triangles[k : k + 1], times, axis=0)])
+        self.uv = np.concatenate([self.uv, np.repeat(self.uv[k : k + 1], times, axis=0)])
+        self.parent = np.concatenate([self.parent, np.repeat(self.parent[k], times)])
+
+
+def _heights(triangle: Floats, place: Floats) -> tuple[Floats | None, Floats]:
+    """Return the distances (m, positive inside) of a place from the three edges in plan, and its barycentric shares.
+
+    None where the triangle stands upright.
+    """
+    a, b, c = triangle
+    area = _cross(b - a, c - a)
+    sides = np.array([np.linalg.norm(c - b), np.linalg.norm(a - c), np.linalg.norm(b - a)])
+    if abs(area) <= ON * sides.max():
+        return None, np.zeros(3)
+    share = np.array([_cross(b - place, c - place), _cross(c - place, a - place), _cross(a - place, b - place)]) / area
+    return share * abs(area) / sides, share
+
+
+def _cross(a: Floats, b: Floats) -> float:
+    return float(a[0] * b[1] - a[1] * b[0])

@@ -1,0 +1,259 @@
+"""The work of ``geofit export`` and ``geofit section``: surfaces from files to other files."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.contours import contours
+from geofit.cut import CutLine, cut, section_line
+from geofit.errors import InputError, SettingsError
+from geofit.files import file_stems
+from geofit.mesh import triangulate
+from geofit.sampling import deviation_grid, elevation_grid, thickness_grid
+from geofit.surface import HorizonSurface
+
+if TYPE_CHECKING:
+    from geofit.points import PointSet
+    from geofit.site import Ground, Hole
+
+__all__ = ["FORMATS", "Format", "Request", "export", "read_line", "read_surfaces", "section"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Format:
+    """A format: what its writer ``module.function`` (in geofit.io) takes, and whether it states the CRS."""
+
+    takes: Literal["surfaces", "meshes", "contours", "grid", "vtp", "measured", "site"]
+    module: str
+    function: str
+    crs: bool = False
+
+
+#: Formats by the word after ``--to``.
+FORMATS: dict[str, Format] = {
+    "step": Format("surfaces", "step", "write_step"),
+    "iges": Format("surfaces", "export.cad", "write_iges"),
+    "brep": Format("surfaces", "export.cad", "write_brep"),
+    "dxf": Format("contours", "export.dxf", "write_contours_dxf"),
+    "dxf-mesh": Format("meshes", "export.dxf", "write_mesh_dxf"),
+    "gpkg": Format("contours", "export.geopackage", "write_contours_gpkg", crs=True),
+    "ifc": Format("site", "export.ifc", "write_ifc", crs=True),
+    "landxml": Format("meshes", "export.landxml", "write_landxml"),
+    "tsurf": Format("meshes", "export.tsurf", "write_tsurf"),
+    "geoh5": Format("measured", "export.geoh5", "write_geoh5"),
+    "asc": Format("grid", "export.grids", "write_esri"),
+    "grd": Format("grid", "export.grids", "write_surfer"),
+    "tif": Format("grid", "export.grids", "write_geotiff", crs=True),
+    "vtp": Format("vtp", "export.vtk", "write_vtp"),
+    "vtm": Format("measured", "export.vtk", "write_vtm"),
+    "obj": Format("meshes", "export.triangles", "write_obj"),
+    "ply": Format("meshes", "export.triangles", "write_ply"),
+    "stl": Format("meshes", "export.triangles", "write_stl"),
+    "glb": Format("meshes", "export.triangles", "write_glb"),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What is wanted of an export.
+
+    ``tolerance``: largest distance in metres of triangles and lines from the surface. ``interval``: metres
+    between contours, ``cell``: metres between grid nodes; None: chosen from the size. ``value``: what a grid
+    holds. ``points``: data points by horizon, for deviations. ``holes``, ``site``: boreholes and adits, and the
+    site's title, for formats that have them. ``crs``: label of the coordinate system.
+    """
+
+    tolerance: float = 0.05
+    interval: float | None = None
+    cell: float | None = None
+    value: str = "elevation"
+    points: Mapping[str, PointSet] | None = None
+    holes: Sequence[Hole] = ()
+    site: str = "site"
+    crs: str = ""
+
+
+Surfaces = Mapping[str, HorizonSurface]
+
+
+def export(surfaces: Surfaces, to: str, out: Path, request: Request | None = None) -> list[Path]:
+    """Write surfaces in a format of :data:`FORMATS`; return the files.
+
+    Formats that hold one horizon a file give ``NAME_HORIZON.ending`` where there are several.
+
+    Raises
+    ------
+    InputError
+        If the format is unknown, or cannot hold these surfaces.
+    SettingsError
+        If a setting is out of its range.
+    MissingDependencyError
+        If the format needs a package that is not installed; the message holds the install line.
+    """
+    if to not in FORMATS:
+        raise InputError(f"There is no format '{to}'", f"Choose one of: {', '.join(FORMATS)}.")
+    if not surfaces:
+        raise InputError("No surface to write", "Give at least one horizon.", file=str(out))
+    chosen, wanted = FORMATS[to], request or Request()
+    write = getattr(import_module(f"geofit.io.{chosen.module}"), chosen.function)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    more = {"crs": wanted.crs} if chosen.crs else {}
+    if chosen.takes == "grid":
+        grids = _grids(surfaces, out, wanted)
+        for file, grid in grids:
+            write(grid, file, **more)
+        return [file for file, _ in grids]
+    if chosen.takes == "surfaces":
+        write(surfaces, out)
+        return [out]
+    if chosen.takes == "site":
+        write(surfaces, out, holes=wanted.holes, site=wanted.site, tolerance=wanted.tolerance, **more)
+        return [out]
+    if chosen.takes == "contours":
+        step, tolerance = wanted.interval, wanted.tolerance
+        write({name: contours(one, step, tolerance=tolerance) for name, one in surfaces.items()}, out, **more)
+        return [out]
+    meshes = {name: triangulate(surface, wanted.tolerance) for name, surface in surfaces.items()}
+    if chosen.takes == "meshes":
+        origin = write(meshes, out)
+        return [out] if origin is None else [out, out.with_name(out.name + ".origin.txt")]
+    measured = {name: (points, surfaces[name].distance(points.xyz)) for name, points in _points(surfaces, wanted)}
+    if chosen.takes == "measured":
+        write(meshes, out, measured)
+        return [out]
+    files = _files(surfaces, out)
+    for name, mesh in meshes.items():
+        write(mesh, files[name], *measured.get(name, ()))
+    return list(files.values())
+
+
+def read_surfaces(files: Sequence[Path]) -> dict[str, HorizonSurface]:
+    """Read the horizons of STEP files; names that stand in several files get the file's name before them."""
+    from geofit.io.step import read_step
+
+    found: dict[str, HorizonSurface] = {}
+    for file in files:
+        for name, surface in read_step(file).items():
+            unique = name if name not in found else f"{file.stem} {name}"
+            if unique in found:
+                raise InputError("The file is given twice", "Name each file once.", file=str(file))
+            found[unique] = surface.with_(name=unique)
+    return found
+
+
+def section(
+    surfaces: Surfaces, line: Floats, out: Path, tolerance: float = 0.05
+) -> tuple[dict[str, list[CutLine]], list[Path]]:
+    """Cut every horizon along a line in plan; write drawing, 3D lines, table and picture into a folder.
+
+    Raises
+    ------
+    InputError
+        If the line meets no horizon.
+    SettingsError
+        If the line has fewer than two different corners.
+    """
+    from geofit.io.export.dxf import write_section_dxf
+    from geofit.io.export.section_csv import write_section_csv
+    from geofit.report.section import write_section_picture
+
+    corners = section_line(line)
+    cuts = {name: cut(surface, corners, tolerance=tolerance) for name, surface in surfaces.items()}
+    if not any(cuts.values()):
+        raise InputError(
+            f"The section line from {corners[0].tolist()} to {corners[-1].tolist()} meets no horizon",
+            "Give it in the surfaces' map coordinates, metres.",
+        )
+    out.mkdir(parents=True, exist_ok=True)
+    files = [out / name for name in ("section.dxf", "section_3d.dxf", "section.csv", "section.png")]
+    write_section_dxf(cuts, files[0])
+    write_section_dxf(cuts, files[1], drawn=False)
+    write_section_csv(cuts, files[2])
+    write_section_picture(cuts, corners, files[3])
+    return cuts, files
+
+
+def read_line(text: str) -> Floats:
+    """Read a section's line: a file with its corners, or ``x0,y0,x1,y1`` (and further corners).
+
+    Raises
+    ------
+    InputError
+        If there is no such file, a corner cannot be read, or the text is no list of coordinates.
+    """
+    words = text.replace(";", ",").split(",")
+    try:
+        values = [float(word) for word in words]
+    except ValueError:
+        return _line_file(Path(text))
+    if len(values) < 4 or len(values) % 2 or not all(map(math.isfinite, values)):
+        raise InputError(
+            f"The section line has {len(values)} numbers",
+            "Give x0,y0,x1,y1, metres; further corners add two numbers each.",
+            value=text,
+        )
+    return np.array(values).reshape(-1, 2)
+
+
+def _line_file(path: Path) -> Floats:
+    from geofit.io.columns import BOUNDARY
+    from geofit.io.journal import Journal
+    from geofit.io.rows import read_rows
+    from geofit.io.source import as_source
+
+    if not path.is_file():
+        raise InputError("There is no such file", "Give a file with columns x and y, or x0,y0,x1,y1.", file=str(path))
+    journal = Journal()
+    rows = read_rows(as_source(path), BOUNDARY, journal)
+    corners = np.column_stack(rows.places())
+    rows.close()
+    bad = [issue for issue in journal.issues if issue.severity == "error"]
+    if bad:
+        raise InputError(bad[0].reason, bad[0].remedy, file=str(path), row=bad[0].row, value=bad[0].value)
+    return np.asarray(corners[:, :2])
+
+
+def _files(surfaces: Surfaces, out: Path) -> dict[str, Path]:
+    """Return a file for each horizon: ``out`` itself if there is one."""
+    if len(surfaces) == 1:
+        return dict.fromkeys(surfaces, out)
+    return {name: out.with_name(f"{out.stem}_{stem}{out.suffix}") for name, stem in file_stems(surfaces).items()}
+
+
+def _points(surfaces: Surfaces, request: Request) -> list[tuple[str, PointSet]]:
+    """Return the horizons that have data points; where there is one of each, names need not agree."""
+    points = request.points or {}
+    if len(points) == len(surfaces) == 1:
+        return list(zip(surfaces, points.values(), strict=True))
+    return [(name, points[name]) for name in surfaces if name in points]
+
+
+def _grids(surfaces: Surfaces, out: Path, request: Request) -> list[tuple[Path, Ground]]:
+    if request.value == "thickness":
+        if len(surfaces) != 2:
+            raise InputError(
+                f"Thickness lies between two horizons; {len(surfaces)} are given",
+                "Name the upper one, then the lower.",
+            )
+        upper, lower = surfaces.values()
+        return [(out, thickness_grid(upper, lower, request.cell))]
+    files = _files(surfaces, out)
+    if request.value == "elevation":
+        return [(files[name], elevation_grid(surface, request.cell)) for name, surface in surfaces.items()]
+    if request.value != "deviation":
+        raise SettingsError(f"A grid of '{request.value}' is unknown; choose elevation, deviation or thickness.")
+    data = dict(_points(surfaces, request))
+    missing = [name for name in surfaces if name not in data]
+    if missing:
+        raise InputError(f"There are no points of '{missing[0]}'", "Give them with --points.")
+    return [(files[name], deviation_grid(surfaces[name], data[name], request.cell)) for name in surfaces]

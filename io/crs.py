@@ -1,0 +1,63 @@
+"""Projection of places from one coordinate system to another (pyproj, extra ``gis``)."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.extra import need
+
+__all__ = ["is_code", "project"]
+
+Floats = NDArray[np.float64]
+
+
+def is_code(label: str | None) -> bool:
+    """Whether a label names a coordinate system that a program can look up ("EPSG:32650", WKT, PROJ)."""
+    text = (label or "").strip()
+    return bool(
+        re.match(r"(?i)(epsg|esri|ogc|iau)[:_ ]?\w+|\+proj|(PROJ|GEOG|GEOD|COMPOUND|BOUND)\w*CRS\[|PROJCS\[", text)
+    )
+
+
+def project(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[Floats, Floats]:
+    """Return easting and northing (n,) in metres; nan where a place is outside the projection.
+
+    ``x`` is the easting or longitude, ``y`` the northing or latitude, whatever order the system itself has.
+
+    Raises
+    ------
+    InputError
+        If a system is unknown, or the target is not a projected one in metres.
+    MissingDependencyError
+        If pyproj is not installed.
+    """
+    pyproj = need("pyproj", "gis", f"Projecting {file}")
+    before, after = _system(pyproj, source, file), _system(pyproj, target, file)
+    units = {axis.unit_name for axis in after.axis_info[:2]}
+    if not after.is_projected or units != {"metre"}:
+        raise InputError(
+            f"The target '{target}' is no projected system in metres",
+            "Name the grid of the site, such as a UTM zone: EPSG:32650.",
+            file=file,
+        )
+    if before == after:
+        return x, y
+    moved = pyproj.Transformer.from_crs(before, after, always_xy=True).transform(x, y)
+    east, north = (np.asarray(values, dtype=np.float64).copy() for values in moved)
+    lost = ~(np.isfinite(east) & np.isfinite(north))
+    east[lost] = north[lost] = np.nan
+    return east, north
+
+
+def _system(pyproj: Any, text: str, file: str) -> Any:
+    try:
+        return pyproj.CRS.from_user_input(text)
+    except pyproj.exceptions.CRSError as error:
+        raise InputError(
+            f"The coordinate system '{text}' is unknown: {error}", "Give a code such as EPSG:32650.", file=file
+        ) from None

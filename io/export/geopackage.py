@@ -1,0 +1,65 @@
+"""Contours as GeoPackage."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping, Sequence
+from os import PathLike
+
+import numpy as np
+
+from geofit.contours import Contour
+from geofit.errors import InputError
+from geofit.files import replacing
+from geofit.io.extra import need
+
+__all__ = ["write_contours_gpkg"]
+
+
+def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | PathLike[str], crs: str = "") -> None:
+    """Write a layer ``contours`` of lines with the fields ``horizon`` and ``elevation``.
+
+    Parameters
+    ----------
+    contours : mapping of str to sequence of Contour
+        Contours by horizon.
+    path : path
+        The file.
+    crs : str
+        Coordinate system ("EPSG:32648", WKT); empty: none in the file.
+
+    Raises
+    ------
+    MissingDependencyError
+        If pyogrio is not installed.
+    InputError
+        If there is no contour, or the file cannot be written.
+    """
+    pyogrio = need("pyogrio", "gis", "Writing GeoPackage")
+    import shapely
+
+    rows = [(name, contour) for name, lines in contours.items() for contour in lines]
+    if not rows:
+        raise InputError("There is no contour to write", "Choose a smaller interval.", file=str(path))
+    geometry = shapely.to_wkb(np.array([shapely.LineString(contour.line) for _, contour in rows]))
+    fields = [
+        np.array([name for name, _ in rows], object),
+        np.array([contour.elevation for _, contour in rows]),
+    ]
+    # Otherwise GDAL writes the time into the file.
+    pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": "2000-01-01T00:00:00.000Z"})
+    try:
+        with replacing(path) as part, warnings.catch_warnings():
+            warnings.filterwarnings("ignore", "'crs' was not provided")
+            pyogrio.raw.write(
+                part, geometry, fields, ["horizon", "elevation"],
+                layer="contours", driver="GPKG", geometry_type="LineString", crs=crs or None,
+            )  # fmt: skip
+    except (pyogrio.errors.DataSourceError, pyogrio.errors.CRSError) as error:
+        raise InputError(
+            f"The file cannot be written: {error}",
+            "Check the path; give the system as EPSG:number, or none: --crs ''.",
+            file=str(path),
+        ) from None
+    finally:
+        pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": None})

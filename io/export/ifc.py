@@ -1,0 +1,191 @@
+"""IFC4X3: horizons as the B-spline surfaces that they are, boreholes and adits as lines in space."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Mapping, Sequence
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from geofit import __version__
+from geofit.errors import InputError
+from geofit.files import replacing
+from geofit.io.extra import need
+from geofit.mesh import triangulate
+from geofit.site import Hole
+from geofit.surface import HorizonSurface, Patch
+
+__all__ = ["write_ifc"]
+
+#: Identifiers are made of names in this space, so that the same site gives the same bytes.
+NAMESPACE = uuid.UUID("5f0f6d0e-4a0b-5d5c-9a54-6b1f1c9d3a10")
+TIMESTAMP = "2000-01-01T00:00:00"
+#: Coordinates nearer than this (metres) are one, for the reader.
+PRECISION = 1e-6
+
+
+def write_ifc(
+    surfaces: Mapping[str, HorizonSurface],
+    path: str | PathLike[str],
+    *,
+    holes: Sequence[Hole] = (),
+    site: str = "site",
+    crs: str = "",
+    tolerance: float = 0.05,
+) -> None:
+    """Write an IFC4X3 file in metres and map coordinates.
+
+    Each horizon is an IfcGeotechnicalStratum with two representations: ``Surface`` holds its patches as
+    IfcBSplineSurfaceWithKnots, whole; ``Body`` its triangles, trimmed to the outline, for viewers without
+    NURBS. Each hole is an IfcBorehole with its axis. The geometry stays about each horizon's origin, which is
+    its placement.
+
+    Parameters
+    ----------
+    surfaces : mapping of str to HorizonSurface
+        Horizons by name.
+    path : path
+        The file.
+    holes : sequence of Hole
+        Boreholes and adits.
+    site : str
+        Title of the site.
+    crs : str
+        Label of the coordinate system; empty: none in the file.
+    tolerance : float
+        Largest distance in metres of the triangles from the surface.
+
+    Raises
+    ------
+    MissingDependencyError
+        If ifcopenshell is not installed.
+    InputError
+        If there is neither a surface nor a hole.
+    """
+    ifcopenshell = need("ifcopenshell", "ifc", "Writing IFC")
+    if not surfaces and not holes:
+        raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
+    model = _Model(ifcopenshell, site, crs)
+    for name, surface in surfaces.items():
+        model.horizon(name, surface, tolerance)
+    for hole in holes:
+        model.hole(hole)
+    model.close()
+    with replacing(path) as part:
+        part.write_text(model.file.to_string(), encoding="ascii", newline="\n")
+
+
+class _Model:
+    """The file while it is being filled."""
+
+    def __init__(self, ifcopenshell: Any, site: str, crs: str) -> None:
+        self._compress = ifcopenshell.guid.compress
+        self.file = ifcopenshell.file(schema="IFC4X3_ADD2")
+        header = self.file.header.file_name
+        header.name, header.time_stamp = "horizons.ifc", TIMESTAMP
+        header.preprocessor_version = header.originating_system = f"geofit {__version__}"
+        add = self.file
+        metre = add.createIfcSIUnit(UnitType="LENGTHUNIT", Name="METRE")
+        radian = add.createIfcSIUnit(UnitType="PLANEANGLEUNIT", Name="RADIAN")
+        self._world = self._axes((0.0, 0.0, 0.0))
+        self._context = add.createIfcGeometricRepresentationContext(None, "Model", 3, PRECISION, self._world)
+        if crs:
+            system = add.createIfcProjectedCRS(Name=crs)
+            add.createIfcMapConversion(self._context, system, 0.0, 0.0, 0.0)
+        self._surface, self._body, self._axis = (
+            add.createIfcGeometricRepresentationSubContext(
+                name, "Model", None, None, None, None, self._context, None, "MODEL_VIEW", None
+            )
+            for name in ("Surface", "Body", "Axis")
+        )
+        self._project = add.createIfcProject(
+            self._id("project", site),
+            None,
+            site,
+            RepresentationContexts=[self._context],
+            UnitsInContext=add.createIfcUnitAssignment([metre, radian]),
+        )
+        self._place = add.createIfcLocalPlacement(None, self._world)
+        self._site = add.createIfcSite(self._id("site", site), None, site, ObjectPlacement=self._place)
+        self._parts: list[Any] = []
+
+    def _id(self, kind: str, name: str) -> str:
+        return str(self._compress(uuid.uuid5(NAMESPACE, f"{kind}/{name}").hex))
+
+    def _axes(self, place: Sequence[float]) -> Any:
+        return self.file.createIfcAxis2Placement3D(self.file.createIfcCartesianPoint([float(c) for c in place]))
+
+    def _placed(self, origin: Sequence[float]) -> Any:
+        return self.file.createIfcLocalPlacement(self._place, self._axes(origin))
+
+    def horizon(self, name: str, surface: HorizonSurface, tolerance: float) -> None:
+        add = self.file
+        exact = add.createIfcShapeRepresentation(
+            self._surface, "Surface", "AdvancedSurface", [self._patch(patch) for patch in surface.patches]
+        )
+        mesh = triangulate(surface, tolerance)
+        faces = add.createIfcTriangulatedFaceSet(
+            add.createIfcCartesianPointList3D(np.round(mesh.points, 6).tolist()),
+            None,
+            False,
+            (mesh.triangles + 1).tolist(),
+        )
+        body = add.createIfcShapeRepresentation(self._body, "Body", "Tessellation", [faces])
+        stratum = add.createIfcGeotechnicalStratum(
+            self._id("horizon", name),
+            None,
+            name,
+            Description="Boundary surface",
+            ObjectPlacement=self._placed(surface.origin.tolist()),
+            Representation=add.createIfcProductDefinitionShape(None, None, [exact, body]),
+            PredefinedType="USERDEFINED",
+            ObjectType="HORIZON",
+        )
+        self._parts.append(stratum)
+
+    def _patch(self, patch: Patch) -> Any:
+        points = [[self.file.createIfcCartesianPoint(p) for p in row] for row in patch.control.tolist()]
+        values_u, count_u = np.unique(patch.knots_u, return_counts=True)
+        values_v, count_v = np.unique(patch.knots_v, return_counts=True)
+        arguments = [
+            *patch.degree,
+            points,
+            "UNSPECIFIED",
+            False,
+            False,
+            False,
+            count_u.tolist(),
+            count_v.tolist(),
+            values_u.tolist(),
+            values_v.tolist(),
+            "UNSPECIFIED",
+        ]
+        if patch.weights is None:
+            return self.file.createIfcBSplineSurfaceWithKnots(*arguments)
+        return self.file.createIfcRationalBSplineSurfaceWithKnots(*arguments, patch.weights.tolist())
+
+    def hole(self, hole: Hole) -> None:
+        add, start = self.file, hole.xyz[0]
+        line = add.createIfcPolyline([add.createIfcCartesianPoint(p) for p in (hole.xyz - start).tolist()])
+        axis = add.createIfcShapeRepresentation(self._axis, "Axis", "Curve3D", [line])
+        self._parts.append(
+            add.createIfcBorehole(
+                self._id(hole.kind, hole.name),
+                None,
+                hole.name,
+                ObjectType=hole.kind,
+                ObjectPlacement=self._placed(start.tolist()),
+                Representation=add.createIfcProductDefinitionShape(None, None, [axis]),
+            )
+        )
+
+    def close(self) -> None:
+        add = self.file
+        add.createIfcRelAggregates(
+            self._id("rel", "project"), None, RelatingObject=self._project, RelatedObjects=[self._site]
+        )
+        add.createIfcRelContainedInSpatialStructure(
+            self._id("rel", "site"), None, RelatedElements=self._parts, RelatingStructure=self._site
+        )

@@ -1,0 +1,29 @@
+"""The lines of a section as a table, which the section reader takes back."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Mapping, Sequence
+from os import PathLike
+
+from geofit.cut import CutLine
+from geofit.files import replacing
+
+__all__ = ["HEADER", "write_section_csv"]
+
+HEADER = ("horizon", "line", "distance", "elevation", "x", "y")
+
+
+def write_section_csv(cuts: Mapping[str, Sequence[CutLine]], path: str | PathLike[str]) -> None:
+    """Write one row a vertex, metres to 1e-6: distance along the section, elevation, map coordinates.
+
+    ``line`` counts the lines of a horizon from 1; an overturned fold is one line that turns back.
+    """
+    # The byte-order mark tells spreadsheets that the text is UTF-8.
+    with replacing(path) as part, part.open("w", encoding="utf-8-sig", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(HEADER)
+        for name, lines in cuts.items():
+            for number, line in enumerate(lines, 1):
+                for distance, (x, y, z) in zip(line.distance.tolist(), line.xyz.tolist(), strict=True):
+                    writer.writerow((name, number, *(f"{value:.6f}" for value in (distance, z, x, y))))

@@ -1,0 +1,28 @@
+"""Optional packages: imported where they are used, with the install line where they are absent."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from geofit.errors import MissingDependencyError
+
+__all__ = ["need"]
+
+
+def need(module: str, extra: str, what: str) -> Any:
+    """Return an optional module.
+
+    Raises
+    ------
+    MissingDependencyError
+        With the install line, if it is not installed.
+    """
+    try:
+        return import_module(module)
+    except ImportError as error:
+        package = module.split(".")[0]
+        raise MissingDependencyError(
+            f"{what} needs the package {package}, which cannot be imported ({error}). "
+            f"Install it: pip install 'geofit[{extra}]'"
+        ) from None

@@ -1,0 +1,61 @@
+"""Points of GOCAD files: VSet (.vs), PLine (.pl) and TSurf (.ts), vertices of one or more objects."""
+
+from __future__ import annotations
+
+from geofit.errors import InputError
+from geofit.io.cells import table_of
+from geofit.io.journal import Journal
+from geofit.io.sniff import decode
+from geofit.io.source import Source
+from geofit.io.tables import Table
+
+__all__ = ["read_vertices"]
+
+
+def read_vertices(source: Source, journal: Journal) -> Table:
+    """Read the vertices with the columns horizon (the object's name), x, y, z.
+
+    Where the file says ``ZPOSITIVE Depth`` z is turned into an elevation, which is listed.
+
+    Raises
+    ------
+    InputError
+        If the file is no GOCAD file or has no vertex.
+    """
+    text, encoding = decode(journal.read(source), source.name, source.encoding)
+    lines = text.splitlines()
+    if not lines or not lines[0].startswith("GOCAD"):
+        raise InputError("The file does not start with GOCAD", "Export a VSet, PLine or TSurf.", file=source.name)
+    rows: list[tuple[int, list[str]]] = []
+    malformed, name, down = 0, source.path.stem, False
+    units: list[str] = []
+    for number, line in enumerate(lines, 1):
+        words = line.split()
+        key = words[0].upper() if words else ""
+        if key == "GOCAD":
+            name, down = source.path.stem, False
+        elif key.startswith("NAME:"):
+            name = line.split(":", 1)[1].strip().strip('"') or name
+        elif key == "*NAME:" and words[1:]:
+            name = words[1]
+        elif key == "AXIS_UNIT":
+            units = ["", *(word.strip('"').casefold() for word in words[1:4])]
+        elif key == "ZPOSITIVE" and words[1:]:
+            down = words[1].casefold() == "depth"
+            if down:
+                journal.add(
+                    "warning", source.name, "z is positive downwards; it is turned into an elevation", row=number
+                )
+        elif key in ("VRTX", "PVRTX"):
+            if len(words) < 5:
+                malformed += 1
+                journal.add("error", source.name, "The vertex has no three coordinates", row=number, value=line[:120])
+                continue
+            x, y, z = words[2:5]
+            rows.append((number, [name, x, y, _turned(z) if down else z]))
+    journal.add("note", source.name, f"Read as GOCAD, {encoding}")
+    return table_of(source, journal, ["horizon", "x", "y", "z"], rows, units=units, malformed=malformed)
+
+
+def _turned(z: str) -> str:
+    return z[1:] if z.startswith("-") else f"-{z.removeprefix('+')}"

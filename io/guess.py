@@ -1,0 +1,248 @@
+"""Which column holds what: a guess for each role from names and values, with a confidence, open to overruling."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+import numpy as np
+
+from geofit.errors import InputError
+from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
+from geofit.io.journal import Journal
+from geofit.io.source import Source
+from geofit.io.tables import Table, parse_numbers
+
+__all__ = ["RoleGuess", "find_columns", "guess_roles", "sample_of"]
+
+#: Roles whose cells are words; all others hold numbers.
+WORDS = frozenset({"hole", "code", "horizon", "section", "adit", "kind"})
+#: Rows that are looked at, evenly spread over the table.
+SAMPLE = 400
+#: A guess below it is shown but not used.
+USABLE = 0.25
+
+_LIMITS = {"azimuth": (-360.0, 360.0), "dip": (-90.0, 90.0)}
+
+
+@dataclass(frozen=True)
+class RoleGuess:
+    """One role of a table and the column that seems to hold it.
+
+    ``confidence`` runs from 0 to 1; ``others`` are headers of columns that might hold the role as well;
+    ``stated`` is True where the user named the column.
+    """
+
+    role: str
+    index: int
+    column: str
+    confidence: float
+    reason: str
+    others: tuple[str, ...] = ()
+    stated: bool = False
+
+
+def sample_of(table: Table) -> list[int]:
+    """Return the indices of the rows that are looked at."""
+    places = np.linspace(0, len(table) - 1, min(SAMPLE, len(table))).astype(int)
+    return [int(i) for i in np.unique(places)]
+
+
+def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleGuess]:
+    """Return a guess for each role that a column can hold.
+
+    What the source states is taken. Else columns whose name is a known spelling compete: an earlier spelling,
+    filled cells and values that the role can have make a higher confidence. A table without a header is taken
+    in the order of the schema when it has exactly the required columns.
+
+    Raises
+    ------
+    InputError
+        If the source names a role or a column that is not there.
+    """
+    stated = _stated(table, schema, source)
+    found = {role: RoleGuess(role, j, table.header[j], 1.0, "stated", stated=True) for role, j in stated.items()}
+    if not table.named:
+        if not stated and len(table.header) == len(schema.required):
+            return {
+                role: RoleGuess(role, j, table.header[j], 0.5, "by its place") for j, role in enumerate(schema.required)
+            }
+        return found
+    names = [plain_name(name)[0] for name in table.header]
+    rows = sample_of(table)
+    for role, spellings in {**schema.required, **schema.optional}.items():
+        if role in found:
+            continue
+        taken = {guess.index for guess in found.values()}
+        rivals = []
+        for j, name in enumerate(names):
+            if j in taken or name not in spellings:
+                continue
+            place = spellings.index(name)
+            fit, why = _fit(table, role, j, rows)
+            rivals.append((0.95 * (1.0 - 0.3 * place / len(spellings)) * fit, -place, j, why))
+        if not rivals:
+            continue
+        rivals.sort(reverse=True)
+        confidence, _, j, why = rivals[0]
+        others = tuple(table.header[k] for _, _, k, _ in rivals[1:])
+        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), f"by its name{why}", others)
+    return found
+
+
+def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, str]:
+    """Return how well the values of a column suit a role, 0.1 to 1, and what speaks against it."""
+    cells = [table.columns[j][i].strip() for i in rows]
+    filled = tuple(cell for cell in cells if cell)
+    if not filled:
+        return (0.1, "; all its cells are empty") if rows else (1.0, "")
+    fill = len(filled) / len(cells)
+    merit, why = 0.3 + 0.7 * fill, f"; {fill:.0%} of its cells are filled" if fill < 0.9 else ""
+    if role in WORDS:
+        return merit, why
+    values, bad = parse_numbers(filled, table.decimal)
+    share = 1.0 - len(bad) / len(filled)
+    if share < 0.9:
+        merit, why = merit * max(share, 0.1), f"; {1 - share:.0%} of its cells are no numbers"
+    low, high = _LIMITS.get(role, (-np.inf, np.inf))
+    inside = np.mean((values >= low) & (values <= high)) if share > 0 else 1.0
+    if inside < 0.5 and share > 0.5:
+        merit, why = merit * 0.3, f"; its values are not between {low:g} and {high:g}"
+    return merit, why
+
+
+def find_columns(table: Table, schema: Schema, source: Source, journal: Journal) -> dict[str, int]:
+    """Return the column index of each role of a table; each guess is listed as a note.
+
+    Raises
+    ------
+    InputError
+        If a required column is missing, or the source names a role or a column that is not there.
+    """
+    guesses = guess_roles(table, schema, source)
+    if not table.named and guesses and not any(guess.stated for guess in guesses.values()):
+        order = ", ".join(schema.required)
+        journal.add("warning", table.name, f"No header: the columns are taken as {order}", "Add a header.", row=1)
+        return {role: guess.index for role, guess in guesses.items()}
+    columns: dict[str, int] = {}
+    for role, guess in guesses.items():
+        if role in schema.optional and guess.confidence < USABLE:
+            continue
+        columns[role] = guess.index
+        if not guess.stated:
+            others = ", ".join(f"'{name}'" for name in guess.others)
+            journal.add(
+                "note",
+                table.name,
+                f"Column '{guess.column}' is taken as {role}, {guess.reason}, confidence {guess.confidence:.2f}"
+                + (f"; also possible: {others}" if others else ""),
+                f"State columns = {{ {role} = ... }} where this is wrong.",
+                column=guess.column,
+            )
+    if schema.name == "picks":
+        _warn_of_constant(table, columns, journal)
+    if source.target and (table.named or source.columns):
+        columns |= _geographic(table, columns, journal)
+    missing = [role for role in schema.required if role not in columns]
+    if missing:
+        raise _missing(table, schema, missing)
+    return columns
+
+
+def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> dict[str, int]:
+    """Return longitude and latitude as x and y, to be projected, where there is no easting and northing."""
+    if "x" in columns and "y" in columns:
+        return {}
+    names = [plain_name(name)[0] for name in table.header]
+    found = {}
+    for role, words in (("x", ("lon", "long", "longitude", "lng", "经度")), ("y", ("lat", "latitude", "纬度"))):
+        j = next((j for j, name in enumerate(names) if name in words), None)
+        if j is None:
+            return {}
+        found[role] = j
+    journal.add(
+        "warning",
+        table.name,
+        f"'{table.header[found['x']]}' and '{table.header[found['y']]}' are taken as longitude and latitude "
+        "(EPSG:4326) and projected",
+        "State crs and columns where this is wrong.",
+    )
+    return found
+
+
+def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal) -> None:
+    """Warn of an elevation that is one number wherever several horizons share a place."""
+    if not {"x", "y", "z", "horizon"} <= set(columns):
+        return
+    x, y, z, horizon = (table.columns[columns[role]] for role in ("x", "y", "z", "horizon"))
+    first: dict[tuple[str, str], int] = {}
+    pairs = equal = 0
+    for i in range(min(len(table), 20 * SAMPLE)):
+        k = first.setdefault((x[i], y[i]), i)
+        if k != i and horizon[k] != horizon[i]:
+            pairs, equal = pairs + 1, equal + (z[i] == z[k])
+    if pairs >= 3 and equal == pairs:
+        journal.add(
+            "warning",
+            table.name,
+            f"'{table.header[columns['z']]}' is the same for all horizons of one place: it may be the hole's own",
+            "State columns = { z = ... } with the elevation of the horizon.",
+            column=table.header[columns["z"]],
+        )
+
+
+def _stated(table: Table, schema: Schema, source: Source) -> dict[str, int]:
+    roles = [*schema.required, *schema.optional]
+    columns = {}
+    for role, wanted in source.columns.items():
+        if role not in roles:
+            near = get_close_matches(role, roles, 1)
+            raise InputError(
+                f"A {schema.name} table has no column role '{role}'",
+                (f"Did you mean '{near[0]}'? " if near else "") + f"The roles are {', '.join(roles)}.",
+                file=table.name,
+            )
+        columns[role] = _locate(table, role, wanted)
+    return columns
+
+
+def _locate(table: Table, role: str, wanted: str | int) -> int:
+    if isinstance(wanted, str):
+        if wanted in table.header:
+            return table.header.index(wanted)
+        alike = [j for j, name in enumerate(table.header) if plain_name(name)[0] == plain_name(wanted)[0]]
+        if len(alike) == 1:
+            return alike[0]
+    number = int(wanted) if str(wanted).isascii() and str(wanted).isdigit() else 0
+    if 1 <= number <= len(table.header):
+        return number - 1
+    raise InputError(
+        f"There is no column '{wanted}' for {role}; the columns are {', '.join(table.header)}",
+        f"Name one of them, or give its number from 1 to {len(table.header)}.",
+        file=table.name,
+    )
+
+
+def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
+    if {"x", "y"} & set(missing) and any(plain_name(name)[0] in GEOGRAPHIC for name in table.header):
+        return InputError(
+            "Longitude and latitude are degrees; easting and northing in metres are needed",
+            'Project the coordinates to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
+            "(geofit import: --crs).",
+            file=table.name,
+        )
+    names = " and ".join(f"'{role}'" for role in missing)
+    found = ", ".join(table.header)
+    what = f"No column for {names} was found in this {schema.name} table; " + (
+        f"its columns are {found}" if table.named else f"it has no header and {len(table.header)} columns"
+    )
+    example = ", ".join(f'{role} = "..."' for role in missing)
+    return InputError(
+        what,
+        f"Name the column in the header, or state columns = {{ {example} }} (--x, --y, --z, --surface, "
+        "--section for a bare CSV; a column's number counted from 1 will do).",
+        file=table.name,
+        row=int(table.lines[0]) - 1 if table.named and len(table) and table.lines[0] > 1 else None,
+        column=missing[0],
+    )

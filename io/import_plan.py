@@ -1,0 +1,212 @@
+"""Files sorted by what they hold: the first half of an import, before anything is read as a site."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from geofit.errors import InputError
+from geofit.io.columns import SCHEMAS, plain_name
+from geofit.io.journal import Journal
+from geofit.io.mapping import ColumnMapping
+from geofit.io.preview import TablePreview, preview_file
+from geofit.io.rows import read_rows
+from geofit.io.sections import load_lines
+from geofit.io.source import Source
+from geofit.site import ImportIssue, TableCount
+
+__all__ = ["Part", "Plan", "campaigns", "look_at", "settle"]
+
+#: Kinds of which a site has one table.
+SINGLE = ("boundary", "ground", "adit path", "adit contacts")
+
+
+@dataclass
+class Part:
+    """One table of one file, under the name that the site file uses; ``section`` is the line that it lies on."""
+
+    name: str
+    preview: TablePreview
+    mapping: ColumnMapping
+    source: Source
+    section: str = ""
+
+
+@dataclass
+class Plan:
+    """The parts that are used by kind, and what was set aside."""
+
+    parts: dict[str, list[Part]] = field(default_factory=dict)
+    issues: list[ImportIssue] = field(default_factory=list)
+    counts: list[TableCount] = field(default_factory=list)
+
+    def of(self, kind: str) -> list[Part]:
+        """Return the tables of a kind, in the order of the files."""
+        return self.parts.get(kind, [])
+
+    def set_aside(self, name: str, read: int, reason: str, remedy: str, severity: Any = "error", **place: Any) -> None:
+        """List a table that is not used; all its rows count as listed."""
+        place = {"row": 0, "column": "", "value": "", **place}
+        self.issues.append(ImportIssue(file=name, severity=severity, reason=reason, remedy=remedy, **place))
+        self.counts.append(TableCount(name, read, 0, read))
+
+    def drop(self, error: InputError) -> bool:
+        """Set the part that an error names aside; False if it names none."""
+        for parts in self.parts.values():
+            for part in parts:
+                if error.file is not None and error.file == part.source.name:
+                    parts.remove(part)
+                    self.set_aside(
+                        part.source.name,
+                        part.preview.read,
+                        f"The file is not used: {error.reason}",
+                        error.remedy,
+                        row=error.row or 0,
+                        column=error.column or "",
+                        value=error.value or "",
+                    )
+                    return True
+        return False
+
+
+def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, plan: Plan) -> None:
+    """Preview a file and put its tables where they belong."""
+    name = _relative(path, folder)
+    source = Source(path=path, name=name, target=crs or None)
+    try:
+        previews = preview_file(source, mappings)
+    except InputError as error:
+        place = {"row": error.row or 0, "column": error.column or "", "value": error.value or ""}
+        plan.set_aside(name, 0, error.reason, error.remedy, **place)
+        return
+    for preview in previews:
+        part_source = replace(source, table=preview.table)
+        said = next((m for m in mappings if m.suits(name, preview.table, preview.kind or None)), None)
+        mapping = replace(preview.mapping, file=name)
+        if said is not None:
+            mapping = replace(said, file=name, table=preview.table, columns={**mapping.columns, **said.columns})
+        part = Part(name, preview, mapping, part_source)
+        if preview.kind == "skip":
+            plan.set_aside(part_source.name, preview.read, "The mapping leaves this table out", "", "note")
+        elif preview.kind == "":
+            plan.set_aside(part_source.name, preview.read, *_not_recognised(preview))
+        else:
+            plan.parts.setdefault(preview.kind, []).append(part)
+
+
+def _relative(path: Path, folder: Path) -> str:
+    try:
+        return Path(os.path.relpath(path, folder)).as_posix()
+    except ValueError:  # another drive
+        return path.resolve().as_posix()
+
+
+def _not_recognised(preview: TablePreview) -> tuple[str, str]:
+    """Return why a table is of no kind, by the kind that it comes nearest to."""
+    names = {plain_name(name)[0] for name in preview.header}
+    nearest, best = "", 0.0
+    missing: tuple[str, ...] = ()
+    for kind in ("picks", "collar", "survey", "intervals", "section", "adit path", "adit contacts"):
+        absent = tuple(role for role, words in SCHEMAS[kind].required.items() if not names & set(words))
+        share = 1.0 - len(absent) / len(SCHEMAS[kind].required)
+        # Of two kinds of which as much is there, one that asks for more is likelier.
+        if share > best or (share == best > 0 and len(SCHEMAS[kind].required) > len(SCHEMAS[nearest].required)):
+            nearest, missing, best = kind, absent, share
+    if best >= 0.5:
+        lacking = " and ".join(f"'{role}'" for role in missing)
+        return f"The file is not used: nearest to a {nearest} table, but without {lacking}", _REMEDY
+    return f"The file is not used: its columns ({', '.join(preview.header[:12])}) are of no known kind", _REMEDY
+
+
+_REMEDY = "Name its kind and columns in a mapping file (--mapping)."
+
+
+def settle(plan: Plan) -> None:
+    """Set aside what a site has no place for: second boundaries, surveys and sections without a line."""
+    for kind in SINGLE:
+        for part in plan.of(kind)[1:]:
+            plan.parts[kind].remove(part)
+            first = plan.of(kind)[0].source.name
+            plan.set_aside(
+                part.source.name, part.preview.read, f"The {kind} is taken from {first} already", "Import one of them."
+            )
+    lacking = [
+        ("survey", "collar"),
+        ("intervals", "collar"),
+        ("adit contacts", "adit path"),
+    ]
+    for kind, needed in lacking:
+        if not plan.of(needed):
+            for part in plan.parts.pop(kind, []):
+                plan.set_aside(
+                    part.source.name,
+                    part.preview.read,
+                    f"The {kind} table has no {needed} table",
+                    f"Add the {needed} table.",
+                )
+    _place_sections(plan)
+
+
+def _place_sections(plan: Plan) -> None:
+    """Keep sections and drawings whose file is named like a section line; other drawings are of unknown place."""
+    lines: set[str] = set()
+    for part in plan.of("section lines"):
+        try:
+            lines |= set(load_lines(part.mapping.fill(part.source), Journal()))
+        except InputError:
+            continue  # listed when the site is read
+    known = {line.casefold(): line for line in lines}
+    placed: dict[str, str] = {}
+    for kind in ("section", "drawing"):
+        for part in list(plan.of(kind)):
+            stem = part.source.path.stem
+            part.section = known.get(stem.casefold(), "")
+            if part.section in placed:
+                reason = f"Section '{part.section}' is taken from {placed[part.section]} already"
+                remedy = "Import one of them."
+            elif not part.section:
+                reason = "The section has no line in plan"
+                remedy = (
+                    f"Add a table section, x, y with the corners of section '{stem}', "
+                    "or write [[section]] with its line into the site file."
+                )
+            else:
+                placed[part.section] = part.source.name
+                continue
+            plan.parts[kind].remove(part)
+            plan.set_aside(part.source.name, part.preview.read, reason, remedy)
+
+
+def campaigns(plan: Plan) -> list[tuple[Part, Part | None, list[Part]]]:
+    """Return each collar table with its survey and its interval tables: those that share most holes with it."""
+    collars = plan.of("collar")
+    surveys: dict[int, Part] = {}
+    intervals: dict[int, list[Part]] = {}
+    holes = [_holes(part, "collar") for part in collars] if len(collars) > 1 else [set[str]()]
+    for kind in ("survey", "intervals"):
+        for part in list(plan.of(kind)):
+            own = _holes(part, kind) if len(collars) > 1 else set[str]()
+            k = max(range(len(collars)), key=lambda k: len(own & holes[k]))
+            if kind == "intervals":
+                intervals.setdefault(k, []).append(part)
+            elif k not in surveys:
+                surveys[k] = part
+            else:
+                plan.parts[kind].remove(part)
+                plan.set_aside(
+                    part.source.name,
+                    part.preview.read,
+                    f"The survey is taken from {surveys[k].source.name} already",
+                    "Join the survey tables.",
+                )
+    return [(collar, surveys.get(k), intervals.get(k, [])) for k, collar in enumerate(collars)]
+
+
+def _holes(part: Part, kind: str) -> set[str]:
+    try:
+        return set(read_rows(part.mapping.fill(part.source), SCHEMAS[kind], Journal()).text("hole"))
+    except InputError:
+        return set()

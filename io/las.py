@@ -1,0 +1,114 @@
+"""Well logs in LAS (lasio, extra ``las``): the well as a collar, the samples of its curves as intervals."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+
+from geofit.errors import InputError
+from geofit.io.cells import number_text, table_of
+from geofit.io.extra import need
+from geofit.io.journal import Journal
+from geofit.io.sniff import decode
+from geofit.io.source import Source
+from geofit.io.tables import Table
+
+__all__ = ["TABLES", "read_log"]
+
+TABLES = ("WELL", "CURVES")
+
+_WELL = {
+    "hole": ("WELL", "UWI", "API"),
+    "x": ("XCOORD", "X", "EAST", "XWELL", "UTMX", "EASTING"),
+    "y": ("YCOORD", "Y", "NORTH", "YWELL", "UTMY", "NORTHING"),
+    "z": ("EREF", "EKB", "KB", "ELEV", "EGL", "GL", "EDF", "ELZ"),
+    "depth": ("STOP",),
+}
+
+
+def read_log(source: Source, journal: Journal) -> Table:
+    """Read "WELL" (one row: hole, x, y, z, depth) or "CURVES" (a row each sample: hole, from, to, curves).
+
+    A sample reaches from its depth to that of the next one; a curve of codes (facies, lithology) thus makes
+    intervals. z is the elevation of the depth reference.
+
+    Raises
+    ------
+    InputError
+        If the file is no LAS file or has no sample.
+    """
+    log, line = _open(source, journal)
+    hole = _head(log, _WELL["hole"])[0] or source.path.stem
+    if source.table == "WELL":
+        found = {role: _head(log, names) for role, names in _WELL.items()}
+        cells = [hole, *(found[role][0] for role in ("x", "y", "z", "depth"))]
+        units = ["", *(found[role][1] for role in ("x", "y", "z", "depth"))]
+        return table_of(source, journal, list(_WELL), [(1, cells)], units=units)
+    if source.table != "CURVES":
+        raise InputError(f"A LAS file has no table '{source.table}'", "Name WELL or CURVES.", file=source.name)
+    depth = np.asarray(log.index, dtype=np.float64)
+    step = float(depth[-1] - depth[-2]) if len(depth) > 1 else 0.0
+    ends = np.append(depth[1:], depth[-1] + step)
+    upward = step < 0
+    top, base = (ends, depth) if upward else (depth, ends)
+    curves = list(log.curves)[1:]
+    header = ["hole", "from", "to", *(str(curve.mnemonic) for curve in curves)]
+    unit = str(log.curves[0].unit)
+    rows = [
+        (line + i, [hole, number_text(top[i]), number_text(base[i]), *(_cell(curve.data[i]) for curve in curves)])
+        for i in range(len(depth))
+    ]
+    journal.add(
+        "note",
+        source.name,
+        f"{len(depth)} samples; each is an interval that reaches to the next sample",
+        "Give an interval table where the log has one.",
+    )
+    return table_of(source, journal, header, rows, units=["", unit, unit, *(str(c.unit) for c in curves)])
+
+
+def _cell(value: Any) -> str:
+    return number_text(float(value)) if isinstance(value, (int, float, np.floating, np.integer)) else str(value)
+
+
+def _open(source: Source, journal: Journal) -> tuple[Any, int]:
+    """Return the log and the line of its first sample."""
+    lasio = need("lasio", "las", f"Reading the log {source.name}")
+    text, _ = decode(journal.read(source), source.name, source.encoding)
+    failures = (
+        lasio.exceptions.LASHeaderError,
+        lasio.exceptions.LASDataError,
+        lasio.exceptions.LASUnknownUnitError,
+        ArithmeticError,
+        AttributeError,
+        LookupError,
+        OSError,
+        TypeError,
+        ValueError,
+    )
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            log = lasio.read(text.replace("\r\n", "\n").replace("\r", "\n") + "\n", engine="normal")
+            size = len(np.asarray(log.index, dtype=np.float64))
+    except failures as error:
+        raise InputError(
+            f"The log cannot be read: {error or type(error).__name__}", "Export it as LAS 2.0.", file=source.name
+        ) from None
+    if not size:
+        raise InputError("The log has no sample", "Export it with its ~ASCII section.", file=source.name)
+    lines = text.splitlines()
+    start = next((i for i, line in enumerate(lines) if line.lstrip().upper().startswith("~A")), 0)
+    return log, start + 2
+
+
+def _head(log: Any, names: tuple[str, ...]) -> tuple[str, str]:
+    """Return value and unit of the first of some items of the header that is filled."""
+    items = {str(item.mnemonic).upper(): item for section in (log.well, log.params) for item in section}
+    for name in names:
+        item = items.get(name)
+        if item is not None and str(item.value).strip():
+            return str(item.value).strip(), str(item.unit)
+    return "", ""

@@ -1,0 +1,170 @@
+"""Column mappings: how the tables of a site are read, saved as TOML, edited by hand, used again."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
+from difflib import get_close_matches
+from fnmatch import fnmatchcase
+from pathlib import Path
+from typing import Any
+
+from geofit.errors import InputError
+from geofit.files import replacing
+from geofit.io.columns import SCHEMAS
+from geofit.io.source import Source
+from geofit.io.toml_text import toml_key, toml_value
+
+__all__ = ["KINDS", "ColumnMapping", "load_mappings", "save_mappings"]
+
+VERSION = 1
+#: What a table or drawing can hold; "skip" leaves it out.
+KINDS = (*SCHEMAS, "ground", "drawing", "skip")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ColumnMapping:
+    """How one table, or every table of a layout, is read.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file, or a pattern such as ``"*_collar.csv"``.
+    kind : str
+        One of :data:`KINDS`: what its rows are.
+    columns : mapping of str to str or int
+        Column of each role: its header, or its number from 1.
+    table : str
+        Sheet, group or layer.
+    encoding, sep, decimal, unit, measure, crs : str, optional
+        As in :class:`geofit.io.Source`; what is ``None`` is guessed at reading.
+    """
+
+    file: str
+    kind: str
+    columns: Mapping[str, str | int] = field(default_factory=dict)
+    table: str = ""
+    encoding: str | None = None
+    sep: str | None = None
+    decimal: str | None = None
+    unit: str | None = None
+    measure: str | None = None
+    crs: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.kind not in KINDS:
+            near = get_close_matches(self.kind, KINDS, 1)
+            raise InputError(
+                f"A mapping has no kind '{self.kind}'",
+                (f"Did you mean '{near[0]}'? " if near else "") + f"The kinds are {', '.join(KINDS)}.",
+                file=self.file,
+            )
+
+    def suits(self, file: str, table: str = "", kind: str | None = None) -> bool:
+        """Whether the mapping is for a table of a file; case does not count, nor the folder if it names none."""
+        name, pattern = (text.replace("\\", "/").casefold() for text in (file, self.file))
+        name = name if "/" in pattern else Path(name).name
+        return (
+            (name == pattern or fnmatchcase(name, pattern))
+            and (not self.table or not table or self.table == table)
+            and kind in (None, self.kind)
+        )
+
+    def fill(self, source: Source) -> Source:
+        """Return a source with what it does not state itself."""
+        own = {
+            name: getattr(self, name)
+            for name in ("encoding", "sep", "decimal", "unit", "measure", "crs")
+            if getattr(source, name) is None
+        }
+        return replace(source, table=source.table or self.table, columns={**self.columns, **source.columns}, **own)
+
+    def source(self, path: str | Path) -> Source:
+        """Return a file as this mapping reads it."""
+        return self.fill(Source(path=Path(path)))
+
+
+def save_mappings(
+    mappings: Sequence[ColumnMapping], path: str | Path, remarks: Mapping[tuple[int, str], str] | None = None
+) -> None:
+    """Write mappings as TOML; ``remarks`` holds a comment by mapping index and role."""
+    lines = [f"version = {VERSION}", ""]
+    for i, mapping in enumerate(mappings):
+        lines += ["[[table]]", f"file = {toml_value(mapping.file)}", f"kind = {toml_value(mapping.kind)}"]
+        for name in ("table", "encoding", "sep", "decimal", "unit", "measure", "crs"):
+            if value := getattr(mapping, name):
+                lines.append(f"{name} = {toml_value(value)}")
+        if mapping.columns:
+            lines.append("[table.columns]")
+        for role, column in mapping.columns.items():
+            remark = (remarks or {}).get((i, role), "")
+            lines.append(f"{toml_key(role)} = {toml_value(column)}" + (f"  # {_printable(remark)}" if remark else ""))
+        lines.append("")
+    with replacing(path) as part:
+        part.write_text("\n".join(lines), encoding="utf-8")
+
+
+def _printable(text: str) -> str:
+    return "".join(letter if letter.isprintable() else " " for letter in text)
+
+
+def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
+    """Read mappings.
+
+    Raises
+    ------
+    InputError
+        If the file is no TOML, is of a later version, or has an unknown key or kind.
+    """
+    source = Source(path=Path(path))
+    try:
+        top = tomllib.loads(source.read().decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise InputError(f"The mapping is not UTF-8: {error}", "Save it as UTF-8.", file=source.name) from None
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"The mapping is no TOML: {error}", "See docs/formats_in.md.", file=source.name) from None
+    version, tables = top.pop("version", VERSION), top.pop("table", [])
+    if not isinstance(version, int) or version > VERSION:
+        raise InputError(
+            f"The mapping is of version {version}; this geofit reads up to {VERSION}",
+            "Use a newer geofit.",
+            file=source.name,
+        )
+    if top or not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise InputError(
+            "A mapping holds version and [[table]] only" + (f", not '{next(iter(top))}'" if top else ""),
+            "See docs/formats_in.md.",
+            file=source.name,
+        )
+    return tuple(_mapping(table, source.name) for table in tables)
+
+
+def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
+    known = [f.name for f in fields(ColumnMapping)]
+    for key, value in table.items():
+        if key not in known:
+            near = get_close_matches(key, known, 1)
+            raise InputError(
+                f"[[table]] of a mapping has no key '{key}'",
+                (f"Did you mean '{near[0]}'? " if near else "") + f"The keys are {', '.join(known)}.",
+                file=file,
+                column=key,
+            )
+        sound = (
+            isinstance(value, dict) and all(type(column) in (str, int) for column in value.values())
+            if key == "columns"
+            else isinstance(value, str)
+        )
+        if not sound:
+            raise InputError(
+                f"{key} in a mapping must be " + ("a table of headers or numbers" if key == "columns" else "a text"),
+                "Correct its value.",
+                file=file,
+                column=key,
+                value=str(value),
+            )
+    for key in ("file", "kind"):
+        if key not in table:
+            raise InputError(f"A [[table]] of the mapping has no '{key}'", f'Write {key} = "...".', file=file)
+    return ColumnMapping(**table)

@@ -1,0 +1,87 @@
+"""Structural dips: azimuth and dip, strike and dip, or the normal of the plane."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.errors import InputError
+from geofit.io.axes import Region, check_axes
+from geofit.io.columns import ORIENTATIONS
+from geofit.io.journal import Journal
+from geofit.io.rows import Rows, read_rows
+from geofit.io.source import Source
+from geofit.site import Orientations
+
+__all__ = ["load_orientations"]
+
+Floats = NDArray[np.float64]
+
+
+def load_orientations(source: Source, journal: Journal, region: Region | None = None) -> Orientations:
+    """Read measurements; rows without a place or an attitude are listed.
+
+    The dip is given with its azimuth (direction of steepest descent), or with the strike, which by the right-hand
+    rule lies 90 degrees anticlockwise of it; else by the plane's normal, of either sign.
+
+    Raises
+    ------
+    InputError
+        If no columns hold an attitude, or no row can be used.
+    """
+    rows = read_rows(source, ORIENTATIONS, journal)
+    (x, y), z = rows.places(), rows.numbers("z", no_data=True)
+    check_axes(rows, x, y, region)
+    azimuth, dip = _attitudes(rows)
+    horizon = rows.text("horizon", required=False)
+    rows.close()
+    if not rows.ok.any():
+        raise InputError("No row of the orientations can be used", "See the listed rows.", file=source.name)
+    used = np.flatnonzero(rows.ok)
+    return Orientations(
+        np.column_stack([x, y, z])[used],
+        azimuth[used],
+        dip[used],
+        np.array(horizon, dtype=np.str_)[used],
+        np.full(len(used), rows.file),
+        rows.line[used],
+    )
+
+
+def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
+    if {"nx", "ny", "nz"} <= set(rows.columns) and "dip" not in rows.columns:
+        return _from_normals(rows)
+    if "dip" not in rows.columns or not {"azimuth", "strike"} & set(rows.columns):
+        raise InputError(
+            "No columns for an attitude were found in this orientations table; its columns are "
+            + ", ".join(rows.table.header),
+            "Name dip with azimuth or strike, or the normal nx, ny, nz.",
+            file=rows.file,
+        )
+    dip = rows.numbers("dip")
+    if "azimuth" in rows.columns:
+        azimuth = rows.numbers("azimuth")
+    else:
+        azimuth = rows.numbers("strike") + 90.0
+        rows.journal.add(
+            "warning",
+            rows.file,
+            "The strike is read by the right-hand rule: the plane dips to the right of it",
+            "Give the azimuth of the dip where that is wrong.",
+            column=rows.table.header[rows.columns["strike"]],
+        )
+    for i in np.flatnonzero(~((dip >= 0) & (dip <= 90)) & rows.ok).tolist():
+        rows.reject(i, "dip", "The dip is not between 0 and 90 degrees", "Give the angle below the horizontal.")
+    for i in np.flatnonzero((np.abs(azimuth) > 450.0) & rows.ok).tolist():
+        rows.reject(i, "azimuth", "The azimuth is not between 0 and 360 degrees", "Give degrees from north.")
+    return azimuth % 360.0, dip
+
+
+def _from_normals(rows: Rows) -> tuple[Floats, Floats]:
+    n = np.column_stack([rows.numbers("nx"), rows.numbers("ny"), rows.numbers("nz")])
+    length = np.linalg.norm(n, axis=1)
+    for i in np.flatnonzero(~(length > 0) & rows.ok).tolist():
+        rows.reject(i, "nx", "The normal has no length", "Give the three components of the plane's normal.")
+    up = n * np.where(n[:, 2:] < 0, -1.0, 1.0)
+    azimuth = np.degrees(np.arctan2(up[:, 0], up[:, 1])) % 360.0
+    return azimuth, np.degrees(np.arctan2(np.hypot(up[:, 0], up[:, 1]), up[:, 2]))

@@ -1,0 +1,252 @@
+"""What a file seems to hold before it is read: its tables, their kinds and columns, each with a confidence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from geofit.errors import GeofitError
+from geofit.io.columns import SCHEMAS, Schema
+from geofit.io.formats import TABLE_FORMATS, USUAL_TABLES, read_any_table, table_names
+from geofit.io.guess import USABLE, RoleGuess, guess_roles, sample_of
+from geofit.io.journal import Journal
+from geofit.io.mapping import ColumnMapping
+from geofit.io.source import Source, as_source
+from geofit.io.tables import Table
+from geofit.site import ImportIssue
+
+__all__ = ["GROUNDS", "TablePreview", "preview_file", "preview_table"]
+
+#: Endings of grids, and rows that a preview shows.
+GROUNDS = (".asc", ".grd", ".tif", ".tiff")
+SHOWN = 20
+#: A kind below it is not used unless the user says so.
+LIKELY = 0.4
+
+_WORDS = {
+    "collar": ("collar", "location", "hole", "孔口"),
+    "survey": ("survey", "deviation", "测斜"),
+    "intervals": ("lith", "geol", "interval", "weather", "strat", "地层", "岩性", "风化"),
+    "adit path": ("adit", "tunnel", "平硐", "平洞"),
+    "adit contacts": ("adit",),
+    "section": ("section", "剖面"),
+    "section lines": ("line", "section", "剖面线"),
+    "traces": ("trace", "outcrop", "map", "露头"),
+    "picks": ("pick", "point", "contact"),
+    "orientations": ("dip", "orientation", "attitude", "产状"),
+    "boundary": ("boundary", "outline", "area", "limit", "边界"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class TablePreview:
+    """One table of a file with what is guessed of it; plain data, for a window as for the command line.
+
+    Parameters
+    ----------
+    file : str
+        Name of the file.
+    table : str
+        Sheet, group or layer; empty where the file has one table.
+    kind, confidence
+        What the rows seem to be, one of :data:`geofit.io.mapping.KINDS` ("" if nothing fits), from 0 to 1.
+    kinds : mapping of str to float
+        Every kind whose required columns are there, the likeliest first.
+    roles : tuple of RoleGuess
+        Column of each role of the kind.
+    missing : tuple of str
+        Required roles without a column.
+    header, units, rows : tuple
+        As they stand in the file; the first rows only.
+    read : int
+        Rows of the whole table.
+    encoding, sep, decimal, crs : str
+        As found.
+    issues : tuple of ImportIssue
+        What was found on the way.
+    """
+
+    file: str
+    table: str
+    kind: str
+    confidence: float
+    kinds: Mapping[str, float]
+    roles: tuple[RoleGuess, ...]
+    missing: tuple[str, ...]
+    header: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
+    rows: tuple[tuple[str, ...], ...] = ()
+    read: int = 0
+    encoding: str = ""
+    sep: str = ""
+    decimal: str = "."
+    crs: str = ""
+    issues: tuple[ImportIssue, ...] = ()
+
+    @property
+    def mapping(self) -> ColumnMapping:
+        """The guesses as a mapping, to be changed and saved."""
+        return ColumnMapping(
+            file=Path(self.file).name,
+            kind=self.kind or "skip",
+            columns={
+                guess.role: guess.column if self.header.count(guess.column) == 1 else guess.index + 1
+                for guess in self.roles
+            },
+            table=self.table,
+            encoding=self.encoding or None,
+            sep=self.sep or None,
+            decimal=self.decimal if self.sep else None,
+        )
+
+
+def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = ()) -> tuple[TablePreview, ...]:
+    """Return a preview of each table of a file.
+
+    Parameters
+    ----------
+    path : path or Source
+        Any format that :mod:`geofit.io` reads.
+    mappings : sequence of ColumnMapping
+        What the user has said already: it is taken instead of a guess.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, empty or damaged.
+    MissingDependencyError
+        If the package for its format is not installed.
+    """
+    source = as_source(path)
+    said = [mapping for mapping in mappings if mapping.suits(source.name)]
+    if any(mapping.kind == "skip" and not mapping.table for mapping in said):
+        return (_fixed(source, "skip"),)
+    ending = source.path.suffix.casefold()
+    if ending in GROUNDS or any(mapping.kind == "ground" for mapping in said):
+        source.read()
+        return (_fixed(source, "ground"),)
+    if ending == ".dxf":
+        source.read()
+        return (_fixed(source, "drawing"),)
+    previews = []
+    usual = {name: kind for kind, names in _usual(ending).items() for name in names}
+    for name in table_names(source):
+        if usual and name not in usual:
+            continue
+        own = [mapping for mapping in said if not mapping.table or mapping.table == name]
+        part = Source(path=source.path, name=source.name, table=name, target=source.target)
+        if own:
+            previews += [preview_table(mapping.fill(part), mapping.kind) for mapping in own]
+        else:
+            previews.append(preview_table(part, usual.get(name)))
+    return tuple(previews)
+
+
+def preview_table(source: Source, kind: str | None = None) -> TablePreview:
+    """Return the preview of one table, as ``kind`` if it is given, else as the likeliest kind."""
+    if kind == "skip":
+        return _fixed(source, "skip")
+    journal = Journal()
+    table = read_any_table(source, journal, kind or "")
+    if kind is None:
+        ranked = _rank(table, source)
+        kind, confidence = next(iter(ranked.items()), ("", 0.0))
+        if confidence < LIKELY:
+            kind = ""
+    else:
+        ranked, confidence = {kind: 1.0}, 1.0
+    guesses = guess_roles(table, SCHEMAS[kind], source) if kind else {}
+    sample = range(min(SHOWN, len(table)))
+    return TablePreview(
+        file=source.path.name,
+        table=source.table,
+        kind=kind,
+        confidence=confidence,
+        kinds=ranked,
+        roles=tuple(
+            guess
+            for role, guess in guesses.items()
+            if guess.confidence >= USABLE or guess.stated or role in SCHEMAS[kind].required
+        ),
+        missing=tuple(role for role in (SCHEMAS[kind].required if kind else ()) if role not in guesses),
+        header=table.header,
+        units=table.units,
+        rows=tuple(tuple(column[i] for column in table.columns) for i in sample),
+        read=table.read,
+        encoding=table.encoding,
+        sep=table.sep,
+        decimal=table.decimal,
+        crs=table.crs,
+        issues=tuple(journal.issues),
+    )
+
+
+def _usual(ending: str) -> Mapping[str, tuple[str, ...]]:
+    """Return the tables of an exchange format that hold holes, by kind: their names say what they are."""
+    return USUAL_TABLES.get(TABLE_FORMATS.get(ending, ""), {})
+
+
+def _fixed(source: Source, kind: str) -> TablePreview:
+    return TablePreview(source.path.name, source.table, kind, 1.0, {kind: 1.0}, (), ())
+
+
+def _rank(table: Table, source: Source) -> dict[str, float]:
+    """Return the kinds whose required columns are there, the likeliest first."""
+    ranked: dict[str, float] = {}
+    for name, schema in SCHEMAS.items():
+        try:
+            guesses = guess_roles(table, schema, source)
+        except GeofitError:
+            continue  # the user named columns of another kind
+        if all(role in guesses for role in _needed(schema, source)):
+            merit = _merit(table, schema, guesses)
+            stem = source.path.stem.casefold() + source.table.casefold()
+            if any(word in stem for word in _WORDS[name]):
+                merit = merit + 0.2 * (1.0 - merit)
+            if merit > 0:
+                ranked[name] = round(merit, 2)
+    return dict(sorted(ranked.items(), key=lambda item: -item[1]))
+
+
+def _needed(schema: Schema, source: Source) -> list[str]:
+    """Return the roles that must be found; places may be longitude and latitude where a target is named."""
+    return [role for role in schema.required if not (source.target and role in ("x", "y"))]
+
+
+def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> float:
+    """Return how likely a table is of a kind: its columns' confidence, and what is telling about each kind."""
+    found = [guesses[role].confidence for role in schema.required if role in guesses]
+    merit = min(found, default=0.0) * 0.5 + sum(found) / max(len(schema.required), 1) * 0.5
+    if not table.named:
+        return merit if schema.name == "picks" else 0.5 * merit
+    extra = sum(role in guesses for role in schema.optional)
+    match schema.name:
+        case "collar":
+            merit *= _once(table, guesses, "hole")
+        case "picks":
+            merit *= 0.9 if "horizon" in guesses else 0.75
+        case "orientations":
+            attitude = "dip" in guesses and {"azimuth", "strike"} & set(guesses)
+            merit *= 1.05 if attitude or "nx" in guesses else 0.0
+            merit *= 0.5 if "hole" in guess_roles(table, SCHEMAS["collar"], Source(path=Path(table.name))) else 1.0
+        case "traces" | "section lines" | "boundary":
+            others = guess_roles(table, SCHEMAS["picks"], Source(path=Path(table.name)))
+            merit *= 0.5 if "z" in others else 0.95
+            if schema.name == "boundary":
+                merit *= 0.9 if len(table.header) <= 3 and "horizon" not in others else 0.4
+                merit *= 0.5 if {"hole", "section"} & set(others) else 1.0
+            if schema.name == "section lines" and "horizon" in others:
+                merit *= 0.5
+        case "section":
+            # "x" may be a distance, but not beside "y".
+            y = guess_roles(table, SCHEMAS["boundary"], Source(path=Path(table.name)))
+            merit *= 0.3 if "y" in y else 0.95
+    return min(merit + 0.02 * extra * (merit > 0), 1.0)
+
+
+def _once(table: Table, guesses: Mapping[str, RoleGuess], role: str) -> float:
+    """Return 1 where no cell of a role repeats, down to 0.3 where all do."""
+    cells = [table.columns[guesses[role].index][i] for i in sample_of(table)]
+    share = len(set(cells)) / max(len(cells), 1)
+    return 0.3 + 0.7 * share

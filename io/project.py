@@ -1,0 +1,310 @@
+"""The project file (``*.geofit``): JSON text with the work on a site; its surfaces stand beside it as STEP.
+
+::
+
+    {
+      "format": "geofit project",
+      "version": 1,
+      "name": "Dam site",
+      "crs": "EPSG:32648",
+      "sources": [{"path": "data/collar.csv", "role": "collar", "sha256": "...", "mapping": {...}}],
+      "settings": {"T2-T1": {"epsilon": 0.25, ...}},
+      "edits": [{"kind": "exclude", "horizon": "T2-T1", "values": {"file": "picks.csv", "row": 17}}],
+      "results": [{"horizon": "T2-T1", "surface": "site_surfaces/T2-T1-1f00c3a2.step", "sha256": "...", ...}]
+    }
+
+A surface's file carries the start of its hash in its name, and the project file is replaced last: whenever a
+save is interrupted, the project file on the disk names files that are there and whole.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field, fields
+from os import PathLike
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+from geofit import __version__
+from geofit.accuracy import plain
+from geofit.errors import InputError, SettingsError
+from geofit.files import file_stems, replacing
+from geofit.settings import FitSettings
+from geofit.surface import HorizonSurface
+
+__all__ = [
+    "VERSION",
+    "Edit",
+    "Project",
+    "ProjectResult",
+    "ProjectSource",
+    "load_surfaces",
+    "open_project",
+    "save_project",
+]
+
+FORMAT = "geofit project"
+#: Version of the layout. A change that an older reader would misread makes it one more, with a migration.
+VERSION = 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProjectSource:
+    """A file that was read: its path, what it is read as, its SHA-256, and how its columns are understood."""
+
+    path: str
+    role: str = ""
+    sha256: str = ""
+    mapping: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Edit:
+    """A change by hand, in the order it was made: what was done, to which horizon, with which values."""
+
+    kind: str
+    horizon: str = ""
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ProjectResult:
+    """A surface that was fitted: its STEP file and hash, its figures, and the version that made it."""
+
+    horizon: str
+    surface: str
+    sha256: str
+    n: int = 0
+    sigma: float | None = None
+    passed: bool | None = None
+    geofit: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Project:
+    """The work on one site. Paths are relative to the project file, with forward slashes, or absolute."""
+
+    name: str
+    crs: str = ""
+    sources: tuple[ProjectSource, ...] = ()
+    settings: Mapping[str, FitSettings] = field(default_factory=dict)
+    edits: tuple[Edit, ...] = ()
+    results: tuple[ProjectResult, ...] = ()
+
+    def changed(self, folder: str | PathLike[str]) -> dict[str, str]:
+        """Return sources and surfaces that are "missing" or "changed" since the project was saved, by path."""
+        found = {}
+        for path, expected in (
+            *((source.path, source.sha256) for source in self.sources),
+            *((result.surface, result.sha256) for result in self.results),
+        ):
+            file = Path(folder) / path
+            if not file.is_file():
+                found[path] = "missing"
+            elif expected and _sha256(file) != expected:
+                found[path] = "changed"
+        return found
+
+
+def save_project(
+    project: Project,
+    path: str | PathLike[str],
+    surfaces: Mapping[str, HorizonSurface] | None = None,
+) -> Project:
+    """Write a project file, and the surfaces that are given, as STEP, into ``NAME_surfaces`` beside it.
+
+    Parameters
+    ----------
+    project : Project
+        What to save. Sources without a hash get theirs.
+    path : path
+        The file, usually ``*.geofit``.
+    surfaces : mapping of str to HorizonSurface, optional
+        Surfaces by horizon; each takes the place of its horizon's former result.
+
+    Returns
+    -------
+    Project
+        What was written, with hashes and results.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written.
+    StitchError
+        If patches do not make one valid shell; the project file on the disk stays as it was.
+    """
+    target = Path(path)
+    former = {result.surface for result in project.results}
+    results = {result.horizon: result for result in project.results}
+    for name, surface in (surfaces or {}).items():
+        results[name] = _write_surface(name, surface, target)
+    sources = tuple(_hashed(source, target.parent) for source in project.sources)
+    saved = Project(
+        name=project.name,
+        crs=project.crs,
+        sources=sources,
+        settings=dict(project.settings),
+        edits=project.edits,
+        results=tuple(results.values()),
+    )
+    head = {"format": FORMAT, "version": VERSION}
+    text = json.dumps(head | plain(asdict(saved)), ensure_ascii=False, indent=1, allow_nan=False)
+    try:
+        with replacing(target) as part:
+            part.write_text(text + "\n", encoding="utf-8", newline="\n")
+    except OSError as error:
+        raise InputError(
+            f"The project cannot be written: {error.strerror or error}",
+            "Make the folder, or name another.",
+            file=str(target),
+        ) from None
+    for surface_file in former - {result.surface for result in saved.results}:
+        # Only what this project wrote itself, never a file from elsewhere.
+        if PurePosixPath(surface_file).parent.as_posix() == _folder(target).name:
+            (target.parent / surface_file).unlink(missing_ok=True)
+    return saved
+
+
+def open_project(path: str | PathLike[str]) -> Project:
+    """Read a project file of this or any older version.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it is no project file, or a newer geofit wrote it.
+    """
+    source = Path(path)
+    try:
+        data = json.loads(source.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise InputError(
+            f"The project cannot be read: {error.strerror or error}", "Check the path.", file=str(source)
+        ) from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(
+            f"This is no project file: {error}", "Open a *.geofit file, or mend its JSON.", file=str(source)
+        ) from None
+    if not isinstance(data, dict) or data.get("format") != FORMAT:
+        raise InputError(f"The file does not say '{FORMAT}'", "Open a *.geofit file.", file=str(source))
+    version = data.get("version")
+    if not isinstance(version, int) or isinstance(version, bool) or version < 0:
+        raise InputError(
+            "The project has no version", f"It should stand as a number up to {VERSION}.", file=str(source)
+        )
+    if version > VERSION:
+        raise InputError(
+            f"The project was saved by a newer geofit: its version is {version}, this geofit "
+            f"({__version__}) reads up to {VERSION}",
+            "Update geofit: pip install -U geofit",
+            file=str(source),
+        )
+    try:
+        for older in range(version, VERSION):
+            data = MIGRATIONS[older](data)
+        return _project(data)
+    except (KeyError, TypeError, ValueError, AttributeError, SettingsError) as error:
+        raise InputError(
+            f"The project does not hold what version {version} should: {error!r}",
+            "Undo the last change by hand, or open a copy.",
+            file=str(source),
+        ) from None
+
+
+def load_surfaces(project: Project, folder: str | PathLike[str]) -> dict[str, HorizonSurface]:
+    """Read the surfaces of a project by horizon; errors as :func:`geofit.io.step.read_step`."""
+    from geofit.io.step import read_step
+
+    found = {}
+    for result in project.results:
+        surface = next(iter(read_step(Path(folder) / result.surface).values()))
+        settings = project.settings.get(result.horizon, FitSettings())
+        found[result.horizon] = surface.with_(name=result.horizon, settings=settings)
+    return found
+
+
+def _project(data: Mapping[str, Any]) -> Project:
+    unknown = set(data) - {"format", "version"} - {f.name for f in fields(Project)}
+    if unknown:
+        raise ValueError(f"unknown key '{min(unknown)}'")
+    if not isinstance(data["name"], str) or not isinstance(data.get("crs", ""), str):
+        raise TypeError("name and crs must be text")
+    return Project(
+        name=data["name"],
+        crs=data.get("crs", ""),
+        sources=tuple(ProjectSource(**entry) for entry in data.get("sources", [])),
+        settings={name: _settings(values) for name, values in data.get("settings", {}).items()},
+        edits=tuple(Edit(**entry) for entry in data.get("edits", [])),
+        results=tuple(ProjectResult(**entry) for entry in data.get("results", [])),
+    )
+
+
+def _settings(values: Mapping[str, Any]) -> FitSettings:
+    core = values.get("core")
+    if isinstance(core, list):
+        values = {**values, "core": tuple((float(x), float(y)) for x, y in core)}
+    return FitSettings(**values)
+
+
+def _from_0(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Version 0 had a title, a flat list of files with hashes, and one epsilon a horizon."""
+    return {
+        "format": FORMAT,
+        "version": 1,
+        "name": data["title"],
+        "sources": [{"path": path, "sha256": digest} for path, digest in data["files"].items()],
+        "settings": {name: {"epsilon": epsilon} for name, epsilon in data["epsilon"].items()},
+    }
+
+
+#: What turns version k into version k + 1.
+MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {0: _from_0}
+
+
+def _folder(target: Path) -> Path:
+    return target.with_name(f"{target.stem}_surfaces")
+
+
+def _write_surface(name: str, surface: HorizonSurface, target: Path) -> ProjectResult:
+    from geofit.io.step import write_step
+
+    folder = _folder(target)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(
+            f"The folder cannot be made: {error.strerror or error}", "Save elsewhere.", file=str(folder)
+        ) from None
+    stem = file_stems([name])[name]
+    draft = folder / f".{stem}.draft.step"
+    try:
+        write_step({name: surface}, draft)
+        digest = _sha256(draft)
+        final = folder / f"{stem}-{digest[:8]}.step"
+        draft.replace(final)
+    finally:
+        draft.unlink(missing_ok=True)
+    accuracy = surface.accuracy
+    return ProjectResult(
+        horizon=name,
+        surface=f"{folder.name}/{final.name}",
+        sha256=digest,
+        n=len(surface.points),
+        sigma=None if accuracy is None else accuracy.sigma,
+        passed=None if accuracy is None else accuracy.passed,
+        geofit=__version__,
+    )
+
+
+def _hashed(source: ProjectSource, folder: Path) -> ProjectSource:
+    file = folder / source.path
+    if source.sha256 or not file.is_file():
+        return source
+    return ProjectSource(path=source.path, role=source.role, sha256=_sha256(file), mapping=dict(source.mapping))
+
+
+def _sha256(file: Path) -> str:
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()

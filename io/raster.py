@@ -1,0 +1,89 @@
+"""A GeoTIFF as the ground (rasterio, extra ``gis``)."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from geofit.errors import InputError
+from geofit.io.crs import is_code
+from geofit.io.extra import need
+from geofit.io.grid import grid_unit
+from geofit.io.journal import Journal
+from geofit.io.source import Source
+from geofit.site import Ground
+
+__all__ = ["read_raster"]
+
+
+def read_raster(source: Source, journal: Journal) -> Ground:
+    """Read the first band; cells without data are nan, the places are the cells' centres.
+
+    Raises
+    ------
+    InputError
+        If the raster cannot be read, is turned, or is not in the site's coordinate system.
+    MissingDependencyError
+        If rasterio is not installed.
+    """
+    rasterio = need("rasterio", "gis", f"Reading the raster {source.name}")
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # a raster without georeference is refused below
+            with rasterio.open(source.path) as raster:
+                band = raster.read(1, masked=True)
+                place, crs, bands = raster.transform, raster.crs, raster.count
+    except (rasterio.errors.RasterioError, OSError, ValueError, MemoryError) as error:
+        raise InputError(
+            f"The raster cannot be read: {error}", "Open it in a GIS and save it as GeoTIFF.", file=source.name
+        ) from None
+    if place.is_identity or place.b or place.d or place.a <= 0 or place.e >= 0:
+        raise InputError(
+            "The raster has no place on the map, or is turned"
+            if not place.is_identity
+            else "The raster has no georeference",
+            "Save it from a GIS as a GeoTIFF with north up.",
+            file=source.name,
+        )
+    _check_crs(source, crs, journal)
+    if min(band.shape) < 2:
+        raise InputError("The raster has less than 2 x 2 cells", "Export it again.", file=source.name)
+    z = np.ma.filled(np.ma.asarray(band, dtype=np.float64), np.nan)[::-1].copy()
+    z[~np.isfinite(z)] = np.nan
+    if np.isnan(z).all():
+        raise InputError("No cell of the raster has an elevation", "Check its no-data value.", file=source.name)
+    if np.isnan(z).any():
+        journal.add("note", source.name, f"{int(np.isnan(z).sum())} of {z.size} cells have no data")
+    if bands > 1:
+        journal.add("warning", source.name, f"The raster has {bands} bands; the first is the elevation")
+    rows, columns = z.shape
+    journal.count(source.name, rows, 0)
+    scale = grid_unit(source)
+    x = place.c + place.a * (np.arange(columns) + 0.5)
+    y = place.f + place.e * (np.arange(rows)[::-1] + 0.5)
+    return Ground(scale * x, scale * y, scale * z)
+
+
+def _check_crs(source: Source, crs: object, journal: Journal) -> None:
+    if crs is None:
+        return
+    journal.add("note", source.name, f"The coordinate system of the raster is {str(crs)[:120]}")
+    if getattr(crs, "is_geographic", False):
+        raise InputError(
+            f"The raster is in longitude and latitude ({str(crs)[:60]}); metres are needed",
+            "Warp it to the site's grid (gdalwarp -t_srs EPSG:...).",
+            file=source.name,
+        )
+    if source.target and is_code(source.target):
+        pyproj = need("pyproj", "gis", f"Reading the raster {source.name}")
+        try:
+            same = pyproj.CRS.from_user_input(source.target).to_2d() == pyproj.CRS.from_user_input(str(crs)).to_2d()
+        except pyproj.exceptions.CRSError:
+            return
+        if not same:
+            raise InputError(
+                f"The raster is in {str(crs)[:60]}, the site in {source.target}",
+                f"Warp it (gdalwarp -t_srs {source.target}).",
+                file=source.name,
+            )

@@ -1,0 +1,103 @@
+"""Drawings of a site file: sections along their lines, and plans at their levels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.io.axes import Region
+from geofit.io.horizons import HorizonNames
+from geofit.io.journal import Journal
+from geofit.io.sections import Drawing, load_level, load_lines, load_section
+from geofit.io.site_keys import TABLE, Reader
+from geofit.points import PointSet
+from geofit.site import Section
+
+__all__ = ["gather", "read_sections"]
+
+Floats = NDArray[np.float64]
+
+
+def read_sections(
+    reader: Reader,
+    top: Mapping[str, Any],
+    names: HorizonNames,
+    journal: Journal,
+    region: Region | None,
+    gathered: dict[str, list[PointSet]],
+) -> tuple[Section, ...]:
+    """Read the section lines, the [[section]] and the [[level]] tables; points go to ``gathered``."""
+    lines: dict[str, Floats] = {}
+    for table in reader.tables(top, "section_lines"):
+        lines |= load_lines(reader.source(table, "[section_lines]", kind="section lines"), journal, region)
+    sections: list[Section] = []
+    for table in reader.tables(top, "section"):
+        name = reader.need(table, "name", str, "[[section]]", 'Write name = "...".')
+        where = f"section '{name}'"
+        if any(section.name == name for section in sections):
+            raise reader.fail(f"Two sections have the name '{name}'", "Give each its own.", "name")
+        reader.keys(table, (*TABLE, "name", "line", "scale", "origin"), where)
+        remedy = "Write line = [[x, y], [x, y]], the corners of the section line in plan."
+        if "line" not in table and name in lines:
+            line = lines[name]
+        else:
+            line = _pairs(reader, reader.need(table, "line", list, where, remedy), f"line of {where}", remedy)
+        if len(line) < 2 or not (np.diff(line, axis=0) != 0).any(axis=1).all():
+            raise reader.fail(f"The line of {where} needs two or more different corners", remedy, "line", line.tolist())
+        _check_line(reader, line, where, region)
+        sections.append(Section(name, line))
+        source = reader.source(table, where, ("name", "line", "scale", "origin"), "section")
+        gather(gathered, load_section(source, sections[-1], _drawing(reader, table, where), names, journal))
+    for table in reader.tables(top, "level"):
+        elevation = reader.get(table, "elevation", float, "[[level]]")
+        if elevation is None:
+            raise reader.fail("A [[level]] has no elevation", "Write elevation = 1200.0.", "elevation")
+        where = f"level {elevation:g}"
+        reader.keys(table, (*TABLE, "elevation", "scale", "origin"), where)
+        source = reader.source(table, where, ("elevation", "scale", "origin"), "traces")
+        drawing = _drawing(reader, table, where)
+        gather(gathered, load_level(source, elevation, drawing, names, journal, region))
+    return tuple(sections)
+
+
+def _drawing(reader: Reader, table: Mapping[str, Any], where: str) -> Drawing:
+    scale = reader.get(table, "scale", float, where)
+    if scale is not None and scale <= 0:
+        raise reader.fail(f"scale in {where} must be above 0", "Give drawing units a metre.", "scale", scale)
+    remedy = "Write origin = [u, v], the drawing's coordinates of distance 0 and elevation 0."
+    origin = _pairs(reader, [table.get("origin", [0.0, 0.0])], f"origin of {where}", remedy)[0]
+    return Drawing(scale=1.0 if scale is None else scale, origin=(float(origin[0]), float(origin[1])))
+
+
+def _pairs(reader: Reader, value: Any, where: str, remedy: str) -> Floats:
+    try:
+        pairs = np.array(value, dtype=np.float64)
+    except (ValueError, TypeError):
+        pairs = np.empty(0)
+    if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
+        raise reader.fail(f"The {where} is no list of finite pairs", remedy, value=value)
+    return pairs
+
+
+def _check_line(reader: Reader, line: Floats, where: str, region: Region | None) -> None:
+    if region is None:
+        return
+    west, east, south, north = region
+    x, y = line.mean(axis=0)
+    if (west <= y <= east and south <= x <= north) and not (west <= x <= east and south <= y <= north):
+        raise reader.fail(
+            f"x and y look exchanged in the line of {where}: it lies far outside the study area, and inside "
+            "it with x and y swapped",
+            "x is the easting, y the northing.",
+            "line",
+            line.tolist(),
+        )
+
+
+def gather(gathered: dict[str, list[PointSet]], found: Mapping[str, PointSet]) -> None:
+    """Add the points of each horizon that were found to those gathered."""
+    for name, points in found.items():
+        gathered.setdefault(name, []).append(points)

@@ -1,0 +1,124 @@
+"""Map features: points, lines and polygons of shapefile, GeoPackage, GeoJSON (pyogrio, extra ``gis``)."""
+
+from __future__ import annotations
+
+import warnings
+from typing import Any
+
+import numpy as np
+
+from geofit.errors import InputError
+from geofit.io.cells import number_text, table_of
+from geofit.io.extra import need
+from geofit.io.journal import Journal
+from geofit.io.source import Source
+from geofit.io.tables import Table
+
+__all__ = ["RING", "layer_names", "read_features"]
+
+#: Header of the column with the running number of the line or ring that a vertex belongs to.
+RING = "ring"
+
+
+def layer_names(source: Source) -> tuple[str, ...]:
+    """Return the layers of a file that have a geometry."""
+    source.read()
+    pyogrio = need("pyogrio", "gis", f"Reading the map {source.name}")
+    try:
+        layers = pyogrio.list_layers(source.path)
+    except (pyogrio.errors.DataSourceError, OSError, ValueError) as error:
+        raise _damaged(source, error) from None
+    return tuple(str(name) for name, geometry in layers if geometry is not None)
+
+
+def read_features(source: Source, journal: Journal) -> Table:
+    """Read the vertices with the columns x, y, z (where they have one), ring, and the features' attributes.
+
+    The row of a vertex is the number of its feature, from 1. The table's ``crs`` is that of the layer.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or the places are longitude and latitude and no target system is named.
+    """
+    journal.read(source)
+    pyogrio = need("pyogrio", "gis", f"Reading the map {source.name}")
+    import shapely
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            meta, _, wkb, fields = pyogrio.raw.read(source.path, layer=source.table or None)
+        shapes = shapely.from_wkb(wkb) if wkb is not None else np.array([])
+    except (pyogrio.errors.DataSourceError, pyogrio.errors.DataLayerError, shapely.GEOSException) as error:
+        raise _damaged(source, error) from None
+    except (OSError, ValueError, RuntimeError, UnicodeError) as error:
+        raise _damaged(source, error) from None
+    crs = str(meta.get("crs") or "")
+    if crs:
+        journal.add("note", source.name, f"The coordinate system of the layer is {crs[:120]}")
+    if crs and not source.crs and not source.target:
+        _refuse_degrees(source, crs)
+    attributes = [str(name) for name in meta["fields"]]
+    rows: list[tuple[int, list[str]]] = []
+    malformed = rings = 0
+    deep = bool(shapely.has_z(shapes).any()) if len(shapes) else False
+    for i, shape in enumerate(shapes):
+        own = [_text(column[i]) for column in fields]
+        lines = [] if shape is None else _rings(shape)
+        if not any(len(line) for line in lines):
+            malformed += 1
+            journal.add("error", source.name, "The feature has no place", "Draw it again.", row=i + 1)
+        for line in lines:
+            rings += 1
+            for vertex in line:
+                place = [number_text(float(value)) for value in (vertex if deep else vertex[:2])]
+                rows.append((i + 1, [*place, str(rings), *own]))
+    header = [*(("x", "y", "z") if deep else ("x", "y")), RING]
+    # An attribute that is called like a coordinate stays, under another name.
+    header += [f"{name} (attribute)" if name.casefold() in {"x", "y", "z", RING} else name for name in attributes]
+    return table_of(source, journal, header, rows, malformed=malformed, crs=crs)
+
+
+def _rings(shape: Any) -> list[Any]:
+    """Return the vertices of each part: points, lines, outer and inner rings."""
+    import shapely
+
+    if hasattr(shape, "geoms"):
+        return [line for part in shape.geoms for line in _rings(part)]
+    if shape.geom_type == "Polygon":
+        return [_vertices(ring) for ring in (shape.exterior, *shape.interiors)] if not shape.is_empty else []
+    return [_vertices(shape)] if shapely.get_num_coordinates(shape) else []
+
+
+def _vertices(shape: Any) -> Any:
+    import shapely
+
+    return shapely.get_coordinates(shape, include_z=True)
+
+
+def _text(value: Any) -> str:
+    if value is None or value != value:
+        return ""
+    return number_text(float(value)) if isinstance(value, (int, float, np.number)) else str(value)
+
+
+def _refuse_degrees(source: Source, crs: str) -> None:
+    pyproj = need("pyproj", "gis", f"Reading the map {source.name}")
+    try:
+        degrees = pyproj.CRS.from_user_input(crs).is_geographic
+    except pyproj.exceptions.CRSError:
+        return
+    if degrees:
+        raise InputError(
+            f"The places are longitude and latitude ({crs[:60]}); easting and northing in metres are needed",
+            'Project the layer to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
+            "(geofit import: --crs).",
+            file=source.name,
+        )
+
+
+def _damaged(source: Source, error: Exception) -> InputError:
+    return InputError(
+        f"The map cannot be read: {error}", "Open it in a GIS and save it as GeoPackage.", file=source.name
+    )

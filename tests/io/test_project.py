@@ -1,0 +1,192 @@
+"""The project file: what is saved comes back; old versions open, newer ones say so; a broken save breaks nothing."""
+
+from __future__ import annotations
+
+import json
+from contextlib import suppress
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from surfaces import fold, horizon, nine
+
+from geofit.errors import InputError
+from geofit.files import replacing
+from geofit.io import project as module
+from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
+from geofit.settings import FitSettings
+
+VERSION_0 = """{"format": "geofit project", "version": 0, "title": "Old dam",
+"files": {"collar.csv": "ab12"}, "epsilon": {"T1": 0.25}}"""
+
+
+def sample():
+    return Project(
+        name="坝址 Dam",
+        crs="EPSG:32648",
+        sources=(ProjectSource(path="picks.csv", role="picks", mapping={"x": "东", "skip": [1, 2]}),),
+        settings={
+            "T2/T1": FitSettings(epsilon=0.25, core=((0.0, 0.0), (1.0, 0.0), (1.0, 1.0))),
+            "fold": FitSettings(frame="sections", max_control_points=900, smoothing=0.1),
+        },
+        edits=(Edit(kind="exclude", horizon="T2/T1", values={"file": "picks.csv", "row": 17}),),
+    )
+
+
+def files(folder):
+    return sorted(str(p.relative_to(folder)) for p in folder.rglob("*") if p.is_file())
+
+
+def test_everything_comes_back(tmp_path):
+    (tmp_path / "picks.csv").write_text("x,y,z\n1,2,3\n")
+    saved = save_project(sample(), tmp_path / "dam.geofit", {"T2/T1": horizon(nine()[1], name="T2/T1")})
+    back = open_project(tmp_path / "dam.geofit")
+    assert back == saved
+    assert back.settings == sample().settings
+    assert len(back.sources[0].sha256) == 64
+    assert back.changed(tmp_path) == {}
+    (surface,) = load_surfaces(back, tmp_path).values()
+    assert surface.settings.epsilon == 0.25
+    for read, patch in zip(surface.patches, nine()[1], strict=True):
+        assert np.abs(read.control - patch.control).max() < 1e-9
+
+
+def test_the_text_is_diffable_and_the_same_each_time(tmp_path):
+    for name in ("a", "b"):
+        save_project(sample(), tmp_path / f"{name}.geofit")
+    text = (tmp_path / "a.geofit").read_bytes()
+    assert text == (tmp_path / "b.geofit").read_bytes()
+    assert "坝址" in text.decode("utf-8")
+    longest = max(map(len, text.decode("utf-8").splitlines()))
+    assert longest < 120  # one value a line: a change is a line of a diff
+    one = Project(**{**vars(sample()), "crs": "EPSG:4546"})
+    save_project(one, tmp_path / "b.geofit")
+    before, after = (p.read_text("utf-8").splitlines() for p in (tmp_path / "a.geofit", tmp_path / "b.geofit"))
+    assert len(set(before) ^ set(after)) == 2
+
+
+def test_changed_and_missing_sources_are_named(tmp_path):
+    (tmp_path / "picks.csv").write_text("x,y,z\n1,2,3\n")
+    saved = save_project(sample(), tmp_path / "dam.geofit", {"fold": horizon([fold()], name="fold")})
+    (tmp_path / "picks.csv").write_text("x,y,z\n1,2,4\n")
+    (tmp_path / saved.results[0].surface).unlink()
+    assert saved.changed(tmp_path) == {"picks.csv": "changed", saved.results[0].surface: "missing"}
+
+
+def test_a_new_surface_takes_the_place_of_the_former_after_the_project_names_it(tmp_path, monkeypatch):
+    first = save_project(sample(), tmp_path / "dam.geofit", {"T": horizon([fold()], name="T")})
+    text = (tmp_path / "dam.geofit").read_bytes()
+
+    def broken(path):
+        raise KeyboardInterrupt
+
+    # Stopped between the surface and the project file: the project names what is there and whole.
+    with monkeypatch.context() as patched:
+        patched.setattr(module, "replacing", broken)
+        with pytest.raises(KeyboardInterrupt):
+            save_project(first, tmp_path / "dam.geofit", {"T": horizon(nine()[1], name="T")})
+    assert (tmp_path / "dam.geofit").read_bytes() == text
+    assert open_project(tmp_path / "dam.geofit").changed(tmp_path) == {"picks.csv": "missing"}
+    second = save_project(first, tmp_path / "dam.geofit", {"T": horizon(nine()[1], name="T")})
+    assert files(tmp_path) == ["dam.geofit", second.results[0].surface]
+    assert second.results[0].surface != first.results[0].surface
+    assert replacing is not broken
+
+
+def test_version_0_opens(tmp_path):
+    (tmp_path / "old.geofit").write_text(VERSION_0, encoding="utf-8")
+    old = open_project(tmp_path / "old.geofit")
+    assert old.name == "Old dam"
+    assert old.sources == (ProjectSource(path="collar.csv", sha256="ab12"),)
+    assert old.settings == {"T1": FitSettings(epsilon=0.25)}
+    save_project(old, tmp_path / "new.geofit")
+    assert json.loads((tmp_path / "new.geofit").read_text("utf-8"))["version"] == module.VERSION
+    assert open_project(tmp_path / "new.geofit") == old
+    assert set(module.MIGRATIONS) == set(range(module.VERSION))
+
+
+@pytest.mark.parametrize(
+    ("text", "match"),
+    [
+        ('{"format": "geofit project", "version": 99, "anything": 1}', "newer geofit.*99.*Update"),
+        ('{"format": "geofit project"}', "no version"),
+        ('{"format": "geofit project", "version": true}', "no version"),
+        ('{"format": "other"}', "does not say"),
+        ("[1, 2]", "does not say"),
+        ("GOCAD TSurf 1", "no project file"),
+        ("[" * 100_000, "no project file"),
+        ('{"format": "geofit project", "version": 1}', "name"),
+        ('{"format": "geofit project", "version": 1, "name": 3}', "must be text"),
+        ('{"format": "geofit project", "version": 1, "name": "a", "sorces": []}', "unknown key 'sorces'"),
+        (
+            '{"format": "geofit project", "version": 1, "name": "a", "settings": {"T": {"epsilon": -1}}}',
+            "epsilon",
+        ),
+        ('{"format": "geofit project", "version": 1, "name": "a", "edits": [{"what": 1}]}', "what"),
+        ('{"format": "geofit project", "version": 0}', "title"),
+    ],
+)
+def test_what_is_no_project_says_so(text, match, tmp_path):
+    (tmp_path / "a.geofit").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=match):
+        open_project(tmp_path / "a.geofit")
+
+
+def test_no_file_and_no_folder(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        open_project(tmp_path / "none.geofit")
+    with pytest.raises(InputError, match="cannot be written"):
+        save_project(sample(), tmp_path / "none" / "dam.geofit")
+
+
+words = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
+numbers = st.floats(allow_nan=False, allow_infinity=False)
+plain_values = st.recursive(
+    st.none() | st.booleans() | st.integers(-(2**53), 2**53) | numbers | words,
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(words, inner, max_size=3),
+    max_leaves=6,
+)
+projects = st.builds(
+    Project,
+    name=words,
+    crs=words,
+    sources=st.lists(
+        st.builds(
+            ProjectSource,
+            path=words.filter(lambda w: "\0" not in w),
+            role=words,
+            sha256=st.just("ff"),
+            mapping=st.dictionaries(words, plain_values, max_size=3),
+        ),
+        max_size=3,
+    ).map(tuple),
+    settings=st.dictionaries(
+        words,
+        st.builds(FitSettings, epsilon=st.floats(1e-6, 1e6), smoothing=st.floats(1e-6, 1e6)),
+        max_size=3,
+    ),
+    edits=st.lists(
+        st.builds(Edit, kind=words, horizon=words, values=st.dictionaries(words, plain_values, max_size=3)),
+        max_size=3,
+    ).map(tuple),
+)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(project=projects)
+def test_any_project_comes_back(project, tmp_path):
+    save_project(project, tmp_path / "any.geofit")
+    assert open_project(tmp_path / "any.geofit") == project
+
+
+@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(cut=st.integers(0, 2000), byte=st.integers(0, 255), drop=st.integers(0, 40))
+def test_a_damaged_file_is_read_or_refused(cut, byte, drop, tmp_path):
+    save_project(sample(), tmp_path / "a.geofit")
+    text = bytearray((tmp_path / "a.geofit").read_bytes())
+    place = cut % len(text)
+    text[place : place + drop] = bytes([byte])
+    (tmp_path / "b.geofit").write_bytes(text)
+    with suppress(InputError):
+        open_project(tmp_path / "b.geofit")
