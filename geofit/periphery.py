@@ -125,7 +125,9 @@ def _solve(
         for k in range(1, len(band)):
             band[k, : space.size - k][frozen[k:]] = 0.0
         band[0, frozen] = 1.0
-    return Factor(band).solve(right)
+    solution = Factor(band).solve(right)
+    solution[frozen] = start[frozen]
+    return solution
 
 
 def _size(misfit: Floats) -> Floats:

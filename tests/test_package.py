@@ -201,7 +201,7 @@ def test_no_machine_path_and_no_registry_host_in_the_repository():
 def test_the_readme_example_runs_as_written(tmp_path):
     page = (ROOT / "README.md").read_text(encoding="utf-8")
     example = re.search(r"```python\n(.*?)```", page, re.S)[1]
-    assert len(example.strip().splitlines()) == 5
+    assert len([line for line in example.splitlines() if line.strip()]) == 5
     shutil.copytree(ROOT / "sample_data", tmp_path / "sample_data")
     printed = python(example, tmp_path).split()
     assert printed[0] == "PASS"

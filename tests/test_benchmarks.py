@@ -1,0 +1,165 @@
+"""The scripts in benchmarks/ import, and their pure functions are right. Nothing is timed here."""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geofit import FitSettings, HorizonSurface, PointSet
+from geofit.bspline import clamped_knots
+from geofit.surface import Patch
+
+FOLDER = Path(__file__).resolve().parents[1] / "benchmarks"
+
+
+@pytest.fixture
+def load(monkeypatch):
+    monkeypatch.syspath_prepend(str(FOLDER))
+    monkeypatch.setattr(sys, "path", [*sys.path])
+    before = set(sys.modules)
+    yield importlib.import_module
+    for name in set(sys.modules) - before:
+        if name.split(".")[0] in {"real", "fit", "distance", "realdata", "peers"}:
+            del sys.modules[name]
+
+
+def plane(x, y):
+    return 3.0 + 0.2 * x - 0.1 * y
+
+
+def scattered(n=60, seed=1):
+    xy = np.random.default_rng(seed).uniform(0, 100, (n, 2))
+    return np.column_stack([xy, plane(*xy.T)])
+
+
+@pytest.mark.parametrize("name", ["distance", "fit", "real"])
+def test_script_imports_and_can_be_run(load, name):
+    assert callable(load(name).main)
+
+
+def test_holes_and_places_stay_together_in_a_fold(load):
+    score = load("realdata.score")
+    xyz = np.column_stack([np.repeat(np.arange(40.0), 2), np.zeros(80), np.arange(80.0)])
+    places = score.folds(PointSet(xyz))
+    assert (places[::2] == places[1::2]).all()
+    assert sorted(np.bincount(places)) == [8] * 10
+    holes = score.folds(PointSet(scattered(), hole=np.repeat(np.arange(20), 3).astype(str)))
+    assert (holes.reshape(20, 3) == holes.reshape(20, 3)[:, :1]).all()
+    assert (score.folds(PointSet(xyz)) == places).all()
+
+
+def test_peers_reproduce_a_plane_and_repeated_places_do_no_harm(load):
+    score = load("realdata.score")
+    xyz = scattered()
+    repeated = np.concatenate([xyz, xyz[:5] + np.array([0, 0, 2.0]), xyz[:5] - np.array([0, 0, 2.0])])
+    places = np.array([[40.0, 50.0], [61.0, 33.0], [500.0, 500.0]])
+    expected = plane(*places.T)
+    assert score.thin_plate(repeated, places) == pytest.approx(expected, abs=1e-6)
+    line = score.linear(repeated, places)
+    assert line[:2] == pytest.approx(expected[:2], abs=1e-9)
+    assert np.isnan(line[2])
+
+
+def test_score_tells_bias_from_spread(load):
+    score = load("realdata.score")
+    assert score.score(np.array([3.0, 5.0])) == score.Score(pytest.approx(np.sqrt(17.0)), pytest.approx(1.0))
+    assert np.isnan(score.score(np.array([])).rms)
+
+
+def test_all_three_tools_are_compared_at_the_same_points(load):
+    score = load("realdata.score")
+    given, left_out = PointSet(scattered()), PointSet([[50, 50, plane(50, 50) + 1], [100, 100, plane(100, 100)]])
+    errors = score.left_out_errors(given, left_out, FitSettings())
+    assert (errors.left_out, errors.common, errors.defined) == (2, 1, 2)
+    assert errors.line.rms == pytest.approx(1.0, abs=1e-9)
+    assert errors.plate.rms == pytest.approx(1.0, abs=1e-6)
+    assert errors.ours.rms == pytest.approx(1.0, abs=1e-3)
+    assert errors.ours_all.rms == pytest.approx(np.sqrt(0.5), abs=1e-3)
+
+
+def figures(load, ours, plate, ours_all=None, plate_all=None):
+    score = load("realdata.score")
+    values = (ours, plate, plate, ours_all or ours, plate_all or plate)
+    return score.Errors(10, 9, 10, *(score.Score(v, v) for v in values))
+
+
+@pytest.mark.parametrize(
+    ("field", "stiffer", "softer", "words"),
+    [
+        (2.0, 5.0, 5.0, "bringing each point within its tolerance (or onto the core) costs it"),
+        (3.0, 5.0, 5.0, "costs part of it; the regional field alone misses by 3.00 m"),
+        (4.0, 2.5, 5.0, "smooths too little for these points: the regional field with ten times"),
+        (4.0, 5.0, 2.5, "smooths too much for these points: the regional field with a tenth"),
+        (4.0, 5.0, 4.5, "no smoothing helps"),
+    ],
+)
+def test_the_reason_follows_from_the_trial(load, field, stiffer, softer, words):
+    why = load("realdata.why")
+    trial = why.Trial(*(figures(load, error, 2.0) for error in (field, stiffer, softer)), "smooth", "map")
+    assert words in why.why(figures(load, 4.0, 2.0), trial)
+
+
+def test_a_loss_beyond_the_hull_alone_is_told_as_such(load):
+    why = load("realdata.why")
+    errors = figures(load, 2.0, 2.0, 4.0, 2.0)
+    assert why.worse(errors) == (False, True)
+    trial = why.Trial(errors, errors, errors, "smooth", "map")
+    assert why.why(errors, trial).startswith("only beyond the hull")
+
+
+def test_the_page_names_a_set_that_failed(load):
+    page = load("realdata.page")
+    row = page.Row("Set: top", 7, FitSettings(), None, figures(load, 1.0, 1.0), None, "The points lie on one line.")
+    text = page.markdown([row], [("Set", "all points")])
+    assert "| Set: top | 7 | – | – | 0.5 | 0.1 | ERROR |" in text
+    assert "- **Set: top, 0.5 / 0.1 m**: The points lie on one line." in text
+
+
+def test_the_page_does_not_hold_seconds_that_change(load):
+    page = load("realdata.page")
+    texts = []
+    for seconds in (0.4, 1.3):
+        fitted = page.Fitted(5, 2, 0.1, "PASS", 70, seconds, ())
+        row = page.Row("Set", 7, FitSettings(), fitted, figures(load, 1.0, 1.0), None)
+        assert page.fit_cells(row, exact_seconds=True)[-1] == f"{seconds:.1f}"
+        texts.append(page.markdown([row], []))
+    assert texts[0] == texts[1]
+
+
+def test_reference_p_spline_reproduces_a_plane(load):
+    pspline = load("peers.pspline")
+    spline = pspline.PSpline((0, 100, 0, 100), 8, 1e-3).fit(scattered(400))
+    x, y = scattered(50, seed=2)[:, :2].T
+    assert spline.elevation(x, y) == pytest.approx(plane(x, y), abs=1e-6)
+
+
+def test_smallest_size_within_a_limit(load):
+    fit = load("fit")
+    assert fit.smallest(lambda n: 1 / n, 0.1, 2, 50) == 10
+    assert fit.smallest(lambda n: 1 / n, 0.001, 2, 50) is None
+
+
+def test_time_of_a_fit_leaves_out_the_check(load):
+    fit = load("fit")
+    knots = clamped_knots([0, 1], 1)
+    patch = Patch("core", (1, 1), knots, knots, np.zeros((2, 2, 3)))
+    surface = HorizonSurface((patch,), np.zeros(3), PointSet(np.zeros((3, 3))))
+    seconds = {"conflicts": 1.0, "field": 2.0, "check": 4.0, "adjust": 8.0}
+    assert fit.fit_seconds(surface.with_(fit={"seconds": seconds})) == 3.0
+
+
+def test_without_data_real_says_so_and_exits_with_2(tmp_path):
+    import os
+
+    environment = os.environ | {"GEOFIT_DATA": str(tmp_path / "nowhere")}
+    run = subprocess.run(
+        [sys.executable, FOLDER / "real.py"], env=environment, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 2
+    assert "GEOFIT_DATA" in run.stderr
+    assert "Traceback" not in run.stderr
