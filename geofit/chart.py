@@ -129,9 +129,9 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, str]:
 def _dip(points: PointSet, plane: Frame) -> float:
     """Return the mean dip in degrees; of points in one line in plan, the dip along that line."""
     xyz = points.xyz - points.xyz.mean(axis=0)
-    extent, axes = np.linalg.svd(xyz[:, :2], full_matrices=False)[1:]
-    if extent[1] < 0.02 * extent[0]:
-        along = xyz[:, :2] @ axes[0]
+    moments, axes = np.linalg.eigh(xyz[:, :2].T @ xyz[:, :2])
+    if moments[0] < 0.02**2 * moments[1]:
+        along = xyz[:, :2] @ axes[:, 1]
         rise = np.abs(np.diff(xyz[np.argsort(along, kind="stable"), 2])).sum()
         if rise > max(4.0, len(xyz) / 6) * np.ptp(xyz[:, 2]):
             # Up and down from point to point: scattered over a vertical plane, no section of a horizon.

@@ -16,13 +16,15 @@ Floats = NDArray[np.float64]
 SHARE, ALIGNED = 0.25, 1.5
 #: Fewest points of a line.
 FEWEST = 5
+#: More points than these were not drawn on sections by anybody.
+MOST = 20_000
 #: How far a point may lie off its line, as a share of the median distance to the nearest neighbour.
 STRAY = 0.1
 
 
 def section_labels(points: PointSet) -> NDArray[np.str_]:
     """Return (n,) the section of each point: as named, or as found where none is named; empty for the others."""
-    if (points.section != "").any() or len(points) < 4 * FEWEST:
+    if not 4 * FEWEST <= len(points) <= MOST or (points.section != "").any():
         return points.section
     return find_sections(points.xyz[:, :2])
 
