@@ -45,10 +45,11 @@ def settle(
     pairs = _near_pairs(place, distance)
     if not len(pairs):
         return kept, ()
-    accuracy = np.where(np.isnan(points.accuracy), np.inf, points.accuracy)
-    trust = np.array([_TRUST.get(kind, 3) for kind in points.kind])
+    met = np.unique(pairs)
+    accuracy = np.where(np.isnan(points.accuracy[met]), np.inf, points.accuracy[met])
+    trust = np.array([_TRUST.get(kind, 3) for kind in points.kind[met]])
     rank = np.empty(len(points), dtype=int)
-    rank[np.lexsort((np.arange(len(points)), trust, accuracy))] = np.arange(len(points))
+    rank[met[np.lexsort((met, trust, accuracy))]] = np.arange(len(met))
     better = np.where(rank[pairs[:, 0]] < rank[pairs[:, 1]], pairs[:, 0], pairs[:, 1])
     worse = pairs.sum(axis=1) - better
     conflicts = []
