@@ -70,7 +70,7 @@ def _near_pairs(place: NDArray[np.float64], distance: float) -> NDArray[np.intp]
     order = np.argsort(place[:, int(np.argmax(np.ptp(place, axis=0)))], kind="stable")
     swept = place[order]
     along = swept[:, int(np.argmax(np.ptp(place, axis=0)))]
-    found = []
+    found: list[NDArray[np.intp]] = []
     for step in range(1, ABREAST + 1):
         near = np.flatnonzero(along[step:] - along[:-step] <= distance)
         if not len(near):
