@@ -17,7 +17,6 @@ from geofit.surface import HorizonSurface
 
 SITE = Path(__file__).parent.parent / "sample_data" / "site.toml"
 SEEDS = range(12)
-MAP_HORIZONS = ("T3-T2", "T2-T1", "W")
 
 
 @cache
@@ -72,16 +71,29 @@ def test_every_check_of_the_paper_s_arrangement_holds(seed):
     assert surface.control_points <= 10 * accuracy.n
 
 
-@pytest.mark.parametrize("name", MAP_HORIZONS)
-def test_sample_horizons_off_the_data(name):
+# The weathering limit follows the valley's relief; on its thin rim the two methods come near each other.
+MISSED = pytest.mark.xfail(strict=True, reason="whole area 0.903 x the thin plate's error, 0.9 x is asked for")
+
+
+@pytest.mark.parametrize(
+    ("name", "core"),
+    [
+        ("T3-T2", True),
+        ("T3-T2", False),
+        ("T2-T1", True),
+        ("T2-T1", False),
+        ("W", True),
+        pytest.param("W", False, marks=MISSED),
+    ],
+)
+def test_sample_horizons_off_the_data(name, core):
     truth, surface, points = horizon_truth(name), sample_surface(name), sample_site().horizons[name]
     spline = thin_plate(points)
-    # The weathering limit follows the valley's relief; on its thin rim the two methods come near each other.
-    for core, limit in ((True, 1.2), (False, 0.91 if name == "W" else 0.9)):
-        x, y, height = truth.places(10_000, core=core).T
-        error = surface.elevation(x, y) - height
-        assert not np.isnan(error).any()
-        assert rms(error) <= limit * rms(spline(x, y) - height)
+    limit = 1.2 if core else 0.9
+    x, y, height = truth.places(10_000, core=core).T
+    error = surface.elevation(x, y) - height
+    assert not np.isnan(error).any()
+    assert rms(error) <= limit * rms(spline(x, y) - height)
 
 
 def test_the_597_point_horizon():
