@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
-from geofit.accuracy import Conflict
 from geofit.adjust import adjust
-from geofit.assemble import patches_of
 from geofit.chart import Chart, choose_chart
-from geofit.check import check
 from geofit.conflicts import settle
-from geofit.core import fit_with_core
 from geofit.distance import project
 from geofit.errors import ExactnessError, FitError, PointsError
-from geofit.net import Net, approximate_all
+from geofit.model import Model, Problem
 from geofit.partition import Split, split_all, split_auto, split_none, split_rectangle
 from geofit.points import PointSet
 from geofit.progress import Progress, tell
 from geofit.settings import FitSettings
-from geofit.surface import HorizonSurface, Partition, Patch
+from geofit.surface import HorizonSurface
 
 __all__ = ["fit_horizon"]
 
@@ -111,120 +106,63 @@ def _fit_horizon(
 
     clock.stage("partition", 0.1)
     split = _partition(chart, settings, kept)
-    job = _Job(points, settings, corners, chart, split, kept, conflicts, name)
+    problem = Problem(points, settings, corners, chart, split, kept, conflicts, name)
 
     clock.stage("fit", 0.2)
     try:
-        net = job.fit(kept & chart.placed, clock.stage)
+        model = problem.fit(kept & chart.placed, clock.stage)
     except ExactnessError as error:
         if settings.core != "auto":
             raise
         inside = np.zeros(len(points), bool)
-        job = replace(job, split=Split(None, inside, f"{split.reason}, but all points are approximated: {error}"))
-        net = job.fit(kept & chart.placed, clock.stage)
+        reason = f"{split.reason}, but all points are approximated: {error}"
+        model = replace(problem, split=Split(None, inside, reason)).fit(kept & chart.placed, clock.stage)
     if not chart.placed.all():
-        job, net = _correct(job, net, clock)
+        model = _corrected(model, clock)
 
     clock.stage("check", 0.8)
-    surface = job.checked(net)
+    surface = model.surface()
 
     clock.stage("adjust", 0.9)
-    surface = _adjusted(job, net, surface)
+    surface = _adjusted(model, surface)
     clock.stage("done", 1.0)
     return surface.with_(fit={**surface.fit, "seconds": dict(clock.seconds)})
 
 
-@dataclass(frozen=True, eq=False)
-class _Job:
-    """What stays the same while a horizon's control points are fitted and adjusted."""
-
-    points: PointSet
-    settings: FitSettings
-    boundary: Floats | None
-    chart: Chart
-    split: Split
-    kept: NDArray[np.bool_]
-    conflicts: tuple[Conflict, ...]
-    name: str
-
-    def fit(self, honoured: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Net:
-        """Return the control net that meets the core's and approximates the other honoured points."""
-        if self.split.core is None:
-            return approximate_all(self.points, self.chart, honoured, self.settings, stage)
-        return fit_with_core(self.points, self.chart, self.split, honoured, self.settings, stage)
-
-    def checked(self, net: Net) -> HorizonSurface:
-        """Return the surface of a control net, with its check."""
-        surface = HorizonSurface(
-            patches=self.patches(net),
-            origin=self.chart.frame.origin,
-            points=self.points,
-            settings=self.settings,
-            name=self.name,
-            outline=self.boundary if self.chart.frame.kind == "map" else None,
-            partition=self._partition(),
-            core=self.split.inside & self.kept,
-        )
-        figures = {
-            "frame": self.chart.frame.kind,
-            "energy": net.field.energy,
-            "smoothing": net.field.smoothing,
-            "noise": net.field.noise,
-            "spacing": net.unit,
-            "rounds": net.rounds,
-            "control_points": surface.control_points,
-        }
-        surface = surface.with_(fit=figures)
-        return surface.with_(accuracy=check(surface, self.conflicts, (*self.chart.notes, *net.notes)))
-
-    def patches(self, net: Net) -> tuple[Patch, ...]:
-        """Cut the surface into patches along the core's edges."""
-        interpolated = self.split.core is not None
-        return patches_of(net.space, net.coefficients, net.core, self.chart.frame, net.unit, net.lines, interpolated)
-
-    def _partition(self) -> Partition:
-        corners = None
-        if self.split.core is not None and not self.chart.parametric:
-            u0, u1, v0, v1 = self.split.core
-            local = np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]])
-            xyz = self.chart.frame.turn_back(local) + self.chart.frame.origin
-            corners = tuple((float(x), float(y)) for x, y in xyz[:, :2])
-        inside = int((self.split.inside & self.kept).sum())
-        return Partition(corners, inside, len(self.kept) - inside, self.split.reason)
-
-
-def _correct(job: _Job, net: Net, clock: _Clock) -> tuple[_Job, Net]:
+def _corrected(model: Model, clock: _Clock) -> Model:
     """Project the points between the sections on the surface, and fit again with the parameters found."""
-    between = ~job.chart.placed
+    between = ~model.problem.chart.placed
     for _ in range(CORRECTIONS):
-        foot = project(job.patches(net), job.chart.frame.turn_back(job.chart.values[between]))
-        plane = job.chart.plane.copy()
+        problem, chart = model.problem, model.problem.chart
+        foot = project(model.patches(), chart.frame.turn_back(chart.values[between]))
+        plane = chart.plane.copy()
         moved = np.abs(plane[between] - np.column_stack([foot.u, foot.v])).max()
         plane[between] = np.column_stack([foot.u, foot.v])
-        job = replace(job, chart=job.chart.with_plane(plane))
-        net = job.fit(job.kept, clock.stage)
+        model = replace(problem, chart=chart.with_plane(plane)).fit(problem.kept, clock.stage)
         if moved < 1e-3:
             break
-    return job, net
+    return model
 
 
-def _adjusted(job: _Job, net: Net, surface: HorizonSurface) -> HorizonSurface:
+def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
     """Adjust locally until sigma is below epsilon or no step helps, and say which."""
-    for step in range(job.settings.max_iterations + 1):
+    given = model.problem
+    for step in range(given.settings.max_iterations + 1):
         accuracy = surface.accuracy
         assert accuracy is not None
         if accuracy.passed:
             if step:
                 surface = _with_note(surface, f"sigma came below epsilon after {step} local adjustments")
             break
-        better = adjust(net, job.chart, job.kept & ~surface.core, accuracy.residuals)
-        candidate = job.checked(better) if better is not None and step < job.settings.max_iterations else None
+        better = adjust(model.net, given.chart, given.kept & ~surface.core, accuracy.residuals)
+        tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
+        candidate = None if tried is None else tried.surface()
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
             words = f"sigma stays above epsilon: after {step} local adjustments no further step lowers it"
             surface = _with_note(surface, words)
             break
-        assert better is not None
-        net, surface = better, candidate
+        assert tried is not None
+        model, surface = tried, candidate
     return surface
 
 

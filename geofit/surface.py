@@ -17,6 +17,7 @@ from geofit.settings import FitSettings
 
 if TYPE_CHECKING:
     from geofit.accuracy import ReadBack
+    from geofit.model import Model
 
 __all__ = ["HorizonSurface", "Partition", "Patch"]
 
@@ -134,6 +135,8 @@ class HorizonSurface:
         The check; None only while the fit is under way.
     fit : mapping
         Figures of the fit for the report: control points, energy, smoothing, iterations, seconds a stage.
+    model : Model or None
+        What stands behind the patches of a fit; None for an imported surface.
     """
 
     patches: tuple[Patch, ...]
@@ -146,6 +149,7 @@ class HorizonSurface:
     core: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
     accuracy: Accuracy | None = None
     fit: Mapping[str, Any] = field(default_factory=dict)
+    model: Model | None = None
 
     def with_(self, **changes: Any) -> HorizonSurface:
         """Return a copy with some fields replaced."""

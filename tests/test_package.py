@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 #: Floors of docs/architecture.md, the lowest first. A room imports from its own floor and those below.
 FLOORS = (
-    ("accuracy", "errors", "files", "points", "progress", "settings", "site"),
+    ("accuracy", "errors", "files", "offdata", "points", "progress", "settings", "site", "words"),
     ("bspline", "frame", "tensor"),
     ("surface",),
     ("cells", "distance", "elevation"),
@@ -27,7 +27,7 @@ FLOORS = (
         "adjust", "assemble", "chart", "conflicts", "core", "field", "fold", "knots", "net", "partition", "periphery",
         "sections", "skin",
     ),
-    ("stitch",),
+    ("model", "stitch"),
     ("pipeline",),
     ("io", "sample"),
     ("report",),

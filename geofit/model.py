@@ -1,0 +1,102 @@
+"""What stands behind a surface's patches: what was given to the fit, and the control net that it found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.accuracy import Conflict
+from geofit.assemble import patches_of
+from geofit.chart import Chart
+from geofit.check import check
+from geofit.core import fit_with_core
+from geofit.net import Net, approximate_all
+from geofit.partition import Split
+from geofit.points import PointSet
+from geofit.settings import FitSettings
+from geofit.surface import HorizonSurface, Partition, Patch
+
+__all__ = ["Model", "Problem"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What stays the same while a horizon's control points are fitted and adjusted.
+
+    ``kept`` (n,) marks the points that conflicts left; ``boundary`` (k, 2) is the study area in map coordinates.
+    """
+
+    points: PointSet
+    settings: FitSettings
+    boundary: Floats | None
+    chart: Chart
+    split: Split
+    kept: NDArray[np.bool_]
+    conflicts: tuple[Conflict, ...]
+    name: str
+
+    def fit(self, honoured: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
+        """Return the control net that meets the core's points and approximates the other honoured ones."""
+        if self.split.core is None:
+            return Model(self, approximate_all(self.points, self.chart, honoured, self.settings, stage))
+        return Model(self, fit_with_core(self.points, self.chart, self.split, honoured, self.settings, stage))
+
+    def partition(self) -> Partition:
+        """Return the split in map coordinates."""
+        corners = None
+        if self.split.core is not None and not self.chart.parametric:
+            u0, u1, v0, v1 = self.split.core
+            local = np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]])
+            xyz = self.chart.frame.turn_back(local) + self.chart.frame.origin
+            corners = tuple((float(x), float(y)) for x, y in xyz[:, :2])
+        inside = int((self.split.inside & self.kept).sum())
+        return Partition(corners, inside, len(self.kept) - inside, self.split.reason)
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A problem with one control net for the whole surface, of which the patches are parts."""
+
+    problem: Problem
+    net: Net
+
+    def with_net(self, net: Net) -> Model:
+        """Return the same problem with another control net."""
+        return replace(self, net=net)
+
+    def patches(self) -> tuple[Patch, ...]:
+        """Cut the surface into patches along the core's edges."""
+        net, interpolated = self.net, self.problem.split.core is not None
+        frame = self.problem.chart.frame
+        return patches_of(net.space, net.coefficients, net.core, frame, net.unit, net.lines, interpolated)
+
+    def surface(self) -> HorizonSurface:
+        """Return the surface of the control net, with its check."""
+        given, net = self.problem, self.net
+        surface = HorizonSurface(
+            patches=self.patches(),
+            origin=given.chart.frame.origin,
+            points=given.points,
+            settings=given.settings,
+            name=given.name,
+            outline=given.boundary if given.chart.frame.kind == "map" else None,
+            partition=given.partition(),
+            core=given.split.inside & given.kept,
+            model=self,
+        )
+        figures = {
+            "frame": given.chart.frame.kind,
+            "energy": net.field.energy,
+            "smoothing": net.field.smoothing,
+            "noise": net.field.noise,
+            "spacing": net.unit,
+            "rounds": net.rounds,
+            "control_points": surface.control_points,
+        }
+        surface = surface.with_(fit=figures)
+        return surface.with_(accuracy=check(surface, given.conflicts, (*given.chart.notes, *net.notes)))

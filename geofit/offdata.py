@@ -1,0 +1,93 @@
+"""How far the rock may lie from the surface where nobody drilled: plain data of cross-validation and uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["LeftOut", "OffData", "Outlier", "Suggestion", "Uncertainty"]
+
+Floats = NDArray[np.float64]
+Scheme = Literal["hole", "section", "block"]
+
+
+@dataclass(frozen=True, eq=False)
+class LeftOut:
+    """Cross-validation by one scheme: each group of points is predicted from all others.
+
+    ``group`` (n,) names the group of each point, empty for points that are never left out; ``error`` (n,) is the
+    point minus the surface fitted without its group, metres, nan where never left out; ``sd`` (n,) its standard
+    deviation as predicted, after calibration, the point's own accuracy included. ``inside`` is the share of
+    left-out points within the 90 % band, ``inside_raw`` the share before calibration. ``peers`` holds the root mean
+    square error of other methods on the same folds, by name ("thin plate", "kriging").
+    """
+
+    scheme: Scheme
+    groups: int
+    group: NDArray[np.str_]
+    error: Floats
+    sd: Floats
+    rms: float
+    mean_abs: float
+    bias: float
+    max_abs: float
+    inside: float
+    inside_raw: float
+    peers: Mapping[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """Standard deviation of the surface on a grid in map coordinates, metres.
+
+    ``x`` (nx,), ``y`` (ny,) ascending, ``sd`` (ny, nx), nan outside the study area. ``factor`` is by how much the
+    posterior standard deviation was widened (above 1) so that 90 % of the left-out points lie in the 90 % band.
+    """
+
+    x: Floats
+    y: Floats
+    sd: Floats
+    factor: float
+    mean: float
+    max: float
+
+
+@dataclass(frozen=True)
+class Suggestion:
+    """A place for the next hole, in greedy order: where it stands, and what it would leave, metres.
+
+    ``sd`` is the standard deviation there before any hole; ``mean_after`` and ``max_after`` that of the whole
+    surface after this hole and those before it.
+    """
+
+    x: float
+    y: float
+    z: float
+    sd: float
+    mean_after: float
+    max_after: float
+
+
+@dataclass(frozen=True)
+class Outlier:
+    """A point that its neighbours do not bear out: left-out error, its standard deviation (m), and their ratio."""
+
+    index: int
+    error: float
+    sd: float
+    ratio: float
+
+
+@dataclass(frozen=True, eq=False)
+class OffData:
+    """Everything said about a surface away from its data; ``notes`` say what could not be done, and why."""
+
+    left_out: tuple[LeftOut, ...]
+    uncertainty: Uncertainty | None
+    suggestions: tuple[Suggestion, ...]
+    outliers: tuple[Outlier, ...]
+    notes: tuple[str, ...] = ()
