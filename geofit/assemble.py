@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +13,7 @@ from geofit.frame import Frame
 from geofit.surface import Patch
 from geofit.tensor import TensorSpace
 
-__all__ = ["multiply_knots", "patches_of"]
+__all__ = ["Division", "Part", "divide", "multiply_knots", "patches_of"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -25,10 +26,13 @@ def multiply_knots(
     knots_u, knots_v = _raised(space.knots_u, at_u), _raised(space.knots_v, at_v)
     tu = bspline.insertion_matrix(space.knots_u, knots_u, space.degree)
     tv = bspline.insertion_matrix(space.knots_v, knots_v, space.degree)
-    net = coefficients.reshape(*space.shape, -1)
+    return TensorSpace(knots_u, knots_v, space.degree), _refined(coefficients, tu, tv)
+
+
+def _refined(coefficients: Floats, tu: Floats, tv: Floats) -> Floats:
+    net = coefficients.reshape(tu.shape[1], tv.shape[1], -1)
     fine = np.einsum("ai,ijk,bj->abk", tu, net, tv, optimize=True)
-    finer = TensorSpace(knots_u, knots_v, space.degree)
-    return finer, fine.reshape(finer.size, *coefficients.shape[1:])
+    return fine.reshape(len(tu) * len(tv), *coefficients.shape[1:])
 
 
 def _raised(knots: Floats, at: dict[float, int]) -> Floats:
@@ -70,26 +74,70 @@ def patches_of(
         The core first.
     """
     p = space.degree
+    whole = divide(space, core, frame, interpolated)
+    net = _control_points(whole.space, whole.refined(coefficients), frame, unit)
+    patches = []
+    for part in whole.parts:
+        control, knots_u, degree_u = net[part.rows, part.columns], part.knots_u, p
+        if part.name == "core" and ruled_lines is not None:
+            nodes = np.abs(bspline.greville(knots_u, p)[:, None] - ruled_lines).argmin(axis=0)
+            degree_u, control = 1, control[nodes]
+            knots_u = bspline.clamped_knots(ruled_lines, 1)
+        patches.append(Patch(part.name, (degree_u, p), knots_u * unit, part.knots_v * unit, control.copy()))
+    return tuple(sorted(patches, key=lambda patch: patch.name != "core"))
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One patch as a part of the refined net: its rows and columns of control points, and its knots in units."""
+
+    name: str
+    rows: slice
+    columns: slice
+    knots_u: Floats
+    knots_v: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Division:
+    """A surface's net refined along the core's edges, and the parts it falls into.
+
+    ``refine_u`` and ``refine_v`` turn rows and columns of the surface's own coefficients into the refined ones.
+    """
+
+    space: TensorSpace
+    refine_u: Floats
+    refine_v: Floats
+    parts: tuple[Part, ...]
+
+    def refined(self, coefficients: Floats) -> Floats:
+        """Return the coefficients of the refined net, (size,) or (size, 3)."""
+        return _refined(coefficients, self.refine_u, self.refine_v)
+
+
+def divide(space: TensorSpace, core: Rectangle | None, frame: Frame, interpolated: bool = False) -> Division:
+    """Find the patches of a surface: knots of full multiplicity along the core's edges (The NURBS Book, A5.1).
+
+    Parameters as those of :func:`patches_of`.
+    """
+    p = space.degree
     seams_u = _inner(core[:2], space.knots_u) if core else []
     seams_v = _inner(core[2:], space.knots_v) if core else []
-    space, coefficients = multiply_knots(space, coefficients, dict.fromkeys(seams_u, p), dict.fromkeys(seams_v, p))
-    net = _control_points(space, coefficients, frame, unit)
-    cuts_u = [space.knots_u[0], *seams_u, space.knots_u[-1]]
-    cuts_v = [space.knots_v[0], *seams_v, space.knots_v[-1]]
-    patches = []
-    for u0, u1 in itertools.pairwise(cuts_u):
-        for v0, v1 in itertools.pairwise(cuts_v):
+    knots_u = _raised(space.knots_u, dict.fromkeys(seams_u, p))
+    knots_v = _raised(space.knots_v, dict.fromkeys(seams_v, p))
+    parts = []
+    for u0, u1 in itertools.pairwise([space.knots_u[0], *seams_u, space.knots_u[-1]]):
+        for v0, v1 in itertools.pairwise([space.knots_v[0], *seams_v, space.knots_v[-1]]):
             name = _name((u0, u1, v0, v1), core, frame, interpolated)
-            rows, knots_u = _part(space.knots_u, p, u0, u1)
-            columns, knots_v = _part(space.knots_v, p, v0, v1)
-            control = net[rows, columns]
-            degree_u = p
-            if name == "core" and ruled_lines is not None:
-                nodes = np.abs(bspline.greville(knots_u, p)[:, None] - ruled_lines).argmin(axis=0)
-                degree_u, control = 1, control[nodes]
-                knots_u = bspline.clamped_knots(ruled_lines, 1)
-            patches.append(Patch(name, (degree_u, p), knots_u * unit, knots_v * unit, control.copy()))
-    return tuple(sorted(patches, key=lambda patch: patch.name != "core"))
+            rows, part_u = _part(knots_u, p, u0, u1)
+            columns, part_v = _part(knots_v, p, v0, v1)
+            parts.append(Part(name, rows, columns, part_u, part_v))
+    return Division(
+        TensorSpace(knots_u, knots_v, p),
+        bspline.insertion_matrix(space.knots_u, knots_u, p),
+        bspline.insertion_matrix(space.knots_v, knots_v, p),
+        tuple(parts),
+    )
 
 
 def _inner(edges: tuple[float, float], knots: Floats) -> list[float]:

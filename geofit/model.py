@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,10 +60,14 @@ class Problem:
 
 @dataclass(frozen=True, eq=False)
 class Model:
-    """A problem with one control net for the whole surface, of which the patches are parts."""
+    """A problem with one control net for the whole surface, of which the patches are parts.
+
+    ``weights`` holds the weights of the control points of patches that were weighed by hand, by name.
+    """
 
     problem: Problem
     net: Net
+    weights: Mapping[str, Floats] = field(default_factory=dict)
 
     def with_net(self, net: Net) -> Model:
         """Return the same problem with another control net."""
@@ -73,7 +77,8 @@ class Model:
         """Cut the surface into patches along the core's edges."""
         net, interpolated = self.net, self.problem.split.core is not None
         frame = self.problem.chart.frame
-        return patches_of(net.space, net.coefficients, net.core, frame, net.unit, net.lines, interpolated)
+        patches = patches_of(net.space, net.coefficients, net.core, frame, net.unit, net.lines, interpolated)
+        return tuple(replace(patch, weights=self.weights.get(patch.name)) for patch in patches)
 
     def surface(self) -> HorizonSurface:
         """Return the surface of the control net, with its check."""

@@ -175,6 +175,24 @@ class HorizonSurface:
 
         return project(self.patches, np.atleast_2d(np.asarray(xyz, float)) - self.origin).distance
 
+    def adjust(self, patch: str, i: int, j: int, dz: float) -> HorizonSurface:
+        """Return the surface with one control point moved by hand; see :func:`geofit.handwork.adjust`."""
+        from geofit.handwork import adjust
+
+        return adjust(self, patch, i, j, dz)
+
+    def pull_to(self, point: int | ArrayLike, share: float = 1.0) -> HorizonSurface:
+        """Return the surface pulled to one of its points, or to a place; see :func:`geofit.handwork.pull_to`."""
+        from geofit.handwork import pull_to
+
+        return pull_to(self, point, share)
+
+    def weigh(self, patch: str, i: int, j: int, weight: float) -> HorizonSurface:
+        """Return the surface with another weight of one control point; see :func:`geofit.handwork.weigh`."""
+        from geofit.handwork import weigh
+
+        return weigh(self, patch, i, j, weight)
+
     def to_shape(self) -> Any:
         """Return a cadquery shell of the sewn patches in map coordinates."""
         from geofit.stitch import to_shape

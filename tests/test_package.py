@@ -29,6 +29,7 @@ FLOORS = (
     ),
     ("model", "stitch"),
     ("pipeline",),
+    ("handwork",),
     ("io", "sample"),
     ("report",),
     ("deliver", "exporting", "importing"),
@@ -37,7 +38,13 @@ FLOORS = (
 )  # fmt: skip
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
 #: Methods of Site and HorizonSurface that lead upwards: lazily, by design of the public interface.
-UPWARDS = {("surface", "elevation"), ("surface", "distance"), ("surface", "stitch"), ("surface", "io")}
+UPWARDS = {
+    ("surface", "elevation"),
+    ("surface", "distance"),
+    ("surface", "stitch"),
+    ("surface", "io"),
+    ("surface", "handwork"),
+}
 #: Who alone may import these, at the named places.
 RESERVED = {
     "OCP": ("geofit/occ.py", "geofit/trim.py", "geofit/stitch.py", "io/"),
