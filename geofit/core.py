@@ -35,6 +35,7 @@ from geofit.points import PointSet
 from geofit.settings import FitSettings
 from geofit.skin import Lines, across_curves, least_change, ruled, section_lines, separate
 from geofit.tensor import TensorSpace
+from geofit.words import said
 
 __all__ = ["fit_with_core"]
 
@@ -47,6 +48,8 @@ LONGEST = 0.8
 ALONG, ACROSS = 1.8, 1.0
 #: Lines nearer to the core's edge or to each other than this share of their mean distance get one knot.
 NARROW = 0.2
+#: Noise above this share of the values' spread, and above epsilon: points that do not bear each other out.
+RESOLVED = 0.02
 
 
 def fit_with_core(
@@ -73,13 +76,17 @@ def fit_with_core(
     stage("field", 0.25)
     coarse = _coarse_space(data, core, inside, degree, min(COARSE, most))
     field = choose_field(data, coarse, settings)
+    if settings.core == "auto" and not chart.parametric and field.noise > max(settings.epsilon, RESOLVED * field.spread):
+        raise ExactnessError(
+            f"its points bear each other out to about {field.noise:.3g} m only, more than epsilon {settings.epsilon:g} m"
+        )
     stage("core", 0.4)
     lines = section_lines(data.plane[inside], chart.section[kept][inside], 0.5 * (core[1] - core[0]))
     linear = settings.across == "linear" and degree == 3
     notes: tuple[str, ...] = ()
     if linear and not lines.straight:
         linear = False
-        notes = ("across='linear' needs at least two straight, named sections; the core is cubic across",)
+        notes = (said("across='linear' needs at least two straight, named sections; the core is cubic across"),)
     breaks = _breaks(data, core, inside, field, coarse, lines, most, settings)
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
     space = TensorSpace(knots[0], knots[1], degree)
@@ -93,7 +100,7 @@ def fit_with_core(
             space, coefficients = _skinned(space, smoothed, core, data, inside, settings, rule)
         except ExactnessError:
             rule = None
-            notes = ("a core linear across its sections cannot meet all of its points; it is cubic across",)
+            notes = (said("a core linear across its sections cannot meet all of its points; it is cubic across"),)
     if rule is None and chart.parametric and lines.straight:
         coefficients = _lofted(space, smoothed, data, inside, lines.u)
     elif rule is None:

@@ -7,13 +7,14 @@ spacing of the sparse points, so that one range of lambda serves every site. Two
 name      energy                                       where it wins
 ========= ============================================ ====================================================
 "smooth"  third derivatives + 4 x second derivatives   gentle horizons: half the error of a thin plate
-"rough"   second derivatives + 1/4 first derivatives   rugged horizons, where third derivatives overshoot
+"plate"   second derivatives: the thin plate           rugged horizons, where third derivatives overshoot
+"level"   second derivatives + 1/4 first derivatives   points in a line, which say nothing of the slope across it
 ========= ============================================ ====================================================
 
-At short distances the first term rules, beyond the spacing the second, which calms the surface where no data
-are. Energy and lambda are those of the greatest restricted likelihood, in which the energy is a Gaussian prior of
-the surface (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36): one that is too stiff for the relief, or too loose,
-makes the data unlikely.
+At short distances third derivatives rule the first, beyond the spacing the second, which calm the surface where no
+data are. Energy and lambda are those of the greatest restricted likelihood, in which the energy is a Gaussian prior
+of the surface (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36): one that is too stiff for the relief, or too loose,
+makes the data unlikely. Restricted likelihoods compare only energies that leave the same surfaces free, here planes.
 """
 
 from __future__ import annotations
@@ -35,13 +36,16 @@ Floats = NDArray[np.float64]
 #: Weights of the derivative orders in each energy, and the dimension of what it leaves free.
 ENERGIES: dict[str, tuple[dict[int, float], int]] = {
     "smooth": ({3: 1.0, 2: 4.0}, 3),
-    "rough": ({2: 1.0, 1: 0.25}, 1),
+    "plate": ({2: 1.0}, 3),
+    "level": ({2: 1.0, 1: 0.25}, 1),
     "flat": ({1: 1.0}, 1),
 }
 #: Range of log10(lambda) in units of the spacing.
 _LOG_RANGE = (-9.0, 3.0)
 #: Noise above this share of the values' own spread contradicts any tolerance below it.
 CONTRADICTION = 0.5
+#: Standard deviation across a strip, in units of the spacing, below which it counts as a line.
+_NARROW = 0.05
 #: Fewer points than these cannot tell noise from relief.
 ENOUGH = 16
 #: Part of an energy's diagonal that stands in for what the energy leaves free, in its determinant.
@@ -56,13 +60,15 @@ _UNSOLVABLE = 1e12
 class Field:
     """What was chosen: energy, lambda, and the noise (1 sigma, metres) that the likelihood finds.
 
-    ``contradictory`` says that the data are little else than noise.
+    ``contradictory`` says that the data are little else than noise; ``spread`` is the standard deviation of the data
+    about their trend, metres.
     """
 
     energy: str
     smoothing: float
     noise: float
     contradictory: bool = False
+    spread: float = math.inf
 
 
 def energy_band(space: TensorSpace, name: str) -> Floats:
@@ -129,7 +135,9 @@ def choose(
     """
     band, right = space.normal_equations(plane, z, weight)
     square = float((weight @ (z.reshape(len(z), -1) ** 2)).sum())
-    names = {3: ("smooth", "rough"), 2: ("rough",)}.get(space.degree, ("flat",))
+    names = {3: ("smooth", "plate"), 2: ("plate",)}.get(space.degree, ("flat",))
+    if space.degree > 1 and _in_line(plane):
+        names = ("level",)
     found = []
     for name in names:
         likelihood = _Likelihood(space, name, band, right, square, len(plane), float(weight.sum()))
@@ -144,7 +152,13 @@ def choose(
     noise = likelihood.noise(log)
     spread = float(np.std(z, axis=0).max())
     contradictory = len(plane) >= ENOUGH and noise > CONTRADICTION * max(spread, _FINEST)
-    return Field(likelihood.name, 10.0**log, noise, contradictory)
+    return Field(likelihood.name, 10.0**log, noise, contradictory, spread)
+
+
+def _in_line(plane: Floats) -> bool:
+    """Tell whether the points lie in a strip so narrow, beside their spacing, that no slope across it is known."""
+    across = np.linalg.svd(plane - plane.mean(axis=0), compute_uv=False)[-1]
+    return float(across) < _NARROW * math.sqrt(len(plane))
 
 
 class _Likelihood:

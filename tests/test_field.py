@@ -89,9 +89,9 @@ def test_the_field_is_nearer_to_the_truth_than_its_data(seed):
 
 
 @pytest.mark.parametrize("seed", range(2))
-def test_a_rugged_surface_takes_the_rough_energy(seed):
+def test_a_rugged_surface_takes_the_thin_plate_s_energy(seed):
     plane, z, _ = cloud(N, seed, 0.05, rugged(seed))
-    assert choose(space_over(N), plane, z, np.ones(N)).energy == "rough"
+    assert choose(space_over(N), plane, z, np.ones(N)).energy == "plate"
 
 
 @pytest.mark.parametrize(("seed", "height"), [(0, hills(0)), (1, rugged(1))])
