@@ -22,11 +22,15 @@ import numpy as np
 from geofit.errors import GeofitError
 from geofit.importing import import_files
 from geofit.io import read_boreholes, read_points
+from geofit.io.adits import load_adit_contacts, load_adits
+from geofit.io.grid import load_grid
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.sections import Drawing, load_section
+from geofit.io.sections import Drawing, load_section, load_sections
 from geofit.io.source import Source
-from geofit.site import Section
+from geofit.io.traces import load_traces
+from geofit.io.tsurf import read_tsurf
+from geofit.site import Ground, Section
 
 LIMIT = 20  # seconds
 KINDS = ("flip", "cut line", "cut off", "swap cells", "swap columns", "mix encodings", "repeat", "insert")
@@ -34,7 +38,7 @@ JUNK = (b'"', b"\0\0", b",,,,,,,,", b"\xff\xfe", b"1e999", b"nan", b"-" * 40, b"
 
 
 def originals(folder: Path) -> dict[str, bytes]:
-    """Return sound files: tables, both AGS editions, a drawing."""
+    """Return sound files: tables, both AGS editions, drawings, a grid, triangles."""
     import ezdxf
 
     holes = [(f"B{i}", 500000 + 40 * i, 3100000 + 9 * i, 100 + i) for i in range(12)]
@@ -42,6 +46,11 @@ def originals(folder: Path) -> dict[str, bytes]:
     drawing.modelspace().add_lwpolyline([(5 * i, 80 + i) for i in range(20)], dxfattribs={"layer": "T2"})
     drawing.modelspace().add_line((0, 60), (90, 66), dxfattribs={"layer": "T1"})
     drawing.saveas(folder / "C1.dxf")
+    plan = ezdxf.new()
+    plan.modelspace().add_lwpolyline([(500000 + 5 * i, 3100000 + i) for i in range(9)], dxfattribs={"layer": "T2"})
+    plan.modelspace().add_polyline3d([(500000, 3100050, 90), (500040, 3100050, 90.5)], dxfattribs={"layer": "PD1"})
+    plan.modelspace().add_text("T2", dxfattribs={"layer": "PD1", "insert": (500020, 3100051)})
+    plan.saveas(folder / "plan.dxf")
     stations = [(name, depth, 90, 80 - depth / 9) for name, *_ in holes for depth in (0, 9)]
     logs = [(name, top, top + 10, code) for name, *_ in holes for top, code in ((0, "Q"), (10, "T2"), (20, "T1"))]
 
@@ -72,6 +81,15 @@ def originals(folder: Path) -> dict[str, bytes]:
             old_group("HOLE", "HOLE_ID,HOLE_NATE,HOLE_NATN,HOLE_GL", holes)
             + old_group("GEOL", "HOLE_ID,GEOL_TOP,GEOL_BASE,GEOL_GEOL", logs)
         ).encode("cp1252"),
+        "profiles.csv": table(
+            "section,horizon,distance,elevation,x0,y0,x1,y1",
+            [(f"P{i % 3}", "T2", 5 * i, 80 + i, 500000, 3100000, 500100, 3100010 + i % 3) for i in range(12)],
+        ),
+        "nameless.csv": "\n".join(",".join(map(str, hole)) for hole in holes).encode(),
+        "base.asc": b"ncols 3\nnrows 3\nxllcenter 500000\nyllcenter 3100000\ncellsize 200\n1 2 3\n4 -9999 6\n7 8 9\n",
+        "top.ts": b"GOCAD TSurf 1\nHEADER {\nname:T1\n}\nTFACE\nVRTX 1 0 0 0\nVRTX 2 9 0 1\nPVRTX 3 0 9 2 7\n"
+        b"ATOM 4 1\nVRTX 5 9 9 4\nTRGL 1 2 3\nTRGL 4 2 5\nEND\n",
+        "plan.dxf": (folder / "plan.dxf").read_bytes(),
         "C1.dxf": (folder / "C1.dxf").read_bytes(),
     }
 
@@ -129,6 +147,25 @@ def read(name: str, folder: Path, whole: bool) -> tuple[Counter[str], dict[str, 
         section = Section("C1", np.array([[500000.0, 3100000.0], [500100.0, 3100000.0]]))
         load_section(Source(path=path), section, Drawing(), HorizonNames(), journal)
         counts = tuple(journal.counts)
+    elif name == "plan.dxf":
+        journal, names = Journal(), HorizonNames(["T2"])
+        ground = Ground(np.array([499000.0, 501000.0]), np.array([3099000.0, 3101000.0]), np.full((2, 2), 100.0))
+        load_traces(Source(path=path), ground, names, journal)
+        load_adit_contacts(Source(path=path), load_adits(Source(path=path), journal), names, journal)
+        counts = tuple(journal.counts)
+    elif name == "profiles.csv":
+        journal = Journal()
+        load_sections(Source(path=path), {}, HorizonNames(), journal)
+        counts = tuple(journal.counts)
+    elif name == "base.asc":
+        journal = Journal()
+        load_grid(Source(path=path), "base", HorizonNames(), journal)
+        counts = tuple(journal.counts)
+    elif name == "top.ts":
+        read_tsurf(path)
+        counts = read_points(path).counts
+    elif name == "nameless.csv":
+        counts = read_boreholes(path).counts
     elif path.suffix == ".ags":
         counts = read_boreholes(path, intervals=[path]).counts
     elif name == "picks.csv":

@@ -120,6 +120,8 @@ def _within(surface: HorizonSurface, places: Floats, start: Floats, end: Floats)
 
 def _upright(surface: HorizonSurface, corner: Floats, near: Floats) -> Floats:
     """Return where the vertical line at a corner meets the surface near a place; the place where it does not."""
+    if not surface.patches:  # triangles of a file: the line between two places is the surface
+        return near
     foot = project(surface.patches, near[None])
     patch, uv = surface.patches[int(foot.patch[0])], np.array([foot.u[0], foot.v[0]])
     u0, u1, v0, v1 = patch.domain

@@ -16,7 +16,8 @@ from geofit.contours import contours
 from geofit.cut import CutLine, cut, section_line
 from geofit.errors import InputError, SettingsError
 from geofit.files import file_stems
-from geofit.mesh import triangulate
+from geofit.loops import TrimmedSurface
+from geofit.mesh import MeshSurface, triangulate
 from geofit.sampling import deviation_grid, elevation_grid, thickness_grid
 from geofit.surface import HorizonSurface
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from geofit.points import PointSet
     from geofit.site import Ground, Hole
 
-__all__ = ["FORMATS", "Format", "Request", "export", "read_line", "read_surfaces", "section"]
+__all__ = ["FORMATS", "Format", "Request", "export", "read_line", "read_surfaces", "section", "uncut"]
 
 Floats = NDArray[np.float64]
 
@@ -51,6 +52,7 @@ FORMATS: dict[str, Format] = {
     "landxml": Format("meshes", "export.landxml", "write_landxml"),
     "tsurf": Format("meshes", "export.tsurf", "write_tsurf"),
     "geoh5": Format("measured", "export.geoh5", "write_geoh5"),
+    "omf": Format("measured", "export.omf", "write_omf"),
     "asc": Format("grid", "export.grids", "write_esri"),
     "grd": Format("grid", "export.grids", "write_surfer"),
     "tif": Format("grid", "export.grids", "write_geotiff", crs=True),
@@ -105,6 +107,8 @@ def export(surfaces: Surfaces, to: str, out: Path, request: Request | None = Non
     if not surfaces:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(out))
     chosen, wanted = FORMATS[to], request or Request()
+    if chosen.takes in ("surfaces", "site"):
+        _need_patches(surfaces, to, out)
     write = getattr(import_module(f"geofit.io.{chosen.module}"), chosen.function)
     out.parent.mkdir(parents=True, exist_ok=True)
     more = {"crs": wanted.crs} if chosen.crs else {}
@@ -138,12 +142,12 @@ def export(surfaces: Surfaces, to: str, out: Path, request: Request | None = Non
 
 
 def read_surfaces(files: Sequence[Path]) -> dict[str, HorizonSurface]:
-    """Read the horizons of STEP files; names that stand in several files get the file's name before them."""
-    from geofit.io.step import read_step
+    """Read the horizons of surface files; names that stand in several files get the file's name before them."""
+    from geofit.io.surface_files import read_surface_file
 
     found: dict[str, HorizonSurface] = {}
     for file in files:
-        for name, surface in read_step(file).items():
+        for name, surface in read_surface_file(file).items():
             unique = name if name not in found else f"{file.stem} {name}"
             if unique in found:
                 raise InputError("The file is given twice", "Name each file once.", file=str(file))
@@ -221,6 +225,27 @@ def _line_file(path: Path) -> Floats:
     if bad:
         raise InputError(bad[0].reason, bad[0].remedy, file=str(path), row=bad[0].row, value=bad[0].value)
     return np.asarray(corners[:, :2])
+
+
+def uncut(surfaces: Surfaces) -> list[str]:
+    """Return a sentence for each surface whose trimming no exporter follows: it has holes, or stands upright."""
+    return [
+        f"{name}: its faces are trimmed in a way that exports and sections do not follow; they show the faces whole"
+        for name, surface in surfaces.items()
+        if isinstance(surface, TrimmedSurface) and surface.outline is None
+    ]
+
+
+def _need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
+    """Refuse triangles where a format holds NURBS."""
+    meshes = [name for name, surface in surfaces.items() if isinstance(surface, MeshSurface)]
+    if meshes:
+        others = [name for name, one in FORMATS.items() if one.takes not in ("surfaces", "site")]
+        raise InputError(
+            f"'{meshes[0]}' is a triangle mesh; {to} holds NURBS surfaces, which would have to be fitted",
+            f"Fit its vertices (geofit fit), or choose one of: {', '.join(others)}.",
+            file=str(out),
+        )
 
 
 def _files(surfaces: Surfaces, out: Path) -> dict[str, Path]:

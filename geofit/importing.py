@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -14,13 +14,14 @@ from geofit.files import replacing
 from geofit.io.boreholes import load_boreholes
 from geofit.io.columns import SCHEMAS
 from geofit.io.contacts import load_contacts
+from geofit.io.grid import load_ground
 from geofit.io.import_plan import Part, Plan, campaigns, look_at, settle
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
 from geofit.io.site_file import load_site
 from geofit.io.toml_text import toml_value
 from geofit.progress import Progress, tell
-from geofit.site import ImportIssue, Site, TableCount
+from geofit.site import Ground, ImportIssue, Site, TableCount
 
 __all__ = ["Import", "import_files"]
 
@@ -135,7 +136,8 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
             if guess.others:
                 reason += "; also possible: " + ", ".join(f"'{name}'" for name in guess.others)
             remedy = "Name another column in the mapping file."
-            notes.append(ImportIssue(name, 0, guess.column, "", "note", reason, remedy))
+            severity: Literal["note", "warning"] = "warning" if guess.reason.startswith("by its values") else "note"
+            notes.append(ImportIssue(name, 0, guess.column, "", severity, reason, remedy))
     return notes
 
 
@@ -156,6 +158,15 @@ def _horizons(
     return limits + [{"name": name} for name in others if name.casefold() not in named]
 
 
+def _ground(plan: Plan) -> Ground | None:
+    for part in plan.of("ground")[:1]:
+        try:
+            return load_ground(part.mapping.fill(part.source), Journal())
+        except InputError:
+            return None  # listed when the site is read
+    return None
+
+
 def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[str, Any]]:
     """Return the limits that are asked for, or the base of each code with enough contacts, the highest first."""
     pairs = [*(("base", code) for code in base), *(("top", code) for code in top)]
@@ -164,6 +175,7 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
         return asked
     heights: dict[str, list[float]] = {}
     few: dict[str, int] = {}
+    ground = _ground(plan)
     for collar, survey, logs in campaigns(plan):
         try:
             found = load_boreholes(
@@ -172,6 +184,7 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
                 [log.mapping.fill(log.source) for log in logs],
                 None,
                 Journal(),
+                ground=ground,
             )
         except InputError:
             continue  # listed when the site is read
@@ -235,10 +248,12 @@ def _write(
     blocks += [("[[section_lines]]", _file(part)) for part in plan.of("section lines")]
     for part in (*plan.of("section"), *plan.of("drawing")):
         blocks.append(("[[section]]", {"name": part.section, **_file(part)}))
+    blocks += [("[[sections]]", _file(part)) for part in plan.of("sections")]
     blocks += [("[[traces]]", _file(part)) for part in plan.of("traces")]
     for part in plan.of("picks"):
         alone = "horizon" not in part.mapping.columns
         blocks.append(("[[picks]]", {**_file(part), **({"horizon": part.source.path.stem} if alone else {})}))
+    blocks += [("[[grids]]", {**_file(part), "horizon": part.source.path.stem}) for part in plan.of("grid")]
     blocks += [("[[orientations]]", _file(part)) for part in plan.of("orientations")]
     blocks += [("[[horizon]]", dict(table)) for table in horizons]
     lines = []

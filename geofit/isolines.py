@@ -64,7 +64,9 @@ def plane_lines(surface: HorizonSurface, mesh: Mesh, normal: Floats, offset: flo
     first = np.unique(number, return_index=True)[1]
     patch = np.concatenate([mesh.patch[crossed]] * 2)[first]
     points = np.concatenate(places)[first]
-    settled = _settled(surface.patches, patch, np.concatenate(uvs)[first], points, normal, offset)
+    settled = points  # of a file's triangles, which are the surface themselves
+    if surface.patches:
+        settled = _settled(surface.patches, patch, np.concatenate(uvs)[first], points, normal, offset)
     pairs = number.reshape(2, -1).T
     return [settled[chain] for chain in _chains(pairs, len(edges))]
 

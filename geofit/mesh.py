@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from geofit.clip import clip
 from geofit.elevation import plan_map
 from geofit.errors import SettingsError
 from geofit.surface import HorizonSurface, Patch
 
-__all__ = ["Mesh", "triangulate"]
+__all__ = ["Mesh", "MeshSurface", "triangulate"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -57,6 +57,25 @@ class Mesh:
         return self.points + self.origin
 
 
+@dataclass(frozen=True, eq=False)
+class MeshSurface(HorizonSurface):
+    """A surface of a file that is triangles itself, so that it has no patches; ``mesh`` holds them."""
+
+    mesh: Mesh = field(kw_only=True)
+
+    def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
+        """Return the height at map coordinates in metres, nan outside, the highest of several; arrays broadcast."""
+        from geofit.facets import elevation
+
+        return elevation(self.mesh, x, y)
+
+    def distance(self, xyz: ArrayLike) -> Floats:
+        """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""
+        from geofit.facets import nearest
+
+        return nearest(self.mesh, np.atleast_2d(np.asarray(xyz, float)) - self.mesh.origin).distance
+
+
 def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
     """Return triangles of a surface, trimmed to its outline.
 
@@ -85,6 +104,8 @@ def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
     """
     if not (tolerance > 0 and math.isfinite(tolerance)):
         raise SettingsError(f"The chordal tolerance is {tolerance}; give metres above 0.")
+    if isinstance(surface, MeshSurface):
+        return surface.mesh
     lines = [_lines(patch, tolerance) for patch in surface.patches]
     table = _Vertices()
     edges = _shared_edges(surface.patches, lines)

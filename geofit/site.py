@@ -131,6 +131,10 @@ class Site:
         SHA-256 of each file that was read, by its name.
     orientations : Orientations or None
         Structural dip measurements.
+    order : tuple of str
+        Horizons that must not cross, from the top to the bottom; empty if the file states none.
+    faults : mapping of str to tuple of str
+        Horizons that are faults, and which horizons each of them cuts.
     """
 
     name: str
@@ -145,3 +149,5 @@ class Site:
     crs: str = ""
     inputs: Mapping[str, str] = field(default_factory=dict)
     orientations: Orientations | None = None
+    order: tuple[str, ...] = ()
+    faults: Mapping[str, tuple[str, ...]] = field(default_factory=dict)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from geofit.io.preview import TablePreview, preview_file, preview_table
     from geofit.io.site_file import read_site
     from geofit.io.source import Source
+    from geofit.io.surface_files import read_surface_file
 
 __all__ = [
     "Boreholes",
@@ -34,6 +35,7 @@ __all__ = [
     "read_ground",
     "read_points",
     "read_site",
+    "read_surface_file",
     "save_mappings",
     "take_contacts",
 ]
@@ -53,6 +55,7 @@ _MODULES = {
     "read_ground": "grid",
     "read_points": "picks",
     "read_site": "site_file",
+    "read_surface_file": "surface_files",
     "save_mappings": "mapping",
     "take_contacts": "contacts",
 }

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from geofit.errors import InputError
+from geofit.io.adit_dxf import draw_adits, drawn_contacts
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import ADIT_CONTACTS, ADIT_PATH
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.polyline import along, chainage
+from geofit.io.polyline import along, chainage, named_lines
 from geofit.io.rows import read_rows
 from geofit.io.source import Source
 from geofit.points import PointSet
@@ -22,23 +23,14 @@ END_TOLERANCE = 0.01
 
 
 def load_adits(source: Source, journal: Journal, region: Region | None = None) -> tuple[Hole, ...]:
-    """Read adit paths: rows of one adit are its corners in order; an adit of one corner is listed."""
+    """Read adit paths: rows of one adit are its corners in order; an adit of one corner is listed. Or a DXF."""
+    if source.path.suffix.casefold() == ".dxf":
+        return draw_adits(source, journal, region)
     rows = read_rows(source, ADIT_PATH, journal)
-    name = rows.text("adit")
     (x, y), z = rows.places(), rows.numbers("z", no_data=True)
     check_axes(rows, x, y, region)
-    adits = []
-    for adit in dict.fromkeys(name[i] for i in np.flatnonzero(rows.ok).tolist()):
-        corners = np.array([i for i in np.flatnonzero(rows.ok) if name[i] == adit])
-        xyz = np.column_stack([x, y, z])[corners]
-        for k in np.flatnonzero((np.diff(xyz, axis=0) == 0).all(axis=1)).tolist():
-            rows.reject(int(corners[k + 1]), "x", "The corner repeats the one before", "Remove one of the two.")
-        corners = corners[rows.ok[corners]]
-        if len(corners) < 2:
-            rows.reject(int(corners[0]), "adit", f"Adit {adit} has one corner only", "Two or more corners are needed.")
-            continue
-        xyz = np.column_stack([x, y, z])[corners]
-        adits.append(Hole(adit, "adit", chainage(xyz), xyz))
+    lines = named_lines(rows, "adit", np.column_stack([x, y, z]), "Adit")
+    adits = [Hole(adit, "adit", chainage(xyz), xyz) for adit, xyz in lines.items()]
     rows.close()
     if not adits:
         raise InputError("No adit has two usable corners", "See the listed rows.", file=source.name)
@@ -49,6 +41,8 @@ def load_adit_contacts(
     source: Source, adits: tuple[Hole, ...], horizons: HorizonNames, journal: Journal
 ) -> dict[str, PointSet]:
     """Read contacts along adits, kind "adit"; a chainage beyond the adit is listed."""
+    if source.path.suffix.casefold() == ".dxf":
+        return drawn_contacts(source, adits, horizons, journal)
     rows = read_rows(source, ADIT_CONTACTS, journal)
     name, s = rows.text("adit"), rows.numbers("chainage")
     horizon = horizons.of(rows)

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.io.rows import Rows
 
-__all__ = ["Region", "check_axes", "region_of"]
+__all__ = ["Region", "check_axes", "place_in", "region_of"]
 
 Floats = NDArray[np.float64]
 
@@ -21,6 +23,14 @@ def region_of(xy: Floats) -> Region:
     low, high = xy.min(axis=0), xy.max(axis=0)
     margin = max(float(np.hypot(*(high - low))), 1.0)
     return (low[0] - margin, high[0] + margin, low[1] - margin, high[1] + margin)
+
+
+def place_in(xy: Floats, region: Region) -> Literal["inside", "exchanged", "off"]:
+    """Say where the middle of (n, 2) places lies: inside a region, inside it with x and y exchanged, or off it."""
+    x, y = xy.mean(axis=0)
+    if _inside(x, y, region):
+        return "inside"
+    return "exchanged" if _inside(y, x, region) else "off"
 
 
 def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.io.axes import Region, check_axes
-from geofit.io.columns import COLLAR, INTERVALS, plain_name
+from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
 from geofit.io.desurvey import Desurvey, WellPath, desurvey
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
@@ -164,7 +164,7 @@ def _read_collars(
     declination: float,
     ground: Ground | None,
 ) -> dict[str, _Collar]:
-    rows = read_rows(source, COLLAR, journal)
+    rows = read_rows(source, COLLAR if ground is None else COLLAR_ON_GROUND, journal)
     name = rows.text("hole")
     x, y = rows.places()
     z = rows.numbers("z", required=ground is None, no_data=True)
@@ -206,9 +206,8 @@ def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
         if np.isnan(z[i]):
             rows.reject(i, "z", "The collar has no elevation and lies off the ground's grid", "Give its elevation.")
         else:
-            rows.warn(
-                i, "z", f"The collar has no elevation; the ground's, {z[i]:.2f} m, is taken", "Give its elevation."
-            )
+            reason = f"The collar has no elevation; the ground's, {z[i]:.2f} m, is taken"
+            rows.warn(i, "z", reason, "Give its elevation.", severity="note")
 
 
 def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None, declination: float) -> dict[str, Stations]:

@@ -12,12 +12,14 @@ __all__ = [
     "ADIT_PATH",
     "BOUNDARY",
     "COLLAR",
+    "COLLAR_ON_GROUND",
     "GEOGRAPHIC",
     "INTERVALS",
     "ORIENTATIONS",
     "PICKS",
     "SCHEMAS",
     "SECTION",
+    "SECTIONS",
     "SECTION_LINES",
     "SURVEY",
     "TRACES",
@@ -106,11 +108,24 @@ COLLAR = Schema(
     {"hole": _HOLE, **_PLACE, "z": _Z},
     {"depth": _END, "azimuth": _AZIMUTH, "dip": _DIP},
 )
+#: Where there is a ground, collars without an elevation stand on it.
+COLLAR_ON_GROUND = Schema("collar", {"hole": _HOLE, **_PLACE}, {"z": _Z, **COLLAR.optional})
 SURVEY = Schema("survey", {"hole": _HOLE, "depth": _STATION, "azimuth": _AZIMUTH, "dip": _DIP}, {})
 INTERVALS = Schema("intervals", {"hole": _HOLE, "from": _FROM, "to": _TO, "code": _CODE}, {})
 ADIT_PATH = Schema("adit path", {"adit": _ADIT, **_PLACE, "z": _Z}, {})
 ADIT_CONTACTS = Schema("adit contacts", {"adit": _ADIT, "chainage": _CHAINAGE, "horizon": _HORIZON}, {})
 SECTION = Schema("section", {"horizon": _HORIZON, "distance": _DISTANCE, "elevation": _Z}, {})
+#: Several sections in one table; ``x0`` to ``y1`` are the ends of the row's section line, where it is straight.
+SECTIONS = Schema(
+    "sections",
+    {"section": _spelled("section sectionid sectionname profile 剖面 剖面号 剖面编号 剖面名称"), **SECTION.required},
+    {
+        "x0": _spelled("x0 xstart startx xbegin eaststart 起点x x起点"),
+        "y0": _spelled("y0 ystart starty ybegin northstart 起点y y起点"),
+        "x1": _spelled("x1 xend endx eastend 终点x x终点"),
+        "y1": _spelled("y1 yend endy northend 终点y y终点"),
+    },
+)
 TRACES = Schema("traces", {"horizon": _HORIZON, **_PLACE}, {"z": _Z})
 PICKS = Schema(
     "picks",
@@ -143,6 +158,7 @@ SCHEMAS = {
         ADIT_PATH,
         ADIT_CONTACTS,
         SECTION,
+        SECTIONS,
         SECTION_LINES,
         TRACES,
         PICKS,

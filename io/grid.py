@@ -1,4 +1,4 @@
-"""The ground from an ESRI ASCII grid, a Surfer grid or a GeoTIFF."""
+"""The ground, or a horizon, from an ESRI ASCII grid, a Surfer grid or a GeoTIFF."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from geofit.errors import InputError
+from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
+from geofit.points import PointSet
 from geofit.site import Ground
 
-__all__ = ["grid_unit", "load_ground", "read_ground"]
+__all__ = ["grid_unit", "load_grid", "load_ground", "read_ground"]
 
 _KEYS = {
     "ncols",
@@ -58,6 +60,34 @@ def load_ground(source: Source, journal: Journal) -> Ground:
     return _read_esri(data, source, journal)
 
 
+def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Journal) -> dict[str, PointSet]:
+    """Read the nodes of a grid as points of a horizon, kind "grid": every node that has an elevation.
+
+    ``row`` is the node's number as the grid is read from north to south and west to east, from 1. Nodes without
+    data are counted and listed in one line.
+    """
+    name = horizons.match(horizon)
+    if name is None:
+        raise InputError(
+            f"The grid is of '{horizon}', which is no horizon of the site",
+            'State horizon = "..." in [[grids]], or add the [[horizon]].',
+            file=source.name,
+        )
+    own = Journal()
+    grid = load_ground(source, own)
+    for file, digest in own.inputs.items():
+        journal.inputs[file] = digest
+    journal.issues += [issue for issue in own.issues if "have no data" not in issue.reason]
+    x, y = np.meshgrid(grid.x, grid.y[::-1])
+    xyz = np.column_stack([x.ravel(), y.ravel(), grid.z[::-1].ravel()])
+    known = np.isfinite(xyz[:, 2])
+    missing = int((~known).sum())
+    if missing:
+        journal.add("note", source.name, f"{missing} of {known.size} nodes have no data and make no points")
+    journal.count(source.name, known.size, missing)
+    return {name: PointSet(xyz[known], kind="grid", row=np.flatnonzero(known) + 1, file=source.name)}
+
+
 def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     text, _ = decode(data, source.name, source.encoding)
     lines = text.splitlines()
@@ -70,10 +100,12 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
         at += 1
     columns, rows = _size(head, "ncols", source.name), _size(head, "nrows", source.name)
     dx, dy = (head.get(key, head.get("cellsize", float("nan"))) for key in ("dx", "dy"))
-    if not (dx > 0 and dy > 0):
+    if not (dx > 0 and dy > 0 and np.isfinite(dx + dy)):
         raise InputError("The grid has no cellsize above 0", "Add a line 'cellsize 10'.", file=source.name)
     west = _corner(head, "x", dx, source.name)
     south = _corner(head, "y", dy, source.name)
+    if not np.isfinite(west + south):
+        raise InputError("The grid's corner is no finite place", "Export the grid again.", file=source.name)
     body = [(at + k + 1, line.split()) for k, line in enumerate(lines[at:]) if line.strip()]
     cells = [word for _, words in body for word in words]
     if len(cells) != columns * rows:
@@ -119,7 +151,7 @@ def _number(word: str, file: str, row: int, column: str) -> float:
 
 def _size(head: dict[str, float], key: str, file: str) -> int:
     value = head.get(key, np.nan)
-    if not (value >= 2 and value == int(value)):
+    if not (np.isfinite(value) and value >= 2 and value == int(value)):
         raise InputError(
             f"The grid's head has no whole {key} of at least 2",
             "An ESRI ASCII grid starts with ncols, nrows, xllcorner, yllcorner, cellsize.",

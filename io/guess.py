@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
+from string import ascii_uppercase
 
 import numpy as np
 
 from geofit.errors import InputError
-from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
+from geofit.io.columns import GEOGRAPHIC, SCHEMAS, Schema, plain_name
+from geofit.io.guess_values import by_values
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, parse_numbers
@@ -53,8 +55,9 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
     """Return a guess for each role that a column can hold.
 
     What the source states is taken. Else columns whose name is a known spelling compete: an earlier spelling,
-    filled cells and values that the role can have make a higher confidence. A table without a header is taken
-    in the order of the schema when it has exactly the required columns.
+    filled cells and values that the role can have make a higher confidence. Where no name is known at all,
+    values alone may tell (:mod:`geofit.io.guess_values`); else a table without a header is taken in the order
+    of the schema when it has exactly the required columns.
 
     Raises
     ------
@@ -63,13 +66,26 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
     """
     stated = _stated(table, schema, source)
     found = {role: RoleGuess(role, j, table.header[j], 1.0, "stated", stated=True) for role, j in stated.items()}
+    unknown = not stated and _unknown(table)
+    if unknown and (told := by_values(table, schema.name)):
+        return {
+            role: RoleGuess(
+                role,
+                guess.index,
+                table.header[guess.index],
+                guess.confidence,
+                guess.reason,
+                tuple(table.header[j] for j in guess.others),
+            )
+            for role, guess in told.items()
+        }
     if not table.named:
         if not stated and len(table.header) == len(schema.required):
             return {
                 role: RoleGuess(role, j, table.header[j], 0.5, "by its place") for j, role in enumerate(schema.required)
             }
         return found
-    names = [plain_name(name)[0] for name in table.header]
+    names = [plain_name(name)[0] for name in table.header] if not _lettered(table) else []
     rows = sample_of(table)
     for role, spellings in {**schema.required, **schema.optional}.items():
         if role in found:
@@ -89,6 +105,23 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
         others = tuple(table.header[k] for _, _, k, _ in rivals[1:])
         found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), f"by its name{why}", others)
     return found
+
+
+def _unknown(table: Table) -> bool:
+    """Whether no column has a name that is known for any role: nameless, lettered as in a spreadsheet, or foreign."""
+    known = {
+        word
+        for schema in SCHEMAS.values()
+        for words in (*schema.required.values(), *schema.optional.values())
+        for word in words
+    }
+    names = {plain_name(name)[0] for name in table.header}
+    return not table.named or _lettered(table) or not names & (known | GEOGRAPHIC)
+
+
+def _lettered(table: Table) -> bool:
+    """Whether the header is A, B, C ... in order: E is no easting there."""
+    return len(table.header) > 2 and "".join(table.header) == ascii_uppercase[: len(table.header)]
 
 
 def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, str]:
@@ -121,7 +154,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
         If a required column is missing, or the source names a role or a column that is not there.
     """
     guesses = guess_roles(table, schema, source)
-    if not table.named and guesses and not any(guess.stated for guess in guesses.values()):
+    if guesses and all(guess.reason == "by its place" for guess in guesses.values()):
         order = ", ".join(schema.required)
         journal.add("warning", table.name, f"No header: the columns are taken as {order}", "Add a header.", row=1)
         return {role: guess.index for role, guess in guesses.items()}
@@ -133,7 +166,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
         if not guess.stated:
             others = ", ".join(f"'{name}'" for name in guess.others)
             journal.add(
-                "note",
+                "warning" if guess.reason.startswith("by its values") else "note",
                 table.name,
                 f"Column '{guess.column}' is taken as {role}, {guess.reason}, confidence {guess.confidence:.2f}"
                 + (f"; also possible: {others}" if others else ""),
@@ -238,10 +271,12 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
         f"its columns are {found}" if table.named else f"it has no header and {len(table.header)} columns"
     )
     example = ", ".join(f'{role} = "..."' for role in missing)
+    on_ground = schema.name == "collar" and missing == ["z"]
+    ground = " Or give the ground ([ground], a grid): collars stand on it." if on_ground else ""
     return InputError(
         what,
         f"Name the column in the header, or state columns = {{ {example} }} (--x, --y, --z, --surface, "
-        "--section for a bare CSV; a column's number counted from 1 will do).",
+        f"--section for a bare CSV; a column's number counted from 1 will do).{ground}",
         file=table.name,
         row=int(table.lines[0]) - 1 if table.named and len(table) and table.lines[0] > 1 else None,
         column=missing[0],

@@ -10,6 +10,7 @@ from typing import Any
 
 from geofit.errors import InputError
 from geofit.io.columns import SCHEMAS, plain_name
+from geofit.io.grid import load_ground
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
 from geofit.io.preview import TablePreview, preview_file
@@ -126,13 +127,15 @@ _REMEDY = "Name its kind and columns in a mapping file (--mapping)."
 
 def settle(plan: Plan) -> None:
     """Set aside what a site has no place for: second boundaries, surveys and sections without a line."""
+    plan.of("ground").sort(key=lambda part: not any(word in part.source.path.stem.casefold() for word in _GROUND))
     for kind in SINGLE:
         for part in plan.of(kind)[1:]:
             plan.parts[kind].remove(part)
             first = plan.of(kind)[0].source.name
-            plan.set_aside(
-                part.source.name, part.preview.read, f"The {kind} is taken from {first} already", "Import one of them."
-            )
+            remedy = "Import one of them."
+            if kind == "ground":
+                remedy = 'State kind = "grid" in a mapping file (--mapping) where it is a horizon.'
+            plan.set_aside(part.source.name, _rows_of(part), f"The {kind} is taken from {first} already", remedy)
     lacking = [
         ("survey", "collar"),
         ("intervals", "collar"),
@@ -148,6 +151,22 @@ def settle(plan: Plan) -> None:
                     f"Add the {needed} table.",
                 )
     _place_sections(plan)
+
+
+#: Words in the names of grids that are the ground.
+_GROUND = ("ground", "dem", "dtm", "dgm", "topo", "terrain", "surface", "地面", "地形")
+
+
+def _rows_of(part: Part) -> int:
+    """Return the rows of a table, and those of a grid, which a preview does not read."""
+    if part.preview.kind != "ground":
+        return part.preview.read
+    journal = Journal()
+    try:
+        load_ground(part.mapping.fill(part.source), journal)
+    except InputError:
+        return 0
+    return journal.counts[0].read
 
 
 def _place_sections(plan: Plan) -> None:
@@ -173,6 +192,8 @@ def _place_sections(plan: Plan) -> None:
                     f"Add a table section, x, y with the corners of section '{stem}', "
                     "or write [[section]] with its line into the site file."
                 )
+                if kind == "drawing":
+                    remedy += ' A map: state kind = "traces", "adit path" or "adit contacts" in a mapping file.'
             else:
                 placed[part.section] = part.source.name
                 continue

@@ -20,7 +20,7 @@ __all__ = ["KINDS", "ColumnMapping", "load_mappings", "save_mappings"]
 
 VERSION = 1
 #: What a table or drawing can hold; "skip" leaves it out.
-KINDS = (*SCHEMAS, "ground", "drawing", "skip")
+KINDS = (*SCHEMAS, "ground", "grid", "drawing", "skip")
 
 
 @dataclass(frozen=True, kw_only=True)

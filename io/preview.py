@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from geofit.errors import GeofitError
-from geofit.io.columns import SCHEMAS, Schema
+from geofit.io.columns import SCHEMAS, SECTIONS, Schema
 from geofit.io.formats import TABLE_FORMATS, USUAL_TABLES, read_any_table, table_names
 from geofit.io.guess import USABLE, RoleGuess, guess_roles, sample_of
 from geofit.io.journal import Journal
@@ -31,6 +31,7 @@ _WORDS = {
     "adit path": ("adit", "tunnel", "平硐", "平洞"),
     "adit contacts": ("adit",),
     "section": ("section", "剖面"),
+    "sections": ("sections", "profiles", "剖面"),
     "section lines": ("line", "section", "剖面线"),
     "traces": ("trace", "outcrop", "map", "露头"),
     "picks": ("pick", "point", "contact"),
@@ -123,12 +124,16 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
     if any(mapping.kind == "skip" and not mapping.table for mapping in said):
         return (_fixed(source, "skip"),)
     ending = source.path.suffix.casefold()
-    if ending in GROUNDS or any(mapping.kind == "ground" for mapping in said):
+    stated = [mapping for mapping in said if mapping.kind in ("ground", "grid")]
+    if ending in GROUNDS or stated:
         source.read()
-        return (_fixed(source, "ground"),)
+        return (_fixed(source, stated[0].kind if stated else "ground"),)
     if ending == ".dxf":
-        source.read()
-        return (_fixed(source, "drawing"),)
+        from geofit.io.dxf import count_points
+
+        points = count_points(source)
+        parts = [(mapping.kind, mapping.table) for mapping in said] or [("drawing", "")]
+        return tuple(_fixed(replace(source, table=table, name=source.name), kind, points) for kind, table in parts)
     previews = []
     usual = {name: kind for kind, names in _usual(ending).items() for name in names}
     for name in table_names(source):
@@ -187,8 +192,8 @@ def _usual(ending: str) -> Mapping[str, tuple[str, ...]]:
     return USUAL_TABLES.get(TABLE_FORMATS.get(ending, ""), {})
 
 
-def _fixed(source: Source, kind: str) -> TablePreview:
-    return TablePreview(source.path.name, source.table, kind, 1.0, {kind: 1.0}, (), ())
+def _fixed(source: Source, kind: str, read: int = 0) -> TablePreview:
+    return TablePreview(source.path.name, source.table, kind, 1.0, {kind: 1.0}, (), (), read=read)
 
 
 def _rank(table: Table, source: Source) -> dict[str, float]:
@@ -210,20 +215,23 @@ def _rank(table: Table, source: Source) -> dict[str, float]:
 
 
 def _needed(schema: Schema, source: Source) -> list[str]:
-    """Return the roles that must be found; places may be longitude and latitude where a target is named."""
-    return [role for role in schema.required if not (source.target and role in ("x", "y"))]
+    """Return the roles that must be found: not degrees where a target is named, nor a collar's height on the ground."""
+    spared = {"x", "y"} if source.target else set[str]()
+    return [role for role in schema.required if role not in spared | ({"z"} if schema.name == "collar" else set())]
 
 
 def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> float:
     """Return how likely a table is of a kind: its columns' confidence, and what is telling about each kind."""
     found = [guesses[role].confidence for role in schema.required if role in guesses]
     merit = min(found, default=0.0) * 0.5 + sum(found) / max(len(schema.required), 1) * 0.5
+    if any(guess.reason.startswith("by its values") for guess in guesses.values()):
+        return merit
     if not table.named:
         return merit if schema.name == "picks" else 0.5 * merit
     extra = sum(role in guesses for role in schema.optional)
     match schema.name:
         case "collar":
-            merit *= _once(table, guesses, "hole")
+            merit *= _once(table, guesses, "hole") * (1.0 if "z" in guesses else 0.8)
         case "picks":
             merit *= 0.9 if "horizon" in guesses else 0.75
         case "orientations":
@@ -238,10 +246,12 @@ def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> fl
                 merit *= 0.5 if {"hole", "section"} & set(others) else 1.0
             if schema.name == "section lines" and "horizon" in others:
                 merit *= 0.5
-        case "section":
+        case "section" | "sections":
             # "x" may be a distance, but not beside "y".
             y = guess_roles(table, SCHEMAS["boundary"], Source(path=Path(table.name)))
             merit *= 0.3 if "y" in y else 0.95
+            if schema.name == "section" and "section" in guess_roles(table, SECTIONS, Source(path=Path(table.name))):
+                merit *= 0.5
     return min(merit + 0.02 * extra * (merit > 0), 1.0)
 
 

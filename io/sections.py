@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.errors import InputError
-from geofit.io.axes import Region, check_axes
-from geofit.io.columns import SECTION, SECTION_LINES, TRACES, Schema
+from geofit.io.axes import Region, check_axes, place_in
+from geofit.io.columns import SECTION, SECTION_LINES, SECTIONS, TRACES, Schema
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.polyline import along, chainage
-from geofit.io.rows import read_rows
+from geofit.io.polyline import along, chainage, named_lines
+from geofit.io.rows import Rows, read_rows
 from geofit.io.section_dxf import read_drawing
 from geofit.io.source import Source
 from geofit.points import PointSet
 from geofit.site import Section
 
-__all__ = ["Drawing", "lift", "load_level", "load_lines", "load_section"]
+__all__ = ["Drawing", "lift", "load_level", "load_lines", "load_section", "load_sections"]
 
 Floats = NDArray[np.float64]
 
@@ -66,6 +67,73 @@ def load_section(
     return horizons.split(rows, horizon, lift(section.line, uv[:, 0], uv[:, 1]), kind="section", section=section.name)
 
 
+def load_sections(
+    source: Source,
+    lines: Mapping[str, Floats],
+    horizons: HorizonNames,
+    journal: Journal,
+    region: Region | None = None,
+) -> tuple[list[Section], dict[str, PointSet]]:
+    """Read one table of several sections: section, horizon, distance, elevation; points as :func:`load_section`.
+
+    A section's line is that of ``lines``, else the straight line from x0, y0 to x1, y1 of its first row; rows
+    of a section without a line are listed.
+    """
+    rows = read_rows(source, SECTIONS, journal)
+    horizon, name = horizons.of(rows), np.array(rows.text("section"))
+    distance, elevation = rows.numbers("distance"), rows.numbers("elevation", no_data=True)
+    ends = _ends(rows, region)
+    xyz = np.zeros((len(rows), 3))
+    sections: list[Section] = []
+    for each in dict.fromkeys(name[rows.ok].tolist()):
+        own = np.flatnonzero(rows.ok & (name == each))
+        line = lines.get(each)
+        if line is None:
+            line = _own_line(rows, own, ends)
+        if line is None:
+            for i in own.tolist():
+                rows.reject(i, "section", f"Section {each} has no line in plan", _NO_LINE)
+            continue
+        section, own = Section(each, line), own[rows.ok[own]]
+        for i in own[_off_line(section, distance[own])].tolist():
+            rows.reject(i, "distance", *_off_line_text(section, distance[i]))
+        xyz[own] = lift(line, distance[own], elevation[own])
+        sections.append(section)
+    rows.close()
+    if not rows.ok.any():
+        raise InputError(
+            f"None of {rows.table.read} rows of the sections can be used", "See the listed rows.", file=source.name
+        )
+    return sections, horizons.split(rows, horizon, xyz, kind="section", section=name)
+
+
+_NO_LINE = "Add its corners to [[section_lines]] (section, x, y), or columns x0, y0, x1, y1 with the ends of its line."
+
+
+def _ends(rows: Rows, region: Region | None) -> Floats:
+    """Return the ends (n, 4) of the rows' own section lines; nan where a table has none."""
+    if not {"x0", "y0", "x1", "y1"} <= set(rows.columns):
+        return np.full((len(rows), 4), np.nan)
+    ends = np.column_stack([rows.numbers(role, required=False) for role in ("x0", "y0", "x1", "y1")])
+    known = np.isfinite(ends).all(axis=1)
+    if region is not None and known.any() and place_in(ends[known][:, :2], region) == "exchanged":
+        raise InputError(
+            "x and y of the section lines look exchanged", "x is the easting, y the northing.", file=rows.file
+        )
+    return ends
+
+
+def _own_line(rows: Rows, own: NDArray[np.intp], ends: Floats) -> Floats | None:
+    """Return the line that the rows of a section state; rows that state another one are listed."""
+    stated = own[np.isfinite(ends[own]).all(axis=1)]
+    if not stated.size or np.array_equal(ends[stated[0], :2], ends[stated[0], 2:]):
+        return None
+    for i in stated[(ends[stated] != ends[stated[0]]).any(axis=1)].tolist():
+        reason = f"The row states another section line than row {rows.line[stated[0]]}"
+        rows.reject(i, "x0", reason, "A section has one line; give bent ones in [[section_lines]].")
+    return np.asarray(ends[stated[0]].reshape(2, 2))
+
+
 def load_lines(source: Source, journal: Journal, region: Region | None = None) -> dict[str, Floats]:
     """Read the lines of sections in plan: rows of one section are its corners in order.
 
@@ -75,22 +143,9 @@ def load_lines(source: Source, journal: Journal, region: Region | None = None) -
         Corners of each section; one with less than two different corners is listed.
     """
     rows = read_rows(source, SECTION_LINES, journal)
-    name = rows.text("section")
     x, y = rows.places()
     check_axes(rows, x, y, region)
-    lines: dict[str, Floats] = {}
-    for section in dict.fromkeys(name[i] for i in np.flatnonzero(rows.ok).tolist()):
-        corners = np.array([i for i in np.flatnonzero(rows.ok) if name[i] == section])
-        xy = np.column_stack([x, y])[corners]
-        for k in np.flatnonzero((np.diff(xy, axis=0) == 0).all(axis=1)).tolist():
-            rows.reject(int(corners[k + 1]), "x", "The corner repeats the one before", "Remove one of the two.")
-        corners = corners[rows.ok[corners]]
-        if len(corners) < 2:
-            rows.reject(
-                int(corners[0]), "section", f"The line of section {section} has one corner only", "Add the others."
-            )
-        else:
-            lines[section] = np.column_stack([x, y])[corners]
+    lines = named_lines(rows, "section", np.column_stack([x, y]), "The line of section")
     rows.close()
     return lines
 
@@ -110,8 +165,6 @@ def load_level(
     section = f"level {elevation:g}"
     if source.path.suffix.casefold() == ".dxf":
         drawn = read_drawing(source, horizons, journal, scale_stated=drawing.scale != 1.0)
-        if not len(drawn.uv) and not drawn.listed:
-            raise InputError("The drawing is empty", "Draw the horizons in model space.", file=source.name)
         xy = drawing.metres(drawn.uv)
         journal.count(source.name, len(xy) + drawn.listed, drawn.listed)
         xyz, names = np.column_stack([xy, np.full(len(xy), elevation)]), np.array(drawn.horizon, dtype=np.str_)
@@ -134,8 +187,6 @@ def _from_dxf(
     source: Source, section: Section, drawing: Drawing, horizons: HorizonNames, journal: Journal
 ) -> dict[str, PointSet]:
     drawn = read_drawing(source, horizons, journal, scale_stated=drawing.scale != 1.0)
-    if not len(drawn.uv) and not drawn.listed:
-        raise InputError("The drawing is empty", "Draw the horizons in model space.", file=source.name)
     uv = drawing.metres(drawn.uv)
     off = _off_line(section, uv[:, 0])
     for i in np.flatnonzero(off).tolist():

@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.io.axes import Region
+from geofit.errors import InputError
+from geofit.io.axes import Region, place_in
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.sections import Drawing, load_level, load_lines, load_section
-from geofit.io.site_keys import TABLE, Reader
+from geofit.io.sections import Drawing, load_level, load_lines, load_section, load_sections
+from geofit.io.site_keys import Reader
 from geofit.points import PointSet
 from geofit.site import Section
 
@@ -39,7 +40,7 @@ def read_sections(
         where = f"section '{name}'"
         if any(section.name == name for section in sections):
             raise reader.fail(f"Two sections have the name '{name}'", "Give each its own.", "name")
-        reader.keys(table, (*TABLE, "name", "line", "scale", "origin"), where)
+        source = reader.source(table, where, ("name", "line", "scale", "origin"), "section")
         remedy = "Write line = [[x, y], [x, y]], the corners of the section line in plan."
         if "line" not in table and name in lines:
             line = lines[name]
@@ -49,14 +50,20 @@ def read_sections(
             raise reader.fail(f"The line of {where} needs two or more different corners", remedy, "line", line.tolist())
         _check_line(reader, line, where, region)
         sections.append(Section(name, line))
-        source = reader.source(table, where, ("name", "line", "scale", "origin"), "section")
         gather(gathered, load_section(source, sections[-1], _drawing(reader, table, where), names, journal))
+    for table in reader.tables(top, "sections"):
+        source = reader.source(table, "[sections]", kind="sections")
+        found, points = load_sections(source, lines, names, journal, region)
+        for one in found:
+            if any(section.name == one.name for section in sections):
+                raise InputError(f"Two sections have the name '{one.name}'", "Give each its own.", file=source.name)
+        sections += found
+        gather(gathered, points)
     for table in reader.tables(top, "level"):
         elevation = reader.get(table, "elevation", float, "[[level]]")
         if elevation is None:
             raise reader.fail("A [[level]] has no elevation", "Write elevation = 1200.0.", "elevation")
         where = f"level {elevation:g}"
-        reader.keys(table, (*TABLE, "elevation", "scale", "origin"), where)
         source = reader.source(table, where, ("elevation", "scale", "origin"), "traces")
         drawing = _drawing(reader, table, where)
         gather(gathered, load_level(source, elevation, drawing, names, journal, region))
@@ -83,11 +90,7 @@ def _pairs(reader: Reader, value: Any, where: str, remedy: str) -> Floats:
 
 
 def _check_line(reader: Reader, line: Floats, where: str, region: Region | None) -> None:
-    if region is None:
-        return
-    west, east, south, north = region
-    x, y = line.mean(axis=0)
-    if (west <= y <= east and south <= x <= north) and not (west <= x <= east and south <= y <= north):
+    if region is not None and place_in(line, region) == "exchanged":
         raise reader.fail(
             f"x and y look exchanged in the line of {where}: it lies far outside the study area, and inside "
             "it with x and y swapped",

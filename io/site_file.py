@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError, SettingsError
 from geofit.io.adits import load_adit_contacts, load_adits
-from geofit.io.axes import Region, region_of
+from geofit.io.axes import Region, place_in, region_of
 from geofit.io.boreholes import Boreholes, load_boreholes
 from geofit.io.boundary import load_boundary
 from geofit.io.contacts import Limit, load_contacts
 from geofit.io.crs import is_code
 from geofit.io.desurvey import METHODS
-from geofit.io.grid import load_ground
+from geofit.io.grid import load_grid, load_ground
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.mapping import load_mappings
@@ -90,7 +90,7 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
     top = _parse(journal.read(source), source.name)
     reader.keys(top, TOP, "The site file")
     label = reader.get(top, "site", dict, "the site file") or {}
-    reader.keys(label, ("name", "crs", "mapping"), "[site]")
+    reader.keys(label, ("name", "crs", "mapping", "order"), "[site]")
     crs = reader.get(label, "crs", str, "[site]") or ""
     reader.target = crs if is_code(crs) else None
     if mapping := reader.get(label, "mapping", str, "[site]"):
@@ -117,6 +117,10 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
         picks = reader.source(table, "[picks]", ("kind", "horizon"), "picks")
         alone = reader.get(table, "horizon", str, "[picks]")
         gather(gathered, load_picks(picks, names, journal, kind=kind, region=region, alone=alone))
+    for table in reader.tables(top, "grids"):
+        source = reader.source(table, "[grids]", ("horizon",), "grid")
+        horizon_of = reader.get(table, "horizon", str, "[grids]") or source.path.stem
+        gather(gathered, load_grid(source, horizon_of, names, journal))
     attitudes = [
         load_orientations(reader.source(table, "[orientations]", kind="orientations"), journal, region)
         for table in reader.tables(top, "orientations")
@@ -129,6 +133,7 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
         settings[name] = horizon.settings
         points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon)
         list_places(name, points[name], journal, horizon.settings.conflict_distance)
+    order, faults = _relations(reader, top, label, list(points))
     tell(progress, "read", 1.0)
     return Site(
         name=reader.get(label, "name", str, "[site]") or source.path.parent.name,
@@ -143,6 +148,8 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
         crs=crs,
         inputs=dict(journal.inputs),
         orientations=_joined(attitudes),
+        order=order,
+        faults=faults,
     )
 
 
@@ -196,10 +203,10 @@ def _surroundings(
 
 
 def _compare(reader: Reader, boundary: Floats, ground: Region) -> None:
-    west, east, south, north = ground
-    x, y = boundary.mean(axis=0)
-    if not (west <= x <= east and south <= y <= north):
-        swapped = west <= y <= east and south <= x <= north
+    place = place_in(boundary, ground)
+    if place != "inside":
+        x, y = boundary.mean(axis=0)
+        swapped = place == "exchanged"
         raise reader.fail(
             f"The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid"
             + (", and on it with x and y exchanged" if swapped else ""),
@@ -279,6 +286,39 @@ def _adits(
         contacts = reader.source(table["contacts"], "contacts in [adits]", kind="adit contacts")
         gather(gathered, load_adit_contacts(contacts, adits, names, journal))
     return adits
+
+
+def _relations(
+    reader: Reader, top: Mapping[str, Any], label: Mapping[str, Any], horizons: list[str]
+) -> tuple[tuple[str, ...], dict[str, tuple[str, ...]]]:
+    """Return the order of strata, and which horizons each fault cuts."""
+    order = _named(reader, label, "order", "[site]", horizons)
+    table = reader.get(top, "faults", dict, "the site file") or {}
+    _named(reader, {"faults": list(table)}, "faults", "the site file", horizons)
+    faults = {fault: _named(reader, table, fault, "[faults]", horizons) for fault in table}
+    for fault, cut in faults.items():
+        if fault in cut:
+            raise reader.fail(f"The fault '{fault}' is said to cut itself", "Name the horizons that it cuts.", fault)
+        if fault in order:
+            raise reader.fail(f"The fault '{fault}' stands in the order of strata", "Take it out of it.", "order")
+    return order, faults
+
+
+def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horizons: list[str]) -> tuple[str, ...]:
+    """Return the list of horizons under a key; each must be known, and stand once."""
+    names = reader.get(table, key, list, where) or []
+    for name in names:
+        if name not in horizons:
+            near = get_close_matches(str(name), horizons, 1)
+            raise reader.fail(
+                f"{key} in {where} names '{name}', which is no horizon",
+                (f"Did you mean '{near[0]}'? " if near else "") + f"The horizons are {', '.join(horizons)}.",
+                key,
+                name,
+            )
+        if names.count(name) > 1:
+            raise reader.fail(f"{key} in {where} names '{name}' twice", "Name each horizon once.", key)
+    return tuple(names)
 
 
 def _joined(sets: list[Orientations]) -> Orientations | None:

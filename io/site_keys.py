@@ -29,11 +29,14 @@ TOP = (
     "adits",
     "section_lines",
     "section",
+    "sections",
     "level",
     "traces",
     "picks",
+    "grids",
     "orientations",
     "horizon",
+    "faults",
 )
 
 _KINDS = {str: "a text", dict: "a table", list: "a list", float: "a number"}

@@ -11,35 +11,26 @@ import os
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from geofit import __version__
 from geofit.accuracy import ReadBack
 from geofit.errors import InputError
+from geofit.io.shapes import FileShape, document, products, quiet, surface_of
 from geofit.io.step_check import read_back
 from geofit.io.step_text import canonical
-from geofit.occ import along, edges_with_faces, faces_of, from_geom, placement
-from geofit.points import PointSet
+from geofit.occ import faces_of, placement
 from geofit.stitch import shell
 from geofit.surface import HorizonSurface, Patch
-from geofit.trim import is_height_field, needed
 
-__all__ = ["StepShape", "read_shapes", "read_step", "write_step"]
-
-Floats = NDArray[np.float64]
+__all__ = ["read_shapes", "read_step", "store_step", "write_step"]
 
 #: Fixed, so that the same surfaces give the same bytes.
 TIMESTAMP = "2000-01-01T00:00:00"
-#: Samples along a curved edge when the outline is read.
-ALONG = 24
-#: A file's face that fills its parameter rectangle to this share is not cut down to it.
-FULL = 1e-9
 
 PARAMETERS = {
     "write.step.schema": "AP242DIS",
@@ -50,16 +41,6 @@ PARAMETERS = {
     "write.precision.mode": 1,
     "write.precision.val": 1e-7,
 }
-
-
-@dataclass(frozen=True, eq=False)
-class StepShape:
-    """A product of a file: its shape in its own coordinates (m), where it stands, its faces' names."""
-
-    name: str
-    shape: Any
-    location: Any
-    face_names: tuple[str, ...]
 
 
 def write_step(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> dict[str, ReadBack]:
@@ -88,26 +69,36 @@ def write_step(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]
         If there is nothing to write, or the file cannot be written.
     """
     target = Path(path)
+    shells = store_step(surfaces, target)
+    return {
+        name: read_back(surface, shape, surface_of(shape, whole=True), shells[name], target)
+        for (name, surface), shape in zip(surfaces.items(), read_shapes(target), strict=True)
+    }
+
+
+def store_step(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> dict[str, Any]:
+    """Write the same file without reading it back, for a project of one's own; return the shells by horizon.
+
+    Errors as :func:`write_step`.
+    """
+    target = Path(path)
     if not surfaces:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(target))
     shells = {name: shell(surface) for name, surface in surfaces.items()}
     with _parameters():
-        document = _document()
-        _fill(document, surfaces, shells)
-        _save(document, [_patch_names(shells[name], s.patches) for name, s in surfaces.items()], target)
-    return {
-        name: read_back(surface, shape, _surface(shape, whole=True), shells[name], target)
-        for (name, surface), shape in zip(surfaces.items(), read_shapes(target), strict=True)
-    }
+        filled = document()
+        _fill(filled, surfaces, shells)
+        _save(filled, [_patch_names(shells[name], s.patches) for name, s in surfaces.items()], target)
+    return shells
 
 
 def read_step(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
     """Read the faces of a STEP file, ours or any other, as surfaces: one for each product.
 
     Planes, cylinders and other surfaces are converted to NURBS. A trimmed face becomes the patch over the
-    smallest parameter rectangle that holds it; if the product is a height field, the loop of its free edges
-    becomes the surface's outline, which :meth:`HorizonSurface.elevation` respects. ``distance`` measures to
-    the patches, so a foot may lie beyond a trimmed edge by as much as the rectangle reaches over it.
+    smallest parameter rectangle that holds it, with the loops that cut it: such a surface is a
+    :class:`geofit.loops.TrimmedSurface`, whose ``distance`` ends at the loops. If the product is a height
+    field, the loop of its free edges becomes the surface's outline, which ``elevation`` respects.
 
     Parameters
     ----------
@@ -125,10 +116,10 @@ def read_step(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
     InputError
         If the file does not exist, is no STEP file or holds no face.
     """
-    return {shape.name: _surface(shape) for shape in read_shapes(path)}
+    return {shape.name: surface_of(shape) for shape in read_shapes(path)}
 
 
-def read_shapes(path: str | PathLike[str]) -> list[StepShape]:
+def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
     """Read the products of a STEP file that have faces, in its order; errors as :func:`read_step`."""
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.STEPCAFControl import STEPCAFControl_Reader
@@ -136,12 +127,12 @@ def read_shapes(path: str | PathLike[str]) -> list[StepShape]:
     source = Path(path)
     if not source.is_file():
         raise InputError("There is no such file", "Check the path.", file=str(source))
-    with _parameters(), _quiet():
-        document = _document()
+    with _parameters(), quiet():
+        found = document()
         reader = STEPCAFControl_Reader()
         reader.SetNameMode(True)
-        done = reader.ReadFile(str(source)) == IFSelect_RetDone and reader.Transfer(document)
-    shapes = list(_products(document, source.stem)) if done else []
+        done = reader.ReadFile(str(source)) == IFSelect_RetDone and reader.Transfer(found)
+    shapes = list(products(found, source.stem)) if done else []
     if not shapes:
         what = "The file holds no face" if done else "The file cannot be read as STEP"
         raise InputError(what, "Export the surface as STEP (AP203, AP214 or AP242) again.", file=str(source))
@@ -172,32 +163,6 @@ def _parameters() -> Iterator[None]:
         for name, value in before.items():
             setter = {str: "SetCVal_s", int: "SetIVal_s", float: "SetRVal_s"}[type(value)]
             getattr(Interface_Static, setter)(name, value)
-
-
-@contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep OpenCASCADE from printing on the terminal."""
-    from OCP.Message import Message, Message_Gravity
-
-    printers = list(Message.DefaultMessenger_s().Printers())
-    before = [printer.GetTraceLevel() for printer in printers]
-    for printer in printers:
-        printer.SetTraceLevel(Message_Gravity.Message_Fail)
-    try:
-        yield
-    finally:
-        for printer, level in zip(printers, before, strict=True):
-            printer.SetTraceLevel(level)
-
-
-def _document() -> Any:
-    from OCP.TCollection import TCollection_ExtendedString
-    from OCP.TDocStd import TDocStd_Document
-    from OCP.XCAFDoc import XCAFDoc_DocumentTool
-
-    document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
-    XCAFDoc_DocumentTool.SetLengthUnit_s(document, 1.0)
-    return document
 
 
 def _fill(document: Any, surfaces: Mapping[str, HorizonSurface], shells: Mapping[str, Any]) -> None:
@@ -257,7 +222,7 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
         ) from None
     os.close(handle)
     try:
-        with _quiet():
+        with quiet():
             writer = STEPCAFControl_Writer()
             writer.SetNameMode(True)
             writer.Transfer(document)
@@ -291,145 +256,3 @@ def _name_faces(model: Any, names: Sequence[Sequence[str]]) -> None:
     for entity, faces in zip(shells, names, strict=True):
         for k, name in enumerate(faces, 1):
             entity.CfsFacesValue(k).SetName(TCollection_HAsciiString(name))
-
-
-def _products(document: Any, stem: str) -> Iterator[StepShape]:
-    from OCP.TDF import TDF_LabelSequence
-    from OCP.TopLoc import TopLoc_Location
-    from OCP.XCAFDoc import XCAFDoc_DocumentTool
-
-    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
-    roots = TDF_LabelSequence()
-    tool.GetFreeShapes(roots)
-    taken: set[str] = set()
-    for root in roots:
-        for label, location in _leaves(tool, root, TopLoc_Location()):
-            shape = tool.GetShape_s(label)
-            own = shape.Location()
-            shape = shape.Located(TopLoc_Location())
-            names = tuple(_face_name(tool, label, face, k) for k, face in enumerate(faces_of(shape), 1))
-            if not names:
-                continue
-            base = _label_name(label) or stem
-            name, k = base, 2
-            while name in taken:
-                name, k = f"{base} {k}", k + 1
-            taken.add(name)
-            yield StepShape(name, shape, location.Multiplied(own), names)
-
-
-def _leaves(tool: Any, label: Any, location: Any) -> Iterator[tuple[Any, Any]]:
-    """Walk an assembly down to its parts, multiplying the placements on the way."""
-    from OCP.TDF import TDF_Label, TDF_LabelSequence
-
-    if tool.IsReference_s(label):
-        referred = TDF_Label()
-        tool.GetReferredShape_s(label, referred)
-        yield from _leaves(tool, referred, location.Multiplied(tool.GetLocation_s(label)))
-    elif tool.IsAssembly_s(label):
-        parts = TDF_LabelSequence()
-        tool.GetComponents_s(label, parts, False)
-        for part in parts:
-            yield from _leaves(tool, part, location)
-    else:
-        yield label, location
-
-
-def _label_name(label: Any) -> str:
-    from OCP.TDataStd import TDataStd_Name
-
-    name = TDataStd_Name()
-    return str(name.Get().ToExtString()) if label.FindAttribute(TDataStd_Name.GetID_s(), name) else ""
-
-
-def _face_name(tool: Any, label: Any, face: Any, number: int) -> str:
-    from OCP.TDF import TDF_Label
-
-    found = TDF_Label()
-    name = _label_name(found) if tool.FindSubShape(label, face, found) else ""
-    return name or f"face {number}"
-
-
-def _surface(shape: StepShape, whole: bool = False) -> HorizonSurface:
-    faces = zip(faces_of(shape.shape), shape.face_names, strict=True)
-    patches = [_patch(name, face, whole) for face, name in faces]
-    matrix, origin = _transformation(shape.location)
-    if not np.array_equal(matrix, np.eye(3)):
-        patches = [_moved(patch, matrix, np.zeros(3)) for patch in patches]
-    first = patches[0].control[0, 0]
-    if not origin.any() and np.abs(first).max() > 1e4:
-        origin = np.round(first, -2)
-        patches = [_moved(patch, np.eye(3), -origin) for patch in patches]
-    surface = HorizonSurface(patches=tuple(patches), origin=origin, points=PointSet(np.empty((0, 3))), name=shape.name)
-    outline = _outline(shape) if is_height_field(surface) else None
-    if outline is None or needed(surface.with_(outline=outline), 1e-6) is None:
-        return surface
-    return surface.with_(outline=outline)
-
-
-def _patch(name: str, face: Any, whole: bool) -> Patch:
-    """Convert a face to NURBS on its parameter rectangle (or whole), with the normal on its side."""
-    from OCP.BRep import BRep_Tool
-    from OCP.BRepBuilderAPI import BRepBuilderAPI_NurbsConvert
-    from OCP.BRepTools import BRepTools
-    from OCP.Geom import Geom_BSplineSurface
-    from OCP.TopAbs import TopAbs_REVERSED
-    from OCP.TopoDS import TopoDS
-
-    if not isinstance(BRep_Tool.Surface_s(face), Geom_BSplineSurface):
-        face = TopoDS.Face_s(BRepBuilderAPI_NurbsConvert(face, True).Shape())
-    surface = BRep_Tool.Surface_s(face)
-    if not isinstance(surface, Geom_BSplineSurface):
-        surface = surface.BasisSurface()
-    surface = surface.Copy()
-    u0, u1, v0, v1 = BRepTools.UVBounds_s(face)
-    if surface.IsUPeriodic() or surface.IsVPeriodic():
-        surface.Segment(u0, u1, v0, v1)
-        if surface.IsUPeriodic():
-            surface.SetUNotPeriodic()
-        if surface.IsVPeriodic():
-            surface.SetVNotPeriodic()
-    low_u, high_u, low_v, high_v = surface.Bounds()
-    room = FULL * max(high_u - low_u, 1e-300), FULL * max(high_v - low_v, 1e-300)
-    trimmed = u0 > low_u + room[0] or u1 < high_u - room[0] or v0 > low_v + room[1] or v1 < high_v - room[1]
-    if trimmed and not whole:
-        surface.Segment(max(u0, low_u), min(u1, high_u), max(v0, low_v), min(v1, high_v))
-    if face.Orientation() == TopAbs_REVERSED:
-        surface.UReverse()
-    return from_geom(name, surface)
-
-
-def _transformation(location: Any) -> tuple[Floats, Floats]:
-    move = location.Transformation()
-    matrix = np.array([[move.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)])
-    part = move.TranslationPart()
-    return matrix, np.array([part.X(), part.Y(), part.Z()])
-
-
-def _moved(patch: Patch, matrix: Floats, shift: Floats) -> Patch:
-    control = patch.control @ matrix.T + shift
-    return Patch(patch.name, patch.degree, patch.knots_u, patch.knots_v, control, patch.weights)
-
-
-def _outline(shape: StepShape) -> Floats | None:
-    """Loop of the free edges in plan, in map coordinates; None if it is not one simple polygon."""
-    import shapely
-
-    lines = []
-    for edge, faces in edges_with_faces(shape.shape):
-        if len(faces) == 1:
-            line = along(edge, ALONG)[:, :2]
-            chord = line[-1] - line[0]
-            off = np.abs(chord[0] * (line - line[0])[:, 1] - chord[1] * (line - line[0])[:, 0])
-            straight = off.max() <= 1e-7 * np.linalg.norm(chord)
-            lines.append(np.round(line[[0, -1]] if straight else line, 7))
-    if not lines:
-        return None
-    merged = shapely.get_parts(shapely.line_merge(shapely.MultiLineString(lines))).tolist()
-    if len(merged) != 1 or not merged[0].is_ring:
-        return None
-    matrix, origin = _transformation(shape.location)
-    polygon = shapely.Polygon(merged[0].simplify(1e-7))
-    if not polygon.is_valid or not np.array_equal(matrix, np.eye(3)):
-        return None
-    return np.asarray(shapely.get_coordinates(polygon.exterior)[:-1] + origin[:2])

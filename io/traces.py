@@ -5,16 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from geofit.errors import InputError
-from geofit.io.axes import Region, check_axes
+from geofit.io.axes import Region, check_axes, place_in
 from geofit.io.columns import TRACES
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.rows import read_rows
+from geofit.io.section_dxf import read_drawing
 from geofit.io.source import Source
 from geofit.points import PointSet
 from geofit.site import Ground
 
 __all__ = ["load_traces"]
+
+OFF_GRID = ("The point lies off the ground's grid", "Extend the grid or add its elevation.")
 
 
 def load_traces(
@@ -31,6 +34,8 @@ def load_traces(
     InputError
         If elevations are missing and there is no ground.
     """
+    if source.path.suffix.casefold() == ".dxf":
+        return _from_dxf(source, ground, horizons, journal, region)
     rows = read_rows(source, TRACES, journal)
     horizon = horizons.of(rows)
     x, y = rows.places()
@@ -38,15 +43,53 @@ def load_traces(
     check_axes(rows, x, y, region)
     blank = np.flatnonzero(np.isnan(z) & rows.ok)
     if blank.size and ground is None:
-        raise InputError(
-            f"{blank.size} points have no elevation and the site has no ground to drape them on",
-            "Add a column z, or a [ground] table to the site file.",
-            file=source.name,
-            row=int(rows.line[blank[0]]),
-        )
+        raise _undraped(blank.size, source, int(rows.line[blank[0]]))
     if blank.size and ground is not None:
         z[blank] = ground.elevation(x[blank], y[blank])
         for i in blank[np.isnan(z[blank])].tolist():
-            rows.reject(i, "x", "The point lies off the ground's grid", "Extend the grid or add its elevation.")
+            rows.reject(i, "x", *OFF_GRID)
     rows.close()
     return horizons.split(rows, horizon, np.column_stack([x, y, z]), kind="outcrop")
+
+
+def _from_dxf(
+    source: Source, ground: Ground | None, horizons: HorizonNames, journal: Journal, region: Region | None
+) -> dict[str, PointSet]:
+    """Read a map: the layer is the horizon, lines that lie at 0 as a whole have no elevation."""
+    drawn = read_drawing(source, horizons, journal, scale_stated=False, closed=True)
+    xyz, used = drawn.xyz.copy(), np.ones(len(drawn.xyz), bool)
+    if region is not None and len(xyz):
+        place = place_in(xyz[:, :2], region)
+        if place != "inside":
+            swapped = ", x and y look exchanged" if place == "exchanged" else ""
+            raise InputError(
+                f"The map lies far outside the study area{swapped}",
+                "Save the drawing in the site's coordinates; a section is named by [[section]].",
+                file=source.name,
+            )
+    blank = np.flatnonzero(np.isnan(xyz[:, 2]))
+    if blank.size and ground is None:
+        raise _undraped(blank.size, source, int(drawn.number[blank[0]]))
+    if blank.size and ground is not None:
+        journal.add("note", source.name, f"{blank.size} points at elevation 0 are draped on the ground")
+        xyz[blank, 2] = ground.elevation(xyz[blank, 0], xyz[blank, 1])
+    for i in np.flatnonzero(np.isnan(xyz[:, 2])).tolist():
+        used[i] = False
+        reason, remedy = OFF_GRID
+        journal.add("error", source.name, reason, remedy, row=int(drawn.number[i]), column=drawn.horizon[i])
+    journal.count(source.name, len(xyz) + drawn.listed, drawn.listed + int((~used).sum()))
+    names = np.array(drawn.horizon, dtype=np.str_)
+    return {
+        name: PointSet(xyz[chosen], kind="outcrop", row=drawn.number[chosen], file=source.name)
+        for name in dict.fromkeys(names[used].tolist())
+        for chosen in [np.flatnonzero(used & (names == name))]
+    }
+
+
+def _undraped(count: int, source: Source, row: int) -> InputError:
+    return InputError(
+        f"{count} points have no elevation and the site has no ground to drape them on",
+        "Add a column z, or a [ground] table to the site file.",
+        file=source.name,
+        row=row,
+    )

@@ -26,7 +26,9 @@ _WORDS = {
 _UNITS = {word: unit for unit, words in _WORDS.items() for word in words.split()}
 
 #: Roles that are lengths.
-LENGTHS = frozenset({"x", "y", "z", "depth", "from", "to", "chainage", "distance", "elevation", "accuracy"})
+LENGTHS = frozenset(
+    {"x", "y", "z", "x0", "y0", "x1", "y1", "depth", "from", "to", "chainage", "distance", "elevation", "accuracy"}
+)
 
 
 def metres_of(unit: str, file: str | None = None) -> float:

@@ -109,15 +109,27 @@ def _metres() -> Iterator[None]:
 
 
 def _label(model: Any, name: str, first: int) -> None:
-    """Give the trimmed surfaces of one shell its name: eight ASCII characters is all that IGES has."""
+    """Name the entities of one shell: its group, or its one face, whole (406-15), every face by eight letters.
+
+    IGES knows ASCII only; a name without any is the label alone.
+    """
+    from OCP.IGESBasic import IGESBasic_Group, IGESBasic_Name
     from OCP.IGESGeom import IGESGeom_TrimmedSurface
     from OCP.TCollection import TCollection_HAsciiString
 
     short = re.sub(r"[^A-Za-z0-9_-]+", "_", name)[:8].strip("_") or "HORIZON"
-    for k in range(first, model.NbEntities() + 1):
-        entity = model.Entity(k)
-        if isinstance(entity, IGESGeom_TrimmedSurface):
-            entity.SetLabel(TCollection_HAsciiString(short), 0)
+    entities = [model.Entity(k) for k in range(first, model.NbEntities() + 1)]
+    faces = [entity for entity in entities if isinstance(entity, IGESGeom_TrimmedSurface)]
+    for face in faces:
+        face.SetLabel(TCollection_HAsciiString(short), 0)
+    long = re.sub(r"[^ -~]+", "_", name).strip("_ ")
+    if long:
+        title = IGESBasic_Name()
+        title.Init(1, TCollection_HAsciiString(long))
+        model.AddEntity(title)
+        groups = [entity for entity in entities if isinstance(entity, IGESBasic_Group)]
+        for entity in groups or faces:
+            entity.AddProperty(title)
 
 
 def _given(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> Mapping[str, HorizonSurface]:

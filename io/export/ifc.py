@@ -37,10 +37,10 @@ def write_ifc(
 ) -> None:
     """Write an IFC4X3 file in metres and map coordinates.
 
-    Each horizon is an IfcGeotechnicalStratum with two representations: ``Surface`` holds its patches as
-    IfcBSplineSurfaceWithKnots, whole; ``Body`` its triangles, trimmed to the outline, for viewers without
-    NURBS. Each hole is an IfcBorehole with its axis. The geometry stays about each horizon's origin, which is
-    its placement.
+    Each horizon is an IfcGeotechnicalStratum: its representation ``Surface`` holds its patches as
+    IfcBSplineSurfaceWithKnots, whole; ``FootPrint`` the outline in plan that trims them, if there is one;
+    ``Body`` the triangles, trimmed, for viewers without NURBS. Each hole is an IfcBorehole with its axis. The
+    geometry stays about each horizon's origin, which is its placement.
 
     Parameters
     ----------
@@ -94,11 +94,11 @@ class _Model:
         if crs:
             system = add.createIfcProjectedCRS(Name=crs)
             add.createIfcMapConversion(self._context, system, 0.0, 0.0, 0.0)
-        self._surface, self._body, self._axis = (
+        self._surface, self._body, self._axis, self._footprint = (
             add.createIfcGeometricRepresentationSubContext(
                 name, "Model", None, None, None, None, self._context, None, "MODEL_VIEW", None
             )
-            for name in ("Surface", "Body", "Axis")
+            for name in ("Surface", "Body", "Axis", "FootPrint")
         )
         self._project = add.createIfcProject(
             self._id("project", site),
@@ -133,13 +133,18 @@ class _Model:
             (mesh.triangles + 1).tolist(),
         )
         body = add.createIfcShapeRepresentation(self._body, "Body", "Tessellation", [faces])
+        shapes = [exact, body]
+        if surface.outline is not None:
+            corners = (np.asarray(surface.outline, float) - surface.origin[:2]).tolist()
+            line = add.createIfcPolyline([add.createIfcCartesianPoint(p) for p in (*corners, corners[0])])
+            shapes.append(add.createIfcShapeRepresentation(self._footprint, "FootPrint", "Curve2D", [line]))
         stratum = add.createIfcGeotechnicalStratum(
             self._id("horizon", name),
             None,
             name,
             Description="Boundary surface",
             ObjectPlacement=self._placed(surface.origin.tolist()),
-            Representation=add.createIfcProductDefinitionShape(None, None, [exact, body]),
+            Representation=add.createIfcProductDefinitionShape(None, None, shapes),
             PredefinedType="USERDEFINED",
             ObjectType="HORIZON",
         )

@@ -92,6 +92,19 @@ def test_the_triangles_are_trimmed(written):
     assert np.abs(surface.distance(points + surface.origin)).max() < 2e-6
 
 
+def test_the_outline_is_a_closed_line_in_plan(written):
+    for stratum in written[1].by_type("IfcGeotechnicalStratum"):
+        shapes = {shape.RepresentationIdentifier: shape for shape in stratum.Representation.Representations}
+        known = surfaces()[stratum.Name].outline
+        assert ("FootPrint" in shapes) == (known is not None)
+        if known is not None:
+            (line,) = shapes["FootPrint"].Items
+            origin = stratum.ObjectPlacement.RelativePlacement.Location.Coordinates
+            corners = np.array([point.Coordinates for point in line.Points]) + origin[:2]
+            assert np.abs(corners[:-1] - known).max() < 1e-9
+            assert np.array_equal(corners[0], corners[-1])
+
+
 def test_holes_stand_where_they_are(written):
     holes = {hole.Name: hole for hole in written[1].by_type("IfcBorehole")}
     assert {name: hole.ObjectType for name, hole in holes.items()} == {"ZK1": "borehole", "PD1": "adit"}

@@ -94,7 +94,7 @@ BROKEN_FILES = {
     "empty file": ("collar", "", ["collar.csv", "empty"]),
     "blank lines only": ("collar", "\n\n \n", ["collar.csv", "empty"]),
     "header only": ("collar", "hole,x,y,z\n", ["collar.csv", "no rows"]),
-    "missing column": ("collar", "hole,x,y\nB1,1,2\n", ["collar.csv", "'z'", "hole, x, y"]),
+    "missing column": ("collar", "hole,x,z\nB1,1,2\n", ["collar.csv", "'y'", "hole, x, z"]),
     "missing file": ("collar", None, ["collar.csv", "no such file"]),
     "no usable collar": ("collar", "hole,x,y,z\nB1,a,2,3\n", ["collar.csv", "No row"]),
     "longitude": ("collar", "hole,lon,lat,z\nB1,103.1,28.2,3\n", ["collar.csv", "Longitude", "Project"]),

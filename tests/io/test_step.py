@@ -157,7 +157,7 @@ def test_a_gap_hidden_in_the_edge_tolerance_is_found(tmp_path):
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.TopLoc import TopLoc_Location
 
-    from geofit.io.step import StepShape
+    from geofit.io.shapes import FileShape
 
     whole, _ = nine()
     v = np.unique(whole.knots_v)
@@ -174,7 +174,7 @@ def test_a_gap_hidden_in_the_edge_tolerance_is_found(tmp_path):
     path = tmp_path / "hidden.step"
     path.write_text("")
     found = checks(
-        read_back(surface, StepShape("hidden", shape, TopLoc_Location(), ("one", "two")), surface, shape, path)
+        read_back(surface, FileShape("hidden", shape, TopLoc_Location(), ("one", "two")), surface, shape, path)
     )
     assert found["validity"].passed
     assert found["seam gap"].passed is False

@@ -1,0 +1,179 @@
+"""Entities of a DXF drawing's model space: lines with their vertices, texts and blocks with their words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from typing import Any
+
+import numpy as np
+
+from geofit.errors import InputError
+from geofit.io.journal import Journal
+from geofit.io.source import Source
+from geofit.io.units import metres_of
+
+__all__ = ["LINES", "Entity", "count_points", "on_layers", "open_drawing", "problem"]
+
+#: Types that are read as points in their order; and those whose words name a place.
+LINES, WORDS = ("LWPOLYLINE", "POLYLINE", "LINE", "POINT"), ("TEXT", "MTEXT", "INSERT")
+
+#: $INSUNITS of the units that are not metres, and drawing units a metre.
+_UNITS = {1: ("inches", 39.3701), 2: ("feet", 3.28084), 4: ("millimetres", 1000.0), 5: ("centimetres", 100.0)}
+
+
+@dataclass(frozen=True)
+class Entity:
+    """One entity: ``vertices`` (x, y, z) in drawing units, ``words`` of a text or block, ``first`` its first number.
+
+    ``size`` counts its points, 1 for an entity without any; z is nan where a whole entity lies at 0.
+    """
+
+    type: str
+    layer: str
+    vertices: tuple[tuple[float, float, float], ...]
+    closed: bool = False
+    arcs: bool = False
+    words: str = ""
+    first: int = 1
+
+    @property
+    def size(self) -> int:
+        """Points that the entity counts for."""
+        return max(len(self.vertices), 1)
+
+
+def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True) -> list[Entity]:
+    """Return the entities of the model space in metres of ``source.unit``.
+
+    A unit of the drawing other than metres is warned of unless a unit or a scale is stated.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, or no drawing that can be read.
+    """
+    import ezdxf
+
+    journal.read(source)
+    factor = 1.0 if source.unit is None else metres_of(source.unit, source.name)
+    # What ezdxf raises on a damaged file is not limited to its own errors.
+    failures = (
+        ezdxf.DXFError,
+        ArithmeticError,
+        AssertionError,
+        AttributeError,
+        LookupError,
+        OSError,
+        RuntimeError,
+        StopIteration,
+        TypeError,
+        ValueError,
+    )
+    try:
+        document = ezdxf.readfile(source.path, encoding=source.encoding)
+        entities, first = [], 1
+        for raw in document.modelspace():
+            entity = _entity(raw, first, factor)
+            entities.append(entity)
+            first += entity.size
+        unit = int(document.header.get("$INSUNITS", 0))
+    except failures as error:
+        raise InputError(
+            f"The drawing cannot be read: {_clean(str(error)) or type(error).__name__}",
+            "Open it in CAD, audit it and save it as DXF (2007 or later).",
+            file=source.name,
+        ) from None
+    if unit in _UNITS and not scale_stated and source.unit is None:
+        name, per_metre = _UNITS[unit]
+        journal.add(
+            "warning",
+            source.name,
+            f"The drawing says that its unit is {name}; it is read as metres",
+            f"State scale = {per_metre:g} (a section), or unit (a map), where that is so.",
+        )
+    return entities
+
+
+def _entity(raw: Any, first: int, factor: float) -> Entity:
+    kind = str(raw.dxftype())
+    vertices, words = _vertices(raw, kind), ""
+    if kind in WORDS:
+        words = _clean(_words(raw, kind))
+    if vertices and all(z == 0 for _, _, z in vertices):
+        vertices = [(x, y, float("nan")) for x, y, _ in vertices]
+    return Entity(
+        kind,
+        _clean(str(raw.dxf.layer)),
+        tuple((factor * float(x), factor * float(y), factor * float(z)) for x, y, z in vertices),
+        getattr(raw, "closed", False) is True or getattr(raw, "is_closed", False) is True,
+        kind in ("LWPOLYLINE", "POLYLINE") and bool(getattr(raw, "has_arc", False)),
+        words,
+        first,
+    )
+
+
+def _clean(text: str) -> str:
+    """Return text without the halves of characters that a damaged file leaves, which no file can be written with."""
+    return text.encode("utf-8", "replace").decode("utf-8")
+
+
+def _vertices(raw: Any, kind: str) -> list[tuple[float, float, float]]:
+    if kind == "LWPOLYLINE":
+        level = float(raw.dxf.get("elevation", 0.0))
+        return [(p[0], p[1], level) for p in raw.get_points("xy")]
+    if kind == "POLYLINE" and (raw.is_2d_polyline or raw.is_3d_polyline):
+        places = [v.dxf.location for v in raw.vertices]
+    elif kind == "LINE":
+        places = [raw.dxf.start, raw.dxf.end]
+    elif kind == "POINT":
+        places = [raw.dxf.location]
+    elif kind in WORDS:
+        places = [raw.dxf.insert]
+    else:
+        places = []
+    return [(p.x, p.y, p.z) for p in places]
+
+
+def _words(raw: Any, kind: str) -> str:
+    """Return a text's words, or the first attribute of a block, or else the block's name."""
+    if kind == "TEXT":
+        return str(raw.plain_text()).strip()
+    if kind == "MTEXT":
+        return " ".join(str(raw.plain_text()).split())
+    attributes = [str(attribute.dxf.text).strip() for attribute in raw.attribs]
+    return next((text for text in attributes if text), str(raw.dxf.name))
+
+
+def count_points(source: Source) -> int:
+    """Return the number of points of a drawing, as its readers count them; errors as :func:`open_drawing`."""
+    return sum(entity.size for entity in open_drawing(source, Journal()))
+
+
+def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> tuple[list[Entity], int]:
+    """Return the entities on the layers that ``source.table`` names (a pattern), and how many points are not."""
+    if not source.table:
+        return list(entities), 0
+    pattern, kept, aside = source.table.casefold(), list[Entity](), dict[str, int]()
+    for entity in entities:
+        if fnmatchcase(entity.layer.casefold(), pattern):
+            kept.append(entity)
+        else:
+            aside[entity.layer] = aside.get(entity.layer, 0) + entity.size
+    for layer, size in aside.items():
+        reason = f"Layer '{layer}' is not among the layers '{source.table}'; its {size} points are not used"
+        journal.add("note", source.name, reason, column=layer)
+    return kept, sum(aside.values())
+
+
+def problem(entity: Entity, *, closed: bool = False) -> str:
+    """Return why an entity is no line of points, empty if it is one; ``closed`` allows closed polylines."""
+    if entity.type not in LINES or not entity.vertices:
+        return f"A {entity.type} is no LWPOLYLINE, POLYLINE, LINE or POINT"
+    xyz = np.array(entity.vertices)
+    if not np.isfinite(xyz[:, :2]).all() or np.isinf(xyz[:, 2]).any():
+        return "A coordinate is no finite number"
+    if entity.closed and not closed:
+        return "The polyline is closed, a horizon line is open"
+    return ""

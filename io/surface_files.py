@@ -1,0 +1,47 @@
+"""Surfaces from files of any format that geofit reads: STEP, IGES, BREP, GOCAD TSurf."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from geofit.errors import InputError
+from geofit.surface import HorizonSurface
+
+__all__ = ["ENDINGS", "is_surface_file", "read_surface_file"]
+
+#: Endings of the files that :func:`read_surface_file` reads.
+ENDINGS = (".step", ".stp", ".igs", ".iges", ".brep", ".brp", ".ts")
+
+
+def is_surface_file(path: str | Path) -> bool:
+    """Whether a file's ending is one of a surface."""
+    return Path(path).suffix.casefold() in ENDINGS
+
+
+def read_surface_file(path: str | Path) -> Mapping[str, HorizonSurface]:
+    """Read the surfaces of a file by name: patches, or the triangles of a :class:`geofit.mesh.MeshSurface`.
+
+    Raises
+    ------
+    InputError
+        If the ending is unknown, or the file cannot be read.
+    """
+    match Path(path).suffix.casefold():
+        case ".step" | ".stp":
+            from geofit.io.step import read_step as read
+        case ".igs" | ".iges":
+            from geofit.io.cad import read_iges as read
+        case ".brep" | ".brp":
+            from geofit.io.cad import read_brep as read
+        case ".ts":
+            from geofit.io.tsurf import read_tsurf
+
+            return read_tsurf(path)
+        case ending:
+            raise InputError(
+                f"A surface is not read from a file that ends in '{ending}'",
+                f"Give a file that ends in {', '.join(ENDINGS)}.",
+                file=str(path),
+            )
+    return read(path)
