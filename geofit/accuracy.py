@@ -37,7 +37,10 @@ class Seam:
 
 @dataclass(frozen=True)
 class Check:
-    """One question put to the surface: ``passed`` is None where it does not apply; ``text`` says it in words."""
+    """One question put to the surface: ``passed`` is None where it does not apply; ``text`` says it in words.
+
+    ``places`` are where it is worst (map coordinates, worst first), for a fault that has places.
+    """
 
     name: str
     passed: bool | None
@@ -45,6 +48,7 @@ class Check:
     limit: float
     unit: str
     text: str
+    places: tuple[tuple[float, float, float], ...] = ()
 
 
 @dataclass(frozen=True)

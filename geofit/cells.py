@@ -273,7 +273,7 @@ def _doors(cells: Cells, cell: Ints, x: Floats, wanted: Bools) -> tuple[Bools, I
     return np.stack([hop_s, hop_t]), np.where(hop_s, behind_s, behind_t)
 
 
-@np.errstate(over="ignore")  # a flat model asks for an infinite step, which the box cuts
+@np.errstate(over="ignore", invalid="ignore")  # a flat model asks for an infinite step, which the box cuts
 def _box_step(x: Floats, g: Floats, h: Floats, held: Bools) -> Floats:
     """Step to the minimum of the quadratic model in the box [-1, 1]^2, with some coordinates held."""
     hss, hst, htt = h
@@ -285,6 +285,8 @@ def _box_step(x: Floats, g: Floats, h: Floats, held: Bools) -> Floats:
     det = np.where(regular, det, hss * htt)
     alone = -g / np.maximum(np.stack([hss, htt]), tiny)
     full = np.stack([-(htt * g[0] - cross * g[1]), -(hss * g[1] - cross * g[0])]) / np.maximum(det, tiny)
+    # An infinite model (no metric: the surface stands upright in the plan that is walked) holds the walk.
+    full = np.where(np.isfinite(full), full, alone)
     step = np.where(held.any(axis=0), np.where(held, 0.0, alone), full)
     low, high = -1 - x, 1 - x
     over = np.maximum(step - high, low - step)

@@ -18,6 +18,7 @@ from geofit.frame import Frame, best_plane_frame, map_frame, section_azimuth
 from geofit.points import PointSet
 from geofit.sections import section_labels
 from geofit.settings import FitSettings
+from geofit.words import said
 
 __all__ = ["Chart", "choose_chart"]
 
@@ -90,13 +91,17 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
     places: Sequence[Floats] = [local[:, :2]]
     notes = [reason]
     if section is not points.section and (section != "").any():
-        notes.append(f"{len(np.unique(section[section != '']))} section lines found in the points' plan")
+        lines = len(np.unique(section[section != ""]))
+        notes.append(said("{lines} section lines found in the points' plan", lines=lines))
     if boundary is not None and kind == "map":
         corners = frame.plan(boundary)
         low, high = corners.min(axis=0), corners.max(axis=0)
         beyond = ((local[:, :2] < low - 1e-9) | (local[:, :2] > high + 1e-9)).any(axis=1)
         if beyond.any():
-            notes.append(f"{beyond.sum()} points lie beyond the study area; the surface is widened to hold them")
+            count = int(beyond.sum())
+            notes.append(
+                said("{count} points lie beyond the study area; the surface is widened to hold them", count=count)
+            )
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)
     return Chart(frame, local[:, :2], local[:, 2], _box(np.concatenate(places)), tuple(notes), placed, section)
@@ -104,26 +109,30 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, str]:
     if settings.frame != "auto":
-        return settings.frame, f"frame '{settings.frame}' as asked"
+        return settings.frame, said("frame '{frame}' as asked", frame=settings.frame)
     plane = best_plane_frame(points)
     extent = np.ptp(plane.to_local(points.xyz), axis=0)
     dip = _dip(points, plane)
     over_map = backtracking(points, map_frame(points))
     if dip < STEEP and over_map <= OVERTURNED:
-        return "map", f"height field over the map (mean dip {dip:.0f} degrees)"
+        return "map", said("height field over the map (mean dip {dip:.0f} degrees)", dip=dip)
     thin = extent[2] <= PLANAR * max(extent[0], extent[1])
     over_plane = backtracking(points, plane)
+    steep = said("height field over its best plane: it dips {dip:.0f} degrees", dip=dip)
     if dip >= STEEP and thin and over_plane <= OVERTURNED:
-        return "best-plane", f"height field over its best plane: it dips {dip:.0f} degrees"
+        return "best-plane", steep
     if over_map > OVERTURNED and len(np.unique(points.section[points.section != ""])) >= 2:
         return (
             "sections",
-            f"parametric surface through its sections: {100 * over_map:.0f} % of their length runs backwards "
-            "(overturned), so it is no height field",
+            said(
+                "parametric surface through its sections: {share:.0f} % of their length runs backwards "
+                "(overturned), so it is no height field",
+                share=100 * over_map,
+            ),
         )
     if dip >= STEEP:
-        return "best-plane", f"height field over its best plane: it dips {dip:.0f} degrees"
-    return "map", "height field over the map; some section lines run backwards, look at the residuals there"
+        return "best-plane", steep
+    return "map", said("height field over the map; some section lines run backwards, look at the residuals there")
 
 
 def _dip(points: PointSet, plane: Frame) -> float:

@@ -6,11 +6,19 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from geofit.accuracy import Accuracy, Check, Conflict, Group, Seam
-from geofit.distance import project
+from geofit.distance import Projection, project
+from geofit.lattice import lattices
+from geofit.oscillation import oscillation
+from geofit.residual_tests import residual_checks
 from geofit.seams import seams
+from geofit.selfcross import self_crossing
+from geofit.shape import shape_checks
 from geofit.surface import HorizonSurface
+from geofit.trend import trend
+from geofit.words import said
 
 __all__ = ["check", "sigma"]
 
@@ -18,8 +26,6 @@ Floats = NDArray[np.float64]
 
 #: Limits that a sound surface keeps (METHOD, sec. 4 to 7).
 CORE_LIMIT, GAP_LIMIT, ANGLE_LIMIT = 1e-6, 1e-6, 0.1
-#: How far beyond the range of the data an elevation may go, as a share of that range.
-RANGE_SHARE = 0.5
 
 
 def sigma(residuals: Floats) -> float:
@@ -59,8 +65,17 @@ def check(surface: HorizonSurface, conflicts: Sequence[Conflict] = (), notes: Se
         f"interior tolerance {settings.interior_tolerance:g} m": int((magnitude > settings.interior_tolerance).sum()),
         f"epsilon {settings.epsilon:g} m": int((magnitude > settings.epsilon).sum()),
     }
-    given_way = np.zeros(len(d), bool)
-    given_way[[conflict.dropped for conflict in conflicts]] = True
+    honoured = np.ones(len(d), bool)
+    honoured[[conflict.dropped for conflict in conflicts]] = False
+    exact = surface.core & honoured if len(surface.core) == len(d) else np.zeros(len(d), bool)
+    # The systems of a few points each are small: starting threads for them costs more than the work.
+    with threadpool_limits(limits=1):
+        checks = [
+            *_tolerance_checks(surface, d, exact),
+            *_seam_checks(surface, found),
+            *_residual_checks(surface, d, patch, honoured & ~exact),
+            *_surface_checks(surface, projection, honoured),
+        ]
     return Accuracy(
         n=len(d),
         sigma=value,
@@ -77,7 +92,7 @@ def check(surface: HorizonSurface, conflicts: Sequence[Conflict] = (), notes: Se
         over=over,
         worst=tuple(int(i) for i in np.argsort(-magnitude, kind="stable")[:20]),
         seams=found,
-        checks=tuple(_checks(surface, d, found, ~given_way)),
+        checks=tuple(checks),
         conflicts=tuple(conflicts),
         notes=tuple(notes),
     )
@@ -92,69 +107,49 @@ def _groups(d: Floats, labels: NDArray[np.str_]) -> dict[str, Group]:
     return groups
 
 
-def _checks(surface: HorizonSurface, d: Floats, found: tuple[Seam, ...], honoured: NDArray[np.bool_]) -> list[Check]:
-    settings = surface.settings
-    checks = []
-    exact = surface.core & honoured if len(surface.core) == len(d) else np.zeros(len(d), bool)
+def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool_]) -> list[Check]:
+    """Ask whether the core's points are on the surface, and the other ones within the interior tolerance."""
+    checks, tolerance = [], surface.settings.interior_tolerance
     if exact.any():
         worst = float(np.abs(d[exact]).max())
-        checks.append(
-            Check(
-                "core",
-                worst <= CORE_LIMIT,
-                worst,
-                CORE_LIMIT,
-                "m",
-                f"{exact.sum()} core points on the surface",
-            )
-        )
+        text = said("{count} core points on the surface", count=int(exact.sum()))
+        checks.append(Check("core", worst <= CORE_LIMIT, worst, CORE_LIMIT, "m", text))
     loose = ~exact
     if loose.any():
         worst = float(np.abs(d[loose]).max())
-        count = int((np.abs(d[loose]) > settings.interior_tolerance).sum())
-        text = f"{count} of {loose.sum()} approximated points beyond the interior tolerance"
-        checks.append(Check("interior tolerance", count == 0, worst, settings.interior_tolerance, "m", text))
-    if found:
-        gap = max(seam.gap for seam in found)
-        limit = min(GAP_LIMIT, settings.boundary_tolerance)
-        checks.append(Check("seam gap", gap <= limit, gap, limit, "m", f"largest gap of {len(found)} seams"))
-        angle = max(seam.angle for seam in found)
-        tangent = settings.seam == "tangent"
-        text = "largest angle at a seam" if tangent else "largest angle at a seam (breaks are allowed)"
-        checks.append(Check("seam angle", angle <= ANGLE_LIMIT if tangent else None, angle, ANGLE_LIMIT, "deg", text))
-    checks += _shape_checks(surface)
+        count, total = int((np.abs(d[loose]) > tolerance).sum()), int(loose.sum())
+        text = said("{count} of {total} approximated points beyond the interior tolerance", count=count, total=total)
+        checks.append(Check("interior tolerance", count == 0, worst, tolerance, "m", text))
     return checks
 
 
-def _shape_checks(surface: HorizonSurface) -> list[Check]:
-    """Folds and flipped normals, and elevations far outside the data's range, on a lattice of each patch."""
-    low, high = np.inf, -np.inf
-    normals = []
-    for patch in surface.patches:
-        u, v = np.meshgrid(_lattice(patch.knots_u), _lattice(patch.knots_v), indexing="ij")
-        su, sv = patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1)
-        lengths = np.linalg.norm(su, axis=-1) * np.linalg.norm(sv, axis=-1)
-        normals.append((np.cross(su, sv) / np.maximum(lengths, 1e-300)[..., None]).reshape(-1, 3))
-        z = patch.evaluate(u, v)[..., 2]
-        low, high = min(low, float(z.min())), max(high, float(z.max()))
-    normal = np.concatenate(normals)
-    total = len(normal)
-    turned = int((np.linalg.norm(normal, axis=1) < 1e-9).sum())
-    if surface.fit.get("frame") != "sections":
-        # A fold that is meant turns its normals; anywhere else all of them look to one side.
-        upward = np.array([0.0, 0.0, 1.0]) if surface.fit.get("frame") == "map" else normal.mean(axis=0)
-        turned += int((normal @ upward < 0).sum())
-    checks = [Check("normals", turned == 0, turned, 0, "places", f"{turned} of {total} places folded or degenerate")]
-    z = surface.points.xyz[:, 2] - surface.origin[2]
-    if len(z) and np.ptp(z) > 0:
-        beyond = max(float(z.min()) - low, high - float(z.max()), 0.0)
-        limit = RANGE_SHARE * float(np.ptp(z))
-        text = f"elevations reach {beyond:.1f} m beyond the data's range"
-        checks.append(Check("elevation range", beyond <= limit, beyond, limit, "m", text))
-    return checks
+def _seam_checks(surface: HorizonSurface, found: tuple[Seam, ...]) -> list[Check]:
+    if not found:
+        return []
+    gap, angle = max(seam.gap for seam in found), max(seam.angle for seam in found)
+    limit = min(GAP_LIMIT, surface.settings.boundary_tolerance)
+    tangent = surface.settings.seam == "tangent"
+    gaps = said("largest gap of {count} seams", count=len(found))
+    angles = said("largest angle at a seam") if tangent else said("largest angle at a seam (breaks are allowed)")
+    return [
+        Check("seam gap", gap <= limit, gap, limit, "m", gaps),
+        Check("seam angle", angle <= ANGLE_LIMIT if tangent else None, angle, ANGLE_LIMIT, "deg", angles),
+    ]
 
 
-def _lattice(knots: Floats) -> Floats:
-    """Return the ends and the middle of every span: no wiggle of one control point falls between them."""
-    breaks = np.unique(knots)
-    return np.sort(np.concatenate([breaks, (breaks[1:] + breaks[:-1]) / 2]))
+def _residual_checks(
+    surface: HorizonSurface, d: Floats, patch: NDArray[np.str_], loose: NDArray[np.bool_]
+) -> list[Check]:
+    """Test the residuals of the approximated points: a core's are zero by construction."""
+    if not loose.any():
+        return []
+    xyz = surface.points.xyz[loose] - surface.origin
+    return residual_checks(xyz, d[loose], patch[loose], surface.settings.interior_tolerance)
+
+
+def _surface_checks(surface: HorizonSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:
+    """Look at the surface itself, at and between its points."""
+    parts = lattices(surface)
+    asked = (oscillation(surface, parts, projection, honoured), trend(surface, parts, honoured))
+    found = [one for one in asked if one is not None]
+    return [*shape_checks(surface, parts), self_crossing(surface, parts), *found]

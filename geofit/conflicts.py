@@ -8,6 +8,7 @@ from scipy.spatial import KDTree
 
 from geofit.accuracy import Conflict
 from geofit.points import PointSet
+from geofit.words import said
 
 __all__ = ["settle"]
 
@@ -84,14 +85,20 @@ def _near_pairs(place: NDArray[np.float64], distance: float) -> NDArray[np.intp]
 def _describe(points: PointSet, winner: int, loser: int, difference: float) -> Conflict:
     names = points.describe(winner), points.describe(loser)
     if difference == 0:
-        text = f"{names[1]} repeats {names[0]}"
+        text = said("{dropped} repeats {kept}", dropped=names[1], kept=names[0])
     else:
         stated = np.where(np.isnan(points.accuracy), np.inf, points.accuracy)
         if stated[winner] < stated[loser]:
-            reason = "the better stated accuracy"
+            reason = said("the better stated accuracy")
         elif _TRUST.get(points.kind[winner], 3) < _TRUST.get(points.kind[loser], 3):
-            reason = "the source nearer to the rock"
+            reason = said("the source nearer to the rock")
         else:
-            reason = "the first"
-        text = f"{names[1]} differs by {difference:+.3f} m from {names[0]} at one place; kept: {reason}"
+            reason = said("the first")
+        text = said(
+            "{dropped} differs by {difference:+.3f} m from {kept} at one place; kept: {reason}",
+            dropped=names[1],
+            difference=difference,
+            kept=names[0],
+            reason=reason,
+        )
     return Conflict(winner, loser, difference, text)

@@ -76,9 +76,14 @@ def fit_with_core(
     stage("field", 0.25)
     coarse = _coarse_space(data, core, inside, degree, min(COARSE, most))
     field = choose_field(data, coarse, settings)
-    if settings.core == "auto" and not chart.parametric and field.noise > max(settings.epsilon, RESOLVED * field.spread):
+    least = max(settings.epsilon, RESOLVED * field.spread)
+    if settings.core == "auto" and not chart.parametric and field.noise > least:
         raise ExactnessError(
-            f"its points bear each other out to about {field.noise:.3g} m only, more than epsilon {settings.epsilon:g} m"
+            said(
+                "its points bear each other out to about {noise:.3g} m only, more than epsilon {epsilon:g} m",
+                noise=field.noise,
+                epsilon=settings.epsilon,
+            )
         )
     stage("core", 0.4)
     lines = section_lines(data.plane[inside], chart.section[kept][inside], 0.5 * (core[1] - core[0]))

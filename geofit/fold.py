@@ -15,6 +15,7 @@ from scipy.signal import find_peaks
 
 from geofit.frame import Frame
 from geofit.points import PointSet
+from geofit.words import said
 
 __all__ = ["Loft", "backtracking", "loft"]
 
@@ -85,7 +86,12 @@ def loft(points: PointSet) -> Loft:
     for line, index, v in zip(u, indices, parameters, strict=True):
         plane[index] = np.column_stack([np.full(len(index), line), v * length])
         on_line[index] = True
-    note = f"{len(u)} section curves over {u[-1] - u[0]:.0f} m, {(~on_line).sum()} points between them"
+    note = said(
+        "{lines} section curves over {length:.0f} m, {count} points between them",
+        lines=len(u),
+        length=float(u[-1] - u[0]),
+        count=int((~on_line).sum()),
+    )
     return Loft(plane, on_line, u, (note,))
 
 

@@ -21,6 +21,7 @@ from geofit.periphery import approximate, borrowed
 from geofit.points import PointSet
 from geofit.settings import FitSettings
 from geofit.tensor import CELLWISE, TensorSpace, values_at
+from geofit.words import said
 
 __all__ = [
     "COARSE",
@@ -238,13 +239,20 @@ class Periphery:
         count = int((excess > 0).sum())
         if not count:
             return ()
-        reason = "no more control points are allowed there"
+        reason = said("no more control points are allowed there")
         if self.field.contradictory:
-            reason = f"the data contradict each other by about {self.field.noise:.2f} m, which is not chased"
+            noise = self.field.noise
+            reason = said("the data contradict each other by about {noise:.2f} m, which is not chased", noise=noise)
         elif self.settings.smoothing != "auto":
-            reason = "the smoothing is given"
-        tolerance = self.settings.interior_tolerance
-        return (f"interior tolerance {tolerance:g} m not met at {count} points, worst {excess.max():.3f} m: {reason}",)
+            reason = said("the smoothing is given")
+        note = said(
+            "interior tolerance {tolerance:g} m not met at {count} points, worst {worst:.3f} m: {reason}",
+            tolerance=self.settings.interior_tolerance,
+            count=count,
+            worst=float(excess.max()),
+            reason=reason,
+        )
+        return (note,)
 
 
 def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:
@@ -272,7 +280,11 @@ def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:
     assert best is not None
     noise, space, coefficients = best
     field = replace(field, noise=noise)
-    note = f"{n} points are judged by sigma, not pulled into the tolerance one by one; noise about {noise:.3f} m"
+    note = said(
+        "{n} points are judged by sigma, not pulled into the tolerance one by one; noise about {noise:.3f} m",
+        n=n,
+        noise=noise,
+    )
     free = np.zeros(space.size, bool)
     total = coefficients + data.over_trend(space)
     return Net(space, total, free, None, None, data.unit, field, 1, (note,))

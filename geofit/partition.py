@@ -10,6 +10,8 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
+from geofit.words import said
+
 __all__ = ["Split", "split_all", "split_auto", "split_none", "split_rectangle"]
 
 Floats = NDArray[np.float64]
@@ -54,10 +56,11 @@ def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: str
     core = _widen(core, plane, area)
     inside = _within(plane, core)
     if not inside.any():
-        return split_none(plane, f"{reason}; no point lies inside, so all are approximated")
+        return split_none(plane, said("{reason}; no point lies inside, so all are approximated", reason=reason))
     if inside.all():
-        return split_all(plane, area, f"{reason}; no point lies outside, so all are interpolated")
-    return Split(core, inside, f"{reason}: {inside.sum()} points inside, {(~inside).sum()} outside")
+        return split_all(plane, area, said("{reason}; no point lies outside, so all are interpolated", reason=reason))
+    counts = {"within": int(inside.sum()), "outside": int((~inside).sum())}
+    return Split(core, inside, said("{reason}: {within} points inside, {outside} outside", reason=reason, **counts))
 
 
 def split_auto(plane: Floats, area: Rectangle) -> Split:
@@ -69,50 +72,66 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     """
     n = len(plane)
     if n < 2 * FEWEST:
-        return split_none(plane, f"{n} points are too few to tell a dense core from a periphery (40 are needed)")
+        words = said("{n} points are too few to tell a dense core from a periphery (40 are needed)", n=n)
+        return split_none(plane, words)
     spacing = np.asarray(KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0])[:, -1]
     limit = _otsu(np.log(np.maximum(spacing, 1e-9)))
     if limit is None:
-        return _uniform(plane, area, "the points are spread evenly")
+        return _uniform(plane, area, said("the points are spread evenly"))
     limit = float(np.exp(limit))
     dense = np.flatnonzero(spacing <= limit)
     cluster = dense[_largest_cluster(plane[dense], limit)]
     if len(cluster) < FEWEST:
-        return _uniform(plane, area, "the dense places hold fewer than 20 points each")
+        return _uniform(plane, area, said("the dense places hold fewer than 20 points each"))
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
     length, width = _extents(plane[cluster])
     if width < 0.08 * length:
         return split_none(
             plane,
-            f"the {len(cluster)} dense points lie along a line {length:.0f} m long and {width:.0f} m wide: "
-            "one section makes no core, all points are approximated",
+            said(
+                "the {count} dense points lie along a line {length:.0f} m long and {width:.0f} m wide: "
+                "one section makes no core, all points are approximated",
+                count=len(cluster),
+                length=length,
+                width=width,
+            ),
         )
     core = _widen((low[0], high[0], low[1], high[1]), plane, area)
     inside = _within(plane, core)
     if inside.all():
-        return _uniform(plane, area, "the dense points fill the area")
+        return _uniform(plane, area, said("the dense points fill the area"))
     if inside.sum() > MOST:
         return split_none(plane, _too_many(int(inside.sum())))
     contrast = _density(inside.sum(), core) / _density((~inside).sum(), area, core)
     if contrast < CONTRAST + 10 / np.sqrt(inside.sum()):
-        return _uniform(plane, area, f"the densest part is only {contrast:.1f} times as dense as the rest")
+        words = said("the densest part is only {contrast:.1f} times as dense as the rest", contrast=float(contrast))
+        return _uniform(plane, area, words)
     return Split(
         core,
         inside,
-        f"{inside.sum()} points with a spacing below {limit:.0f} m fill {core[1] - core[0]:.0f} m x "
-        f"{core[3] - core[2]:.0f} m, {contrast:.1f} times as dense as the other {(~inside).sum()} points",
+        said(
+            "{count} points with a spacing below {limit:.0f} m fill {width:.0f} m x {length:.0f} m, {contrast:.1f} "
+            "times as dense as the other {others} points",
+            count=int(inside.sum()),
+            limit=limit,
+            width=float(core[1] - core[0]),
+            length=float(core[3] - core[2]),
+            contrast=float(contrast),
+            others=int((~inside).sum()),
+        ),
     )
 
 
 def _uniform(plane: Floats, area: Rectangle, reason: str) -> Split:
     """No core stands out: the points are all sparse, and approximated."""
-    return split_none(plane, f"no dense core: {reason}; all points are approximated")
+    return split_none(plane, said("no dense core: {reason}; all points are approximated", reason=reason))
 
 
 def _too_many(n: int) -> str:
-    return (
-        f"{n} dense points would need more control points than data to be interpolated; all points are "
-        "approximated (name a smaller core to interpolate it)"
+    return said(
+        "{n} dense points would need more control points than data to be interpolated; all points are "
+        "approximated (name a smaller core to interpolate it)",
+        n=n,
     )
 
 

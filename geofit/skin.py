@@ -26,6 +26,7 @@ from geofit import bspline
 from geofit.errors import ExactnessError
 from geofit.knots import neighbour_pairs
 from geofit.tensor import TensorSpace
+from geofit.words import Said, said
 
 __all__ = ["Lines", "across_curves", "damped_change", "least_change", "ruled", "section_lines", "separate"]
 
@@ -94,15 +95,18 @@ def least_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | No
     try:
         solver = splu(gram, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except RuntimeError:
-        raise ExactnessError(_unmet(f"the system of its {len(misfit)} points is singular")) from None
+        raise ExactnessError(_unmet(said("the system of its {n} points is singular", n=len(misfit)))) from None
     change = acting.T @ solver.solve(misfit)
     change += acting.T @ solver.solve(misfit - acting @ change)
     left = float(np.abs(misfit - acting @ change).max(initial=0.0))
     if not left <= EXACT:
-        raise ExactnessError(_unmet(f"not all {len(misfit)} points can be met exactly ({left:.1e} m is left)"))
+        raise ExactnessError(
+            _unmet(said("not all {n} points can be met exactly ({left:.1e} m is left)", n=len(misfit), left=left))
+        )
     swing = float(np.abs(change).max(initial=0.0))
     if swing > SWING * max(float(np.abs(misfit).max(initial=0.0)), 1e-3):
-        raise ExactnessError(_unmet(f"meeting all {len(misfit)} points would swing the surface by {swing:.3g} m"))
+        words = said("meeting all {n} points would swing the surface by {swing:.3g} m", n=len(misfit), swing=swing)
+        raise ExactnessError(_unmet(words))
     return np.asarray(change)
 
 
@@ -120,10 +124,11 @@ def damped_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_]) ->
     return np.asarray(acting.T @ splu(gram).solve(misfit))
 
 
-def _unmet(what: str) -> str:
-    return (
-        f"The core cannot be interpolated: {what}. Points lie nearer to each other than the allowed control points. "
-        "Raise max_control_points or conflict_distance, or approximate (core='none')."
+def _unmet(what: Said) -> Said:
+    return said(
+        "The core cannot be interpolated: {what}. Points lie nearer to each other than the allowed control points. "
+        "Raise max_control_points or conflict_distance, or approximate (core='none').",
+        what=what,
     )
 
 

@@ -53,28 +53,42 @@ def equal_accuracy(surface: HorizonSurface, tolerance: float) -> Storage:
     normal = up if abs(mean[2]) > GENTLE and (normals @ up).min() > UPRIGHT else mean
     if (normals @ normal).min() < UPRIGHT:
         return Storage(tolerance, None, None)
-    turned = (samples - samples.mean(axis=0)) @ _axes(normal).T
+    axes = _axes(normal)
+    turned = (samples - samples.mean(axis=0)) @ axes.T
     plan, unique = np.unique(np.round(turned[:, :2], 6), axis=0, return_index=True)
     height = turned[unique, 2]
+    facing = normals[unique] @ axes.T
+    slope = -facing[:, :2] / facing[:, 2:]
     from threadpoolctl import threadpool_limits
 
     # Qhull hands LAPACK one 2 x 2 matrix a triangle: starting threads for each costs a hundred times the work.
     with threadpool_limits(limits=1):
-        return Storage(tolerance, _tin(plan, height, tolerance), _grid(plan, height, tolerance))
+        return Storage(tolerance, _tin(plan, height, tolerance), _grid(plan, height, slope, tolerance))
 
 
 def _sample(patches: tuple[Patch, ...]) -> tuple[Floats, Floats]:
-    each = max(int(np.sqrt(PLACES / len(patches))), 8)
+    share = _uneven(max(int(np.sqrt(PLACES / len(patches))), 8))
     samples, normals = [], []
     for patch in patches:
         u0, u1, v0, v1 = patch.domain
-        u, v = np.meshgrid(np.linspace(u0, u1, each), np.linspace(v0, v1, each), indexing="ij")
+        u, v = np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0), indexing="ij")
         cross = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1)).reshape(-1, 3)
         length = np.linalg.norm(cross, axis=1)
         regular = length > 0
         samples.append(patch.evaluate(u, v).reshape(-1, 3)[regular])
         normals.append(cross[regular] / length[regular, None])
     return np.concatenate(samples), np.concatenate(normals)
+
+
+def _uneven(count: int) -> Floats:
+    """Return shares from 0 to 1, near to even ones but in no step with them.
+
+    Nodes of a grid that fall on the places would be exact at every place that is compared, however coarse.
+    """
+    share = np.linspace(0, 1, count)
+    golden = (np.arange(count) * (np.sqrt(5) - 1) / 2) % 1 - 0.5
+    share[1:-1] += 0.9 * golden[1:-1] / (count - 1)
+    return share
 
 
 def _axes(normal: Floats) -> Floats:
@@ -120,10 +134,11 @@ def _corners(plan: Floats, ring: NDArray[np.integer]) -> NDArray[np.integer]:
     return ring[turns]
 
 
-def _grid(plan: Floats, height: Floats, tolerance: float) -> int | None:
-    from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, RegularGridInterpolator
+def _grid(plan: Floats, height: Floats, slope: Floats, tolerance: float) -> int | None:
+    from scipy.interpolate import LinearNDInterpolator, RegularGridInterpolator
+    from scipy.spatial import cKDTree
 
-    inside, beside = LinearNDInterpolator(plan, height), NearestNDInterpolator(plan, height)
+    inside, tree = LinearNDInterpolator(plan, height), cKDTree(plan)
     low, high = plan.min(axis=0), plan.max(axis=0)
     spacing = float((high - low).max()) / 4
     while True:
@@ -134,7 +149,10 @@ def _grid(plan: Floats, height: Floats, tolerance: float) -> int | None:
         x, y = np.meshgrid(*axes, indexing="ij")
         nodes = inside(x, y)
         hull = np.isfinite(nodes)
-        nodes[~hull] = beside(x[~hull], y[~hull])
+        # Beyond the rim the nearest place's tangent plane: the cells there are read too.
+        beyond = np.column_stack([x[~hull], y[~hull]])
+        nearest = tree.query(beyond)[1]
+        nodes[~hull] = height[nearest] + (slope[nearest] * (beyond - plan[nearest])).sum(axis=1)
         off = np.abs(RegularGridInterpolator(axes, nodes)(plan) - height)
         if np.quantile(off, 0.999) <= tolerance:
             return count

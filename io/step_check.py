@@ -14,9 +14,10 @@ from geofit.accuracy import Check, ReadBack, Seam
 from geofit.distance import project
 from geofit.occ import along, edges_with_faces, faces_of, free_edges, free_loops
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 if TYPE_CHECKING:
-    from geofit.io.step import StepShape
+    from geofit.io.shapes import FileShape
 
 __all__ = ["read_back", "self_intersects"]
 
@@ -30,14 +31,14 @@ SAMPLES = 200
 MEASURED = 2000
 
 
-def read_back(surface: HorizonSurface, shape: StepShape, found: HorizonSurface, written: Any, path: Path) -> ReadBack:
+def read_back(surface: HorizonSurface, shape: FileShape, found: HorizonSurface, written: Any, path: Path) -> ReadBack:
     """Check a horizon as it stands in the file against the one that was written.
 
     Parameters
     ----------
     surface : HorizonSurface
         What was written, with its points.
-    shape : StepShape
+    shape : FileShape
         What was read, as OpenCASCADE's shape.
     found : HorizonSurface
         The same as patches, whole even where the outline trims them: points beyond it are measured as in the
@@ -76,7 +77,9 @@ def read_back(surface: HorizonSurface, shape: StepShape, found: HorizonSurface, 
             core_max,
             CORE,
             "m",
-            f"largest distance of {core.size} core points from the surface in the file ({how})",
+            said(
+                "largest distance of {count} core points from the surface in the file ({how})", count=core.size, how=how
+            ),
         ),
         Check("read-back seam gap", gap <= GAP, gap, GAP, "m", _words(seams, "gap", "m")),
         Check(
@@ -93,7 +96,7 @@ def read_back(surface: HorizonSurface, shape: StepShape, found: HorizonSurface, 
             float(not valid),
             0.0,
             "",
-            "OpenCASCADE's BRepCheck of the shape read",
+            said("OpenCASCADE's BRepCheck of the shape read"),
         ),
         Check(
             "read-back free edges",
@@ -101,7 +104,12 @@ def read_back(surface: HorizonSurface, shape: StepShape, found: HorizonSurface, 
             float(len(free)),
             float(expected),
             "edges",
-            f"{len(free)} free edges where the outline has {expected}, closing into {loops} loop(s)",
+            said(
+                "{free} free edges where the outline has {expected}, closing into {loops} loop(s)",
+                free=len(free),
+                expected=expected,
+                loops=loops,
+            ),
         ),
         _outline_check(surface, shape, free),
         Check(
@@ -110,7 +118,7 @@ def read_back(surface: HorizonSurface, shape: StepShape, found: HorizonSurface, 
             inner,
             EDGE,
             "m",
-            "largest tolerance of an edge between faces: a larger one could hide a gap",
+            said("largest tolerance of an edge between faces: a larger one could hide a gap"),
         ),
         Check(
             "read-back rim tolerance",
@@ -118,7 +126,7 @@ def read_back(surface: HorizonSurface, shape: StepShape, found: HorizonSurface, 
             outer,
             rim,
             "m",
-            "largest tolerance of a free edge: how far the outline's curve may leave the surface",
+            said("largest tolerance of a free edge: how far the outline's curve may leave the surface"),
         ),
         Check(
             "read-back self-intersection",
@@ -126,8 +134,9 @@ def read_back(surface: HorizonSurface, shape: StepShape, found: HorizonSurface, 
             float(crossing),
             0.0,
             "",
-            "OpenCASCADE's boolean argument analyser "
-            + ("finds the shell crossing itself" if crossing else "is silent"),
+            said("OpenCASCADE's boolean argument analyser finds the shell crossing itself")
+            if crossing
+            else said("OpenCASCADE's boolean argument analyser is silent"),
         ),
         _normal_check(found, seams),
     )
@@ -166,23 +175,28 @@ def self_intersects(shape: Any) -> bool:
 
 def _words(seams: tuple[Seam, ...], field: str, unit: str) -> str:
     if not seams:
-        return "one face, no seam"
+        return said("one face, no seam")
     worst = max(seams, key=lambda seam: float(getattr(seam, field)))
-    return (
-        f"{SAMPLES} places on each of {len(seams)} seams; largest between {worst.first} and {worst.second}: "
-        f"{getattr(worst, field):.2g} {unit}"
+    return said(
+        "{places} places on each of {count} seams; largest between {first} and {second}: {value:.2g} {unit}",
+        places=SAMPLES,
+        count=len(seams),
+        first=worst.first,
+        second=worst.second,
+        value=float(getattr(worst, field)),
+        unit=unit,
     )
 
 
-def _distances(surface: HorizonSurface, shape: StepShape, found: HorizonSurface) -> tuple[Floats, str]:
+def _distances(surface: HorizonSurface, shape: FileShape, found: HorizonSurface) -> tuple[Floats, str]:
     """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
     xyz = surface.points.xyz
     if not len(xyz):
-        return np.empty(0), "no points"
+        return np.empty(0), said("no points")
     ours = project(found.patches, xyz - found.origin)
     distance = ours.distance.copy()
     chosen = np.arange(len(xyz))
-    how = "OpenCASCADE's projection"
+    how = said("OpenCASCADE's projection")
     if len(xyz) > MEASURED:
         core = np.flatnonzero(surface.core) if len(surface.core) == len(xyz) else chosen[:0]
         spread = np.unique(np.linspace(0, len(xyz) - 1, MEASURED // 4).astype(int))
@@ -190,12 +204,16 @@ def _distances(surface: HorizonSurface, shape: StepShape, found: HorizonSurface)
     length = _occ_lengths(shape, xyz, ours.patch, chosen, np.abs(ours.distance))
     if len(chosen) < len(xyz):
         apart = np.abs(length - np.abs(ours.distance[chosen])).max()
-        how = f"OpenCASCADE's projection of {len(chosen)}; ours of the others, at most {apart:.1e} m from it"
+        how = said(
+            "OpenCASCADE's projection of {count}; ours of the others, at most {apart:.1e} m from it",
+            count=len(chosen),
+            apart=float(apart),
+        )
     distance[chosen] = np.where(ours.distance[chosen] < 0, -length, length)
     return distance, how
 
 
-def _occ_lengths(shape: StepShape, xyz: Floats, patch: NDArray[np.int64], chosen: Any, ours: Floats) -> Floats:
+def _occ_lengths(shape: FileShape, xyz: Floats, patch: NDArray[np.int64], chosen: Any, ours: Floats) -> Floats:
     from OCP.BRep import BRep_Tool
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeVertex
     from OCP.BRepExtrema import BRepExtrema_DistShapeShape
@@ -224,7 +242,7 @@ def _occ_lengths(shape: StepShape, xyz: Floats, patch: NDArray[np.int64], chosen
     return length
 
 
-def _seams(shape: StepShape) -> tuple[Seam, ...]:
+def _seams(shape: FileShape) -> tuple[Seam, ...]:
     """Gap and angle on every edge between two faces, each face evaluated on its own parameter curve."""
     from OCP.BRep import BRep_Tool
 
@@ -280,16 +298,17 @@ def _edge_tolerances(shape: Any) -> tuple[float, float]:
     return inner, outer
 
 
-def _outline_check(surface: HorizonSurface, shape: StepShape, free: list[Any]) -> Check:
+def _outline_check(surface: HorizonSurface, shape: FileShape, free: list[Any]) -> Check:
     name, limit = "read-back outline", surface.settings.boundary_tolerance
     if surface.outline is None:
-        return Check(name, None, 0.0, limit, "m", "not trimmed: the free edges are the patches' own")
+        return Check(name, None, 0.0, limit, "m", said("not trimmed: the free edges are the patches' own"))
     import shapely
 
     ring = shapely.LinearRing(surface.outline - surface.origin[:2])
     points = np.concatenate([along(edge, 24)[:, :2] for edge in free])
     off = float(shapely.distance(ring, shapely.points(points)).max())
-    reach = "the free edges follow the outline" if off <= limit else "the surface does not reach its whole outline"
+    follows, short = said("the free edges follow the outline"), said("the surface does not reach its whole outline")
+    reach = follows if off <= limit else short
     return Check(name, True if off <= limit else None, off, limit, "m", reach)
 
 
@@ -306,8 +325,8 @@ def _normal_check(found: HorizonSurface, seams: tuple[Seam, ...]) -> Check:
     flips = any(seam.angle > 90 for seam in seams)
     passed = True if least > 0 and not flips else (False if flips else None)
     text = {
-        True: "all normals lie on one side",
-        False: "the normals of neighbouring faces flip",
-        None: "the surface folds over: no single side, neighbours do not flip",
+        True: said("all normals lie on one side"),
+        False: said("the normals of neighbouring faces flip"),
+        None: said("the surface folds over: no single side, neighbours do not flip"),
     }[passed]
     return Check("read-back normals", passed, least, 0.0, "cosine", text)
