@@ -197,6 +197,8 @@ _SITE = """\
 [site]
 name = "Heishui bend dam site (fictional)"
 crs = "local grid, fictional"
+# Top to bottom. W cuts strata, F1 is a fault, M1 an overturned fold.
+order = ["T3-T2", "T2-T1"]
 
 [boundary]
 file = "boundary.csv"
