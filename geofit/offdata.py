@@ -45,7 +45,9 @@ class Uncertainty:
     """Standard deviation of the surface on a grid in map coordinates, metres.
 
     ``x`` (nx,), ``y`` (ny,) ascending, ``sd`` (ny, nx), nan outside the study area. ``factor`` is by how much the
-    posterior standard deviation was widened (above 1) so that 90 % of the left-out points lie in the 90 % band.
+    posterior standard deviation was widened (above 1) so that 90 % of the left-out points lie in the 90 % band: the
+    median of the local ``factors`` (ny, nx). With ``frame`` "best-plane" x and y run along the strike and up the dip
+    of the surface's best plane, metres about its origin, and sd is measured across it.
     """
 
     x: Floats
@@ -54,6 +56,8 @@ class Uncertainty:
     factor: float
     mean: float
     max: float
+    factors: Floats
+    frame: Literal["map", "best-plane"] = "map"
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,10 @@ from geofit.model import Model, Problem
 from geofit.partition import Split, split_all, split_auto, split_none, split_rectangle
 from geofit.points import PointSet
 from geofit.progress import Progress, tell
+from geofit.robust import fit_robustly
 from geofit.settings import FitSettings
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = ["fit_horizon"]
 
@@ -115,10 +117,13 @@ def _fit_horizon(
         if settings.core != "auto":
             raise
         inside = np.zeros(len(points), bool)
-        reason = f"{split.reason}, but all points are approximated: {error}"
+        reason = said("{reason}, but all points are approximated: {error}", reason=split.reason, error=error.args[0])
         model = replace(problem, split=Split(None, inside, reason)).fit(kept & chart.placed, clock.stage)
     if not chart.placed.all():
         model = _corrected(model, clock)
+    if settings.robust and not chart.parametric:
+        clock.stage("robust", 0.7)
+        model = fit_robustly(model, clock.stage)
 
     clock.stage("check", 0.8)
     surface = model.surface()
@@ -152,13 +157,17 @@ def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
         assert accuracy is not None
         if accuracy.passed:
             if step:
-                surface = _with_note(surface, f"sigma came below epsilon after {step} local adjustments")
+                surface = _with_note(
+                    surface, said("sigma came below epsilon after {step} local adjustments", step=step)
+                )
             break
         better = adjust(model.net, given.chart, given.kept & ~surface.core, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else tried.surface()
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
-            words = f"sigma stays above epsilon: after {step} local adjustments no further step lowers it"
+            words = said(
+                "sigma stays above epsilon: after {step} local adjustments no further step lowers it", step=step
+            )
             surface = _with_note(surface, words)
             break
         assert tried is not None
@@ -193,11 +202,11 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> 
     """Split the points that are honoured; one that gave way is in no core."""
     plane = chart.plane[kept]
     if chart.parametric:
-        found = split_all(plane, chart.area, "the section curves span the whole surface")
+        found = split_all(plane, chart.area, said("the section curves span the whole surface"))
     elif settings.core == "all":
-        found = split_all(plane, chart.area, "core='all': every point is interpolated")
+        found = split_all(plane, chart.area, said("core='all': every point is interpolated"))
     elif settings.core == "none":
-        found = split_none(plane, "core='none': every point is approximated")
+        found = split_none(plane, said("core='none': every point is approximated"))
     elif settings.core == "auto":
         found = split_auto(plane, chart.area)
     elif chart.frame.kind != "map":
@@ -212,7 +221,7 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> 
         if (high <= low).any():
             raise FitError("The core's polygon lies outside the study area. Check its coordinates and their order.")
         rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
-        found = split_rectangle(plane, rectangle, chart.area, "the core's polygon as drawn")
+        found = split_rectangle(plane, rectangle, chart.area, said("the core's polygon as drawn"))
     inside = np.zeros(len(kept), bool)
     inside[kept] = found.inside
     return Split(found.core, inside, found.reason)

@@ -41,6 +41,9 @@ class FitSettings:
     smoothing : "auto" or float
         Weight of the bending energy in the periphery: restricted maximum likelihood, or the ratio of noise
         variance to field variance in m^2 per unit of energy.
+    robust : bool
+        Whether peripheral points that their neighbours do not bear out (left-out error beyond 3.5 times its
+        standard deviation) take no part in the fit. They are named in the notes, and count in sigma.
     max_iterations : int
         Cap of the refinement and adjustment steps.
     max_control_points : int or None
@@ -68,6 +71,7 @@ class FitSettings:
     core: Literal["auto", "all", "none"] | tuple[tuple[float, float], ...] = "auto"
     frame: Literal["auto", "map", "best-plane", "sections"] = "auto"
     smoothing: Literal["auto"] | float = "auto"
+    robust: bool = False
     max_iterations: int = 20
     max_control_points: int | None = None
     conflict_distance: float = 0.01
@@ -84,6 +88,8 @@ class FitSettings:
             object.__setattr__(self, "core", _polygon(self.core))
         if self.smoothing != "auto":
             _positive("smoothing", self.smoothing, "the auto value's unit, or the word 'auto'")
+        if not isinstance(self.robust, bool):
+            raise SettingsError(f"robust is {self.robust!r}; true or false is needed.")
         if not isinstance(self.max_iterations, int) or isinstance(self.max_iterations, bool) or self.max_iterations < 0:
             raise SettingsError(f"max_iterations is {self.max_iterations!r}; a whole number >= 0 is needed.")
         most = self.max_control_points
