@@ -1,4 +1,4 @@
-# make demo | test | lint | real | bench | clean. Python 3.11 or newer; everything goes into .venv.
+# make demo | report-demo | test | lint | real | bench | clean. Python 3.11 or newer; everything goes into .venv.
 SHELL := /bin/sh
 # A name may stand on the path and still not run (version managers leave such shims), so each is tried.
 PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
@@ -8,10 +8,14 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint $(LOCK)
 
-.PHONY: demo test lint real bench clean python
+.PHONY: demo report-demo test lint real bench clean python
 
 demo: .venv/.installed
 	$(BIN)/geofit demo --out demo_out
+
+report-demo: .venv/.installed
+	$(BIN)/geofit report sample_data/site.toml --lang en --out report_demo/en
+	$(BIN)/geofit report sample_data/site.toml --lang zh --out report_demo/zh
 
 test: .venv/.installed-test
 	$(BIN)/python -m pytest
@@ -30,7 +34,7 @@ bench: .venv/.installed-test
 	@set -e; for script in benchmarks/fit.py benchmarks/distance.py; do $(BIN)/python $$script; done
 
 clean:
-	rm -rf .venv build demo_out real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
+	rm -rf .venv build demo_out report_demo real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
 
 python:
 	@echo $(PYTHON)

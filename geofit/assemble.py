@@ -31,7 +31,7 @@ def multiply_knots(
 
 def _refined(coefficients: Floats, tu: Floats, tv: Floats) -> Floats:
     net = coefficients.reshape(tu.shape[1], tv.shape[1], -1)
-    fine = np.einsum("ai,ijk,bj->abk", tu, net, tv, optimize=True)
+    fine: Floats = np.einsum("ai,ijk,bj->abk", tu, net, tv, optimize=True)
     return fine.reshape(len(tu) * len(tv), *coefficients.shape[1:])
 
 

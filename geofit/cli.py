@@ -1,4 +1,4 @@
-"""The command line: ``geofit demo | fit | check | info | import | export | section``.
+"""The command line: ``geofit demo | fit | report | check | info | import | export | section | gui``.
 
 Exit codes: 0 every sigma < epsilon; 1 some verdict FAIL; 2 bad input or usage; 130 stopped.
 Everything heavy is imported inside the commands, so that ``geofit --help`` answers at once.
@@ -28,6 +28,7 @@ from geofit.errors import InputError, SettingsError
 
 if TYPE_CHECKING:
     from geofit.progress import Progress
+    from geofit.report.language import Language
     from geofit.settings import FitSettings
     from geofit.site import Site
     from geofit.surface import HorizonSurface
@@ -45,6 +46,11 @@ app = typer.Typer(
     "as STEP. "
     "Exit codes: 0 every sigma < epsilon, 1 some verdict FAIL, 2 bad input or usage.",
 )
+
+
+class _Language(StrEnum):
+    EN = "en"
+    ZH = "zh"
 
 
 class _Across(StrEnum):
@@ -75,9 +81,10 @@ _Sep = Annotated[str | None, typer.Option(help="CSV: separator: one character, '
 _Decimal = Annotated[str | None, typer.Option(help="CSV: decimal mark, '.' or ','. Default: found.")]
 _Tolerance = Annotated[float, typer.Option(help="Largest distance of triangles and lines from the surface, m.")]
 _FORMATS = (
-    "step, iges, brep, dxf (contours), dxf-mesh, ifc, landxml, tsurf, geoh5, vtp, vtm, obj, ply, stl, glb, "
+    "step, iges, brep, dxf (contours), dxf-mesh, ifc, landxml, tsurf, geoh5, omf, vtp, vtm, obj, ply, stl, glb, "
     "gpkg (contours), asc, grd, tif (grids)"
 )
+_SURFACE_FILES = "STEP, IGES, BREP or GOCAD TSurf (.ts), ours or any other"
 _FROM_SITE = "Default: the site file's, else"
 
 
@@ -98,14 +105,20 @@ def _options(
 
 @app.command()
 @guarded
-def demo(out: _Out = Path("demo_out"), as_json: _Json = False) -> int:
+def demo(
+    out: _Out = Path("demo_out"),
+    robust: Annotated[
+        bool, typer.Option("--robust", help="Peripheral points that their neighbours deny take no part.")
+    ] = False,
+    as_json: _Json = False,
+) -> int:
     """Fit every horizon of the sample site, a fictional dam site."""
     from geofit.io.site_file import read_site
 
     site_file = _sample(out)
     with listening() as progress:
         site = read_site(site_file)
-        return _deliver(site, out, (), {}, as_json, progress)
+        return _deliver(site, out, (), {"robust": True} if robust else {}, as_json, progress)
 
 
 @app.command()
@@ -150,6 +163,10 @@ def fit(
     smoothing: Annotated[
         str | None, typer.Option(help=f"Weight of the bending energy: auto, or a number. {_FROM_SITE} auto.")
     ] = None,
+    robust: Annotated[
+        bool | None,
+        typer.Option("--robust", help=f"Peripheral points that their neighbours deny take no part. {_FROM_SITE} not."),
+    ] = None,
     max_iterations: Annotated[int | None, typer.Option(help=f"Cap of the refinement steps. {_FROM_SITE} 20.")] = None,
     max_control_points: Annotated[
         int | None, typer.Option(help=f"Cap of the control points. {_FROM_SITE} ten a data point.")
@@ -169,6 +186,7 @@ def fit(
         "core": _core(core),
         "frame": frame and frame.value,
         "smoothing": _smoothing(smoothing),
+        "robust": robust,
         "max_iterations": max_iterations,
         "max_control_points": max_control_points,
         "conflict_distance": conflict_distance,
@@ -183,8 +201,23 @@ def fit(
 
 @app.command()
 @guarded
+def report(
+    site: Annotated[Path, typer.Argument(metavar="SITE", help="site.toml of a site.")],
+    out: _Out,
+    lang: Annotated[_Language, typer.Option(help="Language of the report: English or Chinese.")] = _Language.EN,
+    as_json: _Json = False,
+) -> int:
+    """Fit every horizon of a site and write its accuracy report (HTML, PDF, JSON) with the surfaces it is about."""
+    from geofit.report.language import language
+
+    with listening() as progress:
+        return _deliver(_read(site, {}, None), out, (), {}, as_json, progress, language(lang.value), pdf=True)
+
+
+@app.command()
+@guarded
 def check(
-    surface: Annotated[Path, typer.Argument(metavar="SURFACE.step", help="Any STEP file with faces.")],
+    surface: Annotated[Path, typer.Argument(metavar="SURFACE", help=f"A surface: {_SURFACE_FILES}.")],
     points: Annotated[Path, typer.Argument(metavar="POINTS.csv", help="Table of points, m.")],
     epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
     horizon: Annotated[str | None, typer.Option(help="Name of the horizon, where the files hold several.")] = None,
@@ -198,10 +231,10 @@ def check(
     out: Annotated[Path | None, typer.Option(help="Folder for the residual table; none: not written.")] = None,
     as_json: _Json = False,
 ) -> int:
-    """Measure points against the surface in a STEP file, ours or any other."""
+    """Measure points against the surface in a CAD file or GOCAD TSurf, ours or any other."""
     from geofit.accuracy import plain
-    from geofit.check import check as measure
-    from geofit.io.step import read_step
+    from geofit.given import check_given
+    from geofit.io.surface_files import read_surface_file
     from geofit.report.result import HorizonResult
 
     settings = _settings({"epsilon": epsilon})
@@ -218,10 +251,8 @@ def check(
     print_issues(site.issues)
     print_counts(site.counts)
     name, found = _pick("horizon", site.horizons, horizon, points)
-    _, shape = _pick("product", read_step(surface), name if horizon else None, surface)
-    judged = shape.with_(points=found, settings=settings, name=name)
-    judged = judged.with_(accuracy=measure(judged))
-    result = HorizonResult(judged, site)
+    _, shape = _pick("surface", read_surface_file(surface), name if horizon else None, surface)
+    result = HorizonResult(check_given(shape, found, settings, name), site)
     if out is not None:
         from geofit.files import file_stems
         from geofit.report.tables import write_residuals
@@ -229,7 +260,7 @@ def check(
         out.mkdir(parents=True, exist_ok=True)
         write_residuals(result, out / f"{file_stems([name])[name]}_residuals.csv")
     if as_json:
-        print_json(_summary(plain(judged.accuracy), name))
+        print_json(_summary(plain(result.accuracy), name))
     else:
         print_results([result])
     return 0 if result.accuracy.passed else 1
@@ -238,11 +269,13 @@ def check(
 @app.command()
 @guarded
 def info(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="site.toml, table of points or STEP file.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="site.toml, table of points or a surface (STEP ...).")],
     as_json: _Json = False,
 ) -> int:
     """Say what is in a file."""
-    rows = _describe_step(file) if _is_step(file) else None
+    from geofit.io.surface_files import is_surface_file
+
+    rows = _describe_surfaces(file) if is_surface_file(file) else None
     header: tuple[str, ...] = (
         "surface",
         "patches",
@@ -305,7 +338,7 @@ def import_(
 @app.command()
 @guarded
 def export(
-    surfaces: Annotated[list[Path], typer.Argument(metavar="SURFACE.step...", help="STEP files, ours or any other.")],
+    surfaces: Annotated[list[Path], typer.Argument(metavar="SURFACE...", help=f"Files: {_SURFACE_FILES}.")],
     to: Annotated[str, typer.Option(help=f"Format: {_FORMATS}.")],
     out: Annotated[Path, typer.Option(help="The file; horizons get one each where the format holds one.")],
     points: Annotated[
@@ -320,7 +353,7 @@ def export(
     as_json: _Json = False,
 ) -> int:
     """Write horizons in other formats."""
-    from geofit.exporting import Request, read_surfaces
+    from geofit.exporting import Request, read_surfaces, uncut
     from geofit.exporting import export as write
 
     site = None if points is None else _read(points, {}, None)
@@ -336,7 +369,10 @@ def export(
         site=site.name if site else surfaces[0].stem,
         crs=crs if crs is not None else site.crs if site else "",
     )
-    files = write(read_surfaces(surfaces), to, out, request)
+    given = read_surfaces(surfaces)
+    for sentence in uncut(given):
+        say(sentence)
+    files = write(given, to, out, request)
     if as_json:
         print_json({"files": [str(file) for file in files]})
     else:
@@ -347,17 +383,20 @@ def export(
 @app.command()
 @guarded
 def section(
-    surfaces: Annotated[list[Path], typer.Argument(metavar="SURFACE.step...", help="STEP files, ours or any other.")],
+    surfaces: Annotated[list[Path], typer.Argument(metavar="SURFACE...", help=f"Files: {_SURFACE_FILES}.")],
     line: Annotated[str, typer.Option(help="x0,y0,x1,y1 (further corners may follow), or a table with x and y; m.")],
     out: _Out,
     tolerance: _Tolerance = 0.05,
     as_json: _Json = False,
 ) -> int:
     """Cut every horizon along a line: drawing (DXF), table (CSV) and picture (PNG)."""
-    from geofit.exporting import read_line, read_surfaces
+    from geofit.exporting import read_line, read_surfaces, uncut
     from geofit.exporting import section as cut
 
-    cuts, files = cut(read_surfaces(surfaces), read_line(line), out, tolerance)
+    given = read_surfaces(surfaces)
+    for sentence in uncut(given):
+        say(sentence)
+    cuts, files = cut(given, read_line(line), out, tolerance)
     rows = [(name, i, one) for name, lines in cuts.items() for i, one in enumerate(lines, 1)]
     if as_json:
         lengths = [{"horizon": n, "line": i, "distance": one.distance[[0, -1]].tolist()} for n, i, one in rows]
@@ -367,6 +406,17 @@ def section(
         print_table(header, [(n, str(i), _span(one.distance), _span(one.xyz[:, 2])) for n, i, one in rows])
         say(f"Drawing, table and picture: {out}")
     return 0
+
+
+@app.command()
+@guarded
+def gui(
+    file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="site.toml or project.geofit to open.")] = None,
+) -> int:
+    """Open the desktop application. Exit code 2: it cannot start, and what is missing is said."""
+    from geofit.gui.app import start
+
+    return start(file)
 
 
 def _span(values: Any) -> str:
@@ -380,13 +430,16 @@ def _deliver(
     changes: dict[str, Any],
     as_json: bool,
     progress: Progress | None,
+    language: Language | None = None,
+    pdf: bool = False,
 ) -> int:
     from geofit.deliver import deliver
+    from geofit.report.language import EN
     from geofit.report.result import horizon_data
 
     print_issues(site.issues, str(out / "import_issues.csv"))
     print_counts(site.counts)
-    delivery = deliver(site, out, horizons, changes, progress)
+    delivery = deliver(site, out, horizons, changes, progress, language=language or EN, pdf=pdf)
     if as_json:
         print_json(
             {
@@ -402,7 +455,7 @@ def _deliver(
     for name, text in delivery.failures.items():
         say(f"geofit: {name}: {text}")
     if delivery.results:
-        say(f"Reports, surfaces and tables: {out / 'report.html'}")
+        say(f"Report: {out / 'report.html'}{', .pdf' if pdf else ''} and .json; surfaces and tables beside it")
     return delivery.exit_code
 
 
@@ -478,7 +531,7 @@ def _smoothing(text: str | None) -> str | float | None:
 
 
 def _pick(kind: str, found: Mapping[str, Any], wanted: str | None, file: Path) -> tuple[str, Any]:
-    if len(found) == 1 and (wanted is None or kind == "product"):
+    if len(found) == 1 and (wanted is None or kind == "surface"):
         return next(iter(found.items()))
     if wanted is not None and wanted in found:
         return wanted, found[wanted]
@@ -497,19 +550,20 @@ def _summary(accuracy: dict[str, Any], name: str) -> dict[str, Any]:
     }
 
 
-def _is_step(file: Path) -> bool:
-    return file.suffix.casefold() in (".step", ".stp")
-
-
-def _describe_step(file: Path) -> list[tuple[str, ...]]:
+def _describe_surfaces(file: Path) -> list[tuple[str, ...]]:
     import numpy as np
 
-    from geofit.io.step import read_step
+    from geofit.io.surface_files import read_surface_file
+    from geofit.mesh import MeshSurface
 
     rows: list[tuple[str, ...]] = []
-    for name, surface in read_step(file).items():
-        xyz = np.concatenate([_corners(surface, i) for i in range(len(surface.patches))])
-        rows.append((name, str(len(surface.patches)), str(surface.control_points), *_ranges(xyz)))
+    for name, surface in read_surface_file(file).items():
+        if isinstance(surface, MeshSurface):
+            size, xyz = (f"{len(surface.mesh.triangles)} triangles", f"{len(surface.mesh.points)}"), surface.mesh.xyz
+        else:
+            size = (str(len(surface.patches)), str(surface.control_points))
+            xyz = np.concatenate([_corners(surface, i) for i in range(len(surface.patches))])
+        rows.append((name, *size, *_ranges(xyz)))
     return rows
 
 

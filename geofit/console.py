@@ -138,7 +138,7 @@ def listening() -> Iterator[Progress | None]:
 
 def print_results(results: Sequence[HorizonResult]) -> None:
     """Print one line a horizon."""
-    from geofit.report.html import metres
+    from geofit.report.digits import metres
 
     header = (
         "horizon",

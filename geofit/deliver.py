@@ -1,4 +1,4 @@
-"""From a site to the files that a run leaves: surfaces, reports, tables, pictures."""
+"""From a site to the files that a run leaves: surfaces, one accuracy report, tables, pictures."""
 
 from __future__ import annotations
 
@@ -6,13 +6,18 @@ import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from geofit.errors import Cancelled, GeofitError, InputError
-from geofit.files import file_stems
+from geofit.errors import Cancelled, GeofitError, InputError, SettingsError
+from geofit.files import file_stems, replacing
 from geofit.progress import Progress, tell
+from geofit.report.language import EN, Language
 from geofit.report.result import HorizonResult
 from geofit.site import Site
+
+if TYPE_CHECKING:
+    from geofit.order import Order
+    from geofit.report.accuracy_report import AccuracyReport
 
 __all__ = ["Delivery", "deliver"]
 
@@ -40,8 +45,15 @@ def deliver(
     horizons: Sequence[str] = (),
     changes: Mapping[str, Any] | None = None,
     progress: Progress | None = None,
+    *,
+    language: Language = EN,
+    date: str = "",
+    pdf: bool = False,
 ) -> Delivery:
-    """Fit horizons of a site and write everything that belongs to them.
+    """Fit horizons of a site, examine them, and write everything that belongs to them.
+
+    Each horizon leaves ``.step``, ``.png``, ``.json`` and ``_residuals.csv``; the site ``report.html``,
+    ``report.json``, ``site.png``, ``import_issues.csv`` and, if asked for, ``report.pdf``.
 
     Parameters
     ----------
@@ -55,34 +67,54 @@ def deliver(
         Settings that take the place of the site's, by the names of :class:`geofit.FitSettings`.
     progress : callable, optional
         Called as ``progress("horizon: stage", fraction)``.
+    language : Language
+        That of the report and the pictures.
+    date : str
+        Date of the report, ISO 8601; empty: SOURCE_DATE_EPOCH, else today.
+    pdf : bool
+        Whether the report is written as PDF, too: about a second a horizon.
 
     Raises
     ------
     InputError
         If the site has no such horizon.
+    MissingDependencyError
+        If the report is to be in Chinese and the machine has no font for it.
     Cancelled
         If ``progress`` returned False; the files of the horizons that were ready stay.
     """
+    from geofit.report.gather import accuracy_report
+
     names = _chosen(site, horizons)
     stems = file_stems(names)
+    if pdf and language.code == "zh":
+        from geofit.report.fonts import pdf_fonts
+
+        pdf_fonts(chinese=True)  # told before anything is fitted
     # Also when there is nothing to list: a file of an earlier run would mislead.
     _make(out)
     _write_issues(site, out)
     results: list[HorizonResult] = []
+    images: dict[str, bytes] = {}
     failures: dict[str, str] = {}
     warning = _font_warning(site, names)
     for i, name in enumerate(names):
         part = _Part(progress, name, i, len(names))
         try:
-            results.append(_horizon(site, name, out / stems[name], changes or {}, part, warning))
+            result, pictures = _horizon(site, name, out / stems[name], changes or {}, part, language)
+            results.append(result)
+            images |= pictures
         except Cancelled:
             raise
         except GeofitError as error:
             failures[name] = str(error)
     warnings = [warning] if warning else []
     if results:
-        tell(progress, "site", 1.0)
-        warnings += _site(results, stems, out, warning)
+        tell(progress, "report", 1.0)
+        compared, unordered = _orders(results)
+        report = accuracy_report(results, compared, failures=failures, date=date)
+        missing = _write_report(report, results, images, out, language, warning, pdf)
+        warnings += [text for text in (unordered, missing) if text]
     return Delivery(out, tuple(results), failures, tuple(warnings))
 
 
@@ -105,10 +137,12 @@ class _Part:
         return listen
 
 
-def _horizon(site: Site, name: str, stem: Path, changes: Mapping[str, Any], part: _Part, warning: str) -> HorizonResult:
+def _horizon(
+    site: Site, name: str, stem: Path, changes: Mapping[str, Any], part: _Part, language: Language
+) -> tuple[HorizonResult, Mapping[str, bytes]]:
+    from geofit.examine import examine
     from geofit.io.step import write_step
     from geofit.pipeline import fit_horizon
-    from geofit.report.html import write_report
     from geofit.report.pictures import draw, write_picture
     from geofit.report.result import write_json
     from geofit.report.tables import write_residuals
@@ -117,24 +151,24 @@ def _horizon(site: Site, name: str, stem: Path, changes: Mapping[str, Any], part
 
     settings = replace(site.settings.get(name, FitSettings()), **changes)
     clock = _Clock()
-    surface = fit_horizon(site.horizons[name], settings, site.boundary, part.within(0.0, 0.5), name=name)
+    surface = fit_horizon(site.horizons[name], settings, site.boundary, part.within(0.0, 0.3), name=name)
     clock.stop("fit")
-    part.within(0.5, 0.5)("STEP and read-back", 0.0)
+    offdata = examine(surface, part.within(0.3, 0.6))
+    clock.stop("examination")
+    part.within(0.6, 0.6)("STEP and read-back", 0.0)
     path = stem.with_name(stem.name + ".step")
     back = write_step({name: surface}, path)[name]
     clock.stop("STEP and read-back")
-    part.within(0.7, 0.7)("pictures", 0.0)
+    part.within(0.75, 0.75)("pictures", 0.0)
     storage = equal_accuracy(surface, settings.interior_tolerance)
-    result = HorizonResult(surface, site, back, storage, path.stat().st_size)
-    pictures = draw(result)
+    result = HorizonResult(surface, site, back, storage, path.stat().st_size, offdata=offdata)
+    pictures = draw(result, language)
+    write_picture(result, pictures, stem.with_name(stem.name + ".png"), language)
     clock.stop("pictures")
-    part.within(0.95, 0.95)("report", 0.0)
     result = replace(result, seconds=clock.seconds)
-    write_picture(result, pictures, stem.with_name(stem.name + ".png"))
-    write_report(result, pictures, stem.with_name(stem.name + "_report.html"), warning=warning)
     write_residuals(result, stem.with_name(stem.name + "_residuals.csv"))
     write_json(result, stem.with_name(stem.name + ".json"))
-    return result
+    return result, pictures.images
 
 
 class _Clock:
@@ -150,14 +184,49 @@ class _Clock:
         self._since = now
 
 
-def _site(results: Sequence[HorizonResult], stems: Mapping[str, str], out: Path, warning: str) -> list[str]:
-    from geofit.report.html import write_site_report
-    from geofit.report.pictures import write_site_picture
+def _orders(results: Sequence[HorizonResult]) -> tuple[tuple[Order, ...] | None, str]:
+    """Compare the horizons of the site's order that were fitted; None and the reason where that is not possible."""
+    from geofit.order import orders
 
-    picture = out / "site.png"
-    missing = write_site_picture(results, picture)
-    write_site_report(results, stems, out / "report.html", picture=None if missing else picture, warning=warning)
-    return [missing] if missing else []
+    site = results[0].site
+    surfaces = {result.name: result.surface for result in results}
+    sequence = [name for name in site.order if name in surfaces]
+    if site.order and len(sequence) < 2:
+        return None, ""
+    try:
+        return orders(surfaces, sequence, site.ground), ""
+    except SettingsError as error:
+        return None, f"The order of the horizons was not examined: {error}"
+
+
+def _write_report(
+    report: AccuracyReport,
+    results: Sequence[HorizonResult],
+    images: Mapping[str, bytes],
+    out: Path,
+    language: Language,
+    warning: str,
+    pdf: bool,
+) -> str:
+    """Write the report in its forms; return why there are no pictures in space, or an empty text."""
+    from geofit.report.accuracy_report import write_json
+    from geofit.report.chapters import document
+    from geofit.report.html import write_html
+    from geofit.report.pictures import draw_site
+
+    whole = draw_site(results, language)
+    pages = document(report, language, missing_picture=whole.missing, warning=warning)
+    pictures = {**images, **whole.images}
+    for data in whole.images.values():
+        with replacing(out / "site.png") as part:
+            part.write_bytes(data)
+    write_json(report, out / "report.json")
+    write_html(pages, pictures, out / "report.html")
+    if pdf:
+        from geofit.report.pdf import write_pdf
+
+        write_pdf(pages, pictures, out / "report.pdf")
+    return whole.missing
 
 
 def _write_issues(site: Site, out: Path) -> None:

@@ -79,10 +79,27 @@ def fitted(tmp_path_factory) -> Path:
 def test_a_fit_leaves_every_file_whole(fitted):
     names = sorted(path.name for path in (fitted / "out").iterdir())
     assert names == [
-        "T3_T2.json", "T3_T2.png", "T3_T2.step", "T3_T2_report.html", "T3_T2_residuals.csv",
-        "import_issues.csv", "report.html", "site.png",
+        "T3_T2.json", "T3_T2.png", "T3_T2.step", "T3_T2_residuals.csv",
+        "import_issues.csv", "report.html", "report.json", "site.png",
     ]  # fmt: skip
     assert "END-ISO-10303-21;" in (fitted / "out" / "T3_T2.step").read_text(encoding="utf-8")[-200:]
+
+
+def test_report_writes_html_pdf_and_json_of_one_run(picks, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    code, _, err = run(monkeypatch, capsys, "report", picks, "--lang", "en", "--out", tmp_path / "o")
+    assert code == 0, err
+    data = json.loads((tmp_path / "o" / "report.json").read_text(encoding="utf-8"))
+    assert (data["date"], data["horizons"][0]["verdict"]) == ("2023-11-14", "PASS")
+    assert data["horizons"][0]["off_data"]["left_out"]
+    assert data["horizons"][0]["read_back"]["valid"] is True
+    digest = hashlib.sha256((tmp_path / "o" / "T3_T2.step").read_bytes()).hexdigest()
+    assert data["horizons"][0]["read_back"]["sha256"] == digest
+    assert (tmp_path / "o" / "report.pdf").read_bytes().startswith(b"%PDF-")
+    assert "2023-11-14" in (tmp_path / "o" / "report.html").read_text(encoding="utf-8")
+    code, _, err = run(monkeypatch, capsys, "report", picks, "--lang", "fr", "--out", tmp_path / "p")
+    assert code == 2
+    assert "zh" in err
 
 
 def test_the_json_agrees_with_the_residual_table_and_the_files(fitted):

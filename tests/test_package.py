@@ -19,17 +19,25 @@ ROOT = Path(__file__).resolve().parents[1]
 #: Floors of docs/architecture.md, the lowest first. A room imports from its own floor and those below.
 FLOORS = (
     ("accuracy", "errors", "files", "offdata", "points", "progress", "settings", "site", "words"),
-    ("bspline", "frame", "tensor"),
+    ("blocks", "bspline", "folds", "frame", "kriging", "tensor", "thinplate"),
     ("surface",),
     ("cells", "distance", "elevation"),
-    ("check", "clip", "contours", "cut", "isolines", "mesh", "occ", "sampling", "seams", "storage", "trim"),
+    (
+        "aboveground", "check", "clip", "contours", "cut", "dips", "facets", "given", "isolines", "lattice", "loops",
+        "mesh", "occ", "oscillation", "overlap", "relief", "residual_tests", "sampling", "seams", "selfcross", "shape",
+        "storage", "trend",
+        "trim", "zero_lines",
+    ),
+    ("order",),
     (
         "adjust", "assemble", "chart", "conflicts", "core", "field", "fold", "knots", "net", "partition", "periphery",
         "sections", "skin",
     ),
     ("model", "stitch"),
+    ("calibration", "crossval", "deletion", "drilling", "outliers", "posterior", "robust", "spread"),
     ("pipeline",),
-    ("handwork",),
+    ("examine", "refits"),
+    ("faults", "handwork", "repair"),
     ("io", "sample"),
     ("report",),
     ("deliver", "exporting", "importing"),
@@ -37,13 +45,14 @@ FLOORS = (
     ("__main__", "gui"),
 )  # fmt: skip
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
-#: Methods of Site and HorizonSurface that lead upwards: lazily, by design of the public interface.
+#: Methods of Site and HorizonSurface that lead upwards, lazily, by design of the public interface; `geofit gui`.
 UPWARDS = {
     ("surface", "elevation"),
     ("surface", "distance"),
     ("surface", "stitch"),
     ("surface", "io"),
     ("surface", "handwork"),
+    ("cli", "gui"),
 }
 #: Who alone may import these, at the named places.
 RESERVED = {
@@ -54,6 +63,7 @@ RESERVED = {
     "pyvista": ("geofit/report/scene.py", "gui/"),
     "vtkmodules": ("geofit/report/scene.py", "gui/"),
     "matplotlib": ("geofit/report/", "gui/"),
+    "fpdf": ("geofit/report/pdf.py", "geofit/report/pdf_table.py"),
     "typer": ("geofit/cli.py", "geofit/console.py"),
     "rich": ("geofit/cli.py", "geofit/console.py"),
 }
@@ -124,6 +134,30 @@ def test_the_folder_io_never_shadows_the_standard_library(where, tmp_path):
     )
     assert python(code, cwd) == "ok"
     assert python(code, cwd, "-I") == "ok"
+
+
+def test_everything_but_the_windows_works_without_their_packages(tmp_path):
+    code = (
+        "import importlib, importlib.abc, pkgutil, sys\n"
+        "class Blocked(importlib.abc.MetaPathFinder):\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name.split('.')[0] in ('PySide6', 'shiboken6', 'pyvistaqt', 'qtpy'):\n"
+        "            raise ModuleNotFoundError(name)\n"
+        "sys.meta_path.insert(0, Blocked())\n"
+        "import geofit, geofit.io, geofit.gui.document\n"
+        "for package in (geofit, geofit.io, geofit.gui.document):\n"
+        "    for module in pkgutil.walk_packages(package.__path__, package.__name__ + '.'):\n"
+        "        if not module.name.startswith('geofit.gui.') or module.name.startswith('geofit.gui.document'):\n"
+        "            if not module.name.endswith('__main__'):\n"
+        "                importlib.import_module(module.name)\n"
+        "from geofit.gui.document.document import Document\n"
+        "from geofit.gui.app import main\n"
+        "sys.argv = ['geofit-gui']\n"
+        "print(main([]))\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.stdout.split() == ["2"], done.stderr
+    assert 'pip install "geofit[gui]"' in done.stderr
 
 
 def test_every_module_stands_on_a_floor():

@@ -1,13 +1,17 @@
-"""Fonts for the pictures: one that has the Chinese characters of names, where the machine has one."""
+"""Fonts for pictures and PDF: one that has the Chinese characters of names, where the machine has one."""
 
 from __future__ import annotations
 
 import unicodedata
 import warnings
 from collections.abc import Iterable
+from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
-__all__ = ["families", "missing_font"]
+from geofit.errors import MissingDependencyError
+
+__all__ = ["NO_CHINESE_FONT", "FontFile", "PdfFonts", "families", "missing_font", "pdf_fonts"]
 
 #: Fonts with Chinese characters on Windows, macOS and Linux, the calmer first.
 CHINESE = (
@@ -16,6 +20,11 @@ CHINESE = (
     "Hiragino Sans GB", "Heiti SC", "STHeiti", "Noto Sans CJK JP", "WenQuanYi Micro Hei", "WenQuanYi Zen Hei",
     "SimHei", "SimSun", "Droid Sans Fallback", "Arial Unicode MS", "Noto Serif CJK SC", "AR PL UMing CN",
 )  # fmt: skip
+_INSTALL = (
+    "Install one (Debian and Ubuntu: apt-get install fonts-noto-cjk; Windows has Microsoft YaHei among its optional "
+    "features) and run again."
+)
+NO_CHINESE_FONT = f"A Chinese report needs a font with Chinese characters, and this machine has none. {_INSTALL}"
 
 
 @lru_cache(maxsize=1)
@@ -49,7 +58,76 @@ def missing_font(texts: Iterable[str]) -> str | None:
     if wide is None or _chinese() is not None:
         return None
     return (
-        f"No font on this machine has the characters of '{wide}': the pictures show boxes in their place. "
-        "Install one (Debian and Ubuntu: apt-get install fonts-noto-cjk) and run again. "
-        "Tables and text are complete."
+        f"No font on this machine has the characters of '{wide}': pictures and PDF show boxes in their place. "
+        f"{_INSTALL} Tables and text of the HTML and the JSON are complete."
     )
+
+
+@dataclass(frozen=True)
+class FontFile:
+    """A font in a file; ``index`` counts the fonts of a collection."""
+
+    path: str
+    index: int = 0
+
+
+@dataclass(frozen=True)
+class PdfFonts:
+    """The fonts that a PDF embeds; ``signs`` has what the text font may lack (✗, Greek), ``mono`` is for hashes."""
+
+    regular: FontFile
+    bold: FontFile
+    signs: FontFile
+    signs_bold: FontFile
+    mono: FontFile
+
+
+@lru_cache(maxsize=2)
+def pdf_fonts(chinese: bool) -> PdfFonts:
+    """Return the fonts for a PDF: the Chinese font where there is one, else what matplotlib brings.
+
+    Raises
+    ------
+    MissingDependencyError
+        If ``chinese`` characters are needed and no font has them.
+    """
+    signs, signs_bold = _shipped("DejaVu Sans", "normal"), _shipped("DejaVu Sans", "bold")
+    mono = _shipped("DejaVu Sans Mono", "normal")
+    family = _chinese()
+    if family is None:
+        if chinese:
+            raise MissingDependencyError(NO_CHINESE_FONT)
+        return PdfFonts(signs, signs_bold, signs, signs_bold, mono)
+    faces = _faces(family)
+    regular = min(faces, key=lambda face: abs(face[0] - 400))[1]
+    bold = min(faces, key=lambda face: abs(face[0] - 700))[1]
+    return PdfFonts(regular, bold, signs, signs_bold, mono)
+
+
+def _shipped(family: str, weight: str) -> FontFile:
+    """Return a font of matplotlib's own."""
+    from matplotlib import cbook
+
+    name = family.replace(" ", "") + {"normal": "", "bold": "-Bold"}[weight]
+    return FontFile(str(cbook._get_data_path("fonts", "ttf", f"{name}.ttf")))
+
+
+def _faces(family: str) -> list[tuple[int, FontFile]]:
+    """Return the weights of an upright family and their files."""
+    from matplotlib import font_manager
+
+    entries = [e for e in font_manager.fontManager.ttflist if e.name == family and e.style == "normal"]
+    return [(int(e.weight), FontFile(e.fname, _index(e, family))) for e in entries if isinstance(e.weight, int)]
+
+
+def _index(entry: Any, family: str) -> int:
+    """Return which font of a collection an entry is; matplotlib before 3.11 knows the first one only."""
+    index = getattr(entry, "index", None)
+    if index is not None:
+        return int(index)
+    if not entry.fname.casefold().endswith((".ttc", ".otc")):
+        return 0
+    from fontTools.ttLib import TTCollection
+
+    names = [font["name"].getDebugName(1) for font in TTCollection(entry.fname, lazy=True).fonts]
+    return names.index(family) if family in names else 0

@@ -1,21 +1,24 @@
-"""The pictures of a run as files and as data for the report."""
+"""The pictures of a run: those that the report holds, and those that stand beside it as files."""
 
 from __future__ import annotations
 
-import base64
 import io
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from geofit.errors import MissingDependencyError
 from geofit.files import replacing
-from geofit.report import plots, scene
+from geofit.report import digits, plots, scene
+from geofit.report.gather import SITE_PICTURE, picture_name
+from geofit.report.histogram import histogram, normal_plot
+from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
 from geofit.report.style import FAIL, INK, MUTED, PASS, drawing
+from geofit.report.uncertainty import uncertainty_map
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,44 +26,71 @@ if TYPE_CHECKING:
 
     from geofit.report.scene import Scene
 
-__all__ = ["Pictures", "draw", "write_picture", "write_site_picture"]
+__all__ = ["Pictures", "draw", "draw_site", "write_picture"]
 
-#: Without this, the file would carry the version of matplotlib.
-_METADATA = {"Software": None}
-#: Width of the report's pictures, inches: what an A4 page has between its margins, with small type.
-WIDTH = 7.8
+#: Width of the report's pictures, inches: what an A4 page has between its margins; and their dots an inch.
+WIDTH, DOTS = 6.85, 200
+#: Type of those pictures, points: that of the page around them.
+TYPE = 8.0
 
 
 @dataclass(frozen=True)
 class Pictures:
-    """The pictures of one horizon as data addresses, and the scene; ``missing`` says why there is none."""
+    """Pictures as PNG by their names in the report, and the scene; ``missing`` says why there is none."""
 
-    plan: str
-    deviation: str
-    histogram: str
-    space: str
+    images: Mapping[str, bytes] = field(repr=False)
     scene: Scene | None
     missing: str
 
 
-def draw(result: HorizonResult) -> Pictures:
-    """Draw all pictures of a horizon."""
+def draw(result: HorizonResult, t: Language = EN) -> Pictures:
+    """Draw all pictures of a horizon, with words in a language."""
     try:
         view: Scene | None = scene.horizon_scene(result)
         missing = ""
     except MissingDependencyError as error:
         view, missing = None, str(error)
-    return Pictures(
-        plan=_flat(plots.site_plan, result, _height(plots.map_shape(result, plan=True))),
-        deviation=_flat(plots.deviation_map, result, _height(plots.map_shape(result, plan=False))),
-        histogram=_flat(plots.histogram, result, 2.6),
-        space="" if view is None else _space(view),
-        scene=view,
-        missing=missing,
-    )
+    flat = {
+        "plan": _map(plots.site_plan, result, t, plots.map_shape(result, plan=True)),
+        "deviation": _map(plots.deviation_map, result, t, plots.map_shape(result, plan=False)),
+        "residuals": _residuals(result, t),
+    }
+    if view is not None:
+        flat["view"] = _space(view, t)
+    if result.offdata is not None and result.offdata.uncertainty is not None:
+        field = result.offdata.uncertainty
+        flat["uncertainty"] = _map(uncertainty_map, result, t, float(np.ptp(field.y) / np.ptp(field.x)))
+    return Pictures({picture_name(what, result.name): data for what, data in flat.items()}, view, missing)
 
 
-def write_picture(result: HorizonResult, pictures: Pictures, path: Path) -> None:
+def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
+    """Draw all horizons of a site with its holes."""
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch as Swatch
+
+    try:
+        view = scene.site_scene([r.surface for r in results], results[0].site.holes)
+    except MissingDependencyError as error:
+        return Pictures({}, None, str(error))
+    with drawing(TYPE):
+        tall = min(WIDTH * view.image.shape[0] / view.image.shape[1], 3.7)
+        height = tall + 0.45
+        figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
+        axes = figure.add_axes((0, 0.45 / height, 1, tall / height))
+        axes.imshow(view.image, interpolation="antialiased")
+        axes.set_axis_off()
+        swatches = [
+            Swatch(facecolor=scene.SEVERAL[i % len(scene.SEVERAL)], label=r.name) for i, r in enumerate(results)
+        ]
+        figure.legend(
+            handles=swatches, loc="lower left", ncols=min(len(swatches), 6), handlelength=1.2, borderaxespad=0,
+            bbox_to_anchor=(0, 0.2 / height), columnspacing=1.4,
+        )  # fmt: skip
+        figure.text(0, 0.02 / height, tell(view.caption, t), size=7.5, color=MUTED)
+        return Pictures({SITE_PICTURE: _png(figure)}, view, "")
+
+
+def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Language = EN) -> None:
     """Write the one picture that shows a horizon: in space, and its deviations."""
     from matplotlib.figure import Figure
 
@@ -73,91 +103,86 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path) -> None
         body = (height - 1.15) / height
         left = figure.add_axes((0.025, 0.12, 0.46, body - 0.12), anchor="N")
         if view is None:
-            left.text(0.5, 0.5, "no OpenGL, no 3D picture", ha="center", color=MUTED, transform=left.transAxes)
+            left.text(0.5, 0.5, t("no OpenGL, no 3D picture"), ha="center", color=MUTED, transform=left.transAxes)
             left.set_axis_off()
         else:
-            plots.space(left, view)
-        below = 0.6 / height
-        right = figure.add_axes((0.555, below, 0.32, body - below - 0.3 / height))
-        plots.deviation_map(right, result)
-        top = 1 - 0.5 / height
+            plots.space(left, view, t)
+        foot = 0.6 / height
+        right = figure.add_axes((0.555, foot, 0.32, body - foot - 0.3 / height))
+        plots.deviation_map(right, result, t)
+        top, second = 1 - 0.5 / height, 1 - 0.83 / height
+        line = t(
+            "{points} points, {core} in the core · σ {sigma} · largest |d| {largest}",
+            points=a.n,
+            core=int(result.core.sum()),
+            sigma=digits.equals(a.sigma),
+            largest=digits.equals(a.max_abs),
+        )
         figure.text(0.025, top, result.name, size=17, weight="bold", color=INK)
-        line = f"{a.n} points, {int(result.core.sum())} in the core · σ = {a.sigma:.3f} m"
-        line += f" · largest |d| = {a.max_abs:.2f} m"
-        figure.text(0.025, 1 - 0.83 / height, line + (f" · {_scale(view)}" if view else ""), color=MUTED, size=10)
-        figure.text(0.555, top, a.verdict, size=17, weight="bold", color=PASS if a.passed else FAIL)
-        relation = "is below" if a.passed else "is not below"
-        failed = [check.name for check in a.checks if check.passed is False]
-        rest = f" · does not hold: {', '.join(failed)}" if failed else ""
-        figure.text(0.555, 1 - 0.83 / height, f"σ {relation} ε = {a.epsilon:g} m{rest}", color=MUTED, size=10)
-        _save(figure, path)
-
-
-def write_site_picture(results: Sequence[HorizonResult], path: Path) -> str:
-    """Write the picture of all horizons of a site; return why there is none, or an empty text."""
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Patch as Swatch
-
-    try:
-        view = scene.site_scene([r.surface for r in results], results[0].site.holes)
-    except MissingDependencyError as error:
-        return str(error)
-    with drawing():
-        width = 11.5
-        height = (width - 0.6) * view.image.shape[0] / view.image.shape[1] + 1.1
-        figure = Figure(figsize=(width, height), dpi=140)
-        axes = figure.add_axes((0.3 / width, 0.2 / height, 1 - 0.6 / width, 1 - 1.1 / height))
-        axes.imshow(view.image, interpolation="antialiased")
-        axes.set_axis_off()
-        figure.text(0.3 / width, 1 - 0.45 / height, results[0].site.name or "Site", size=17, weight="bold")
-        figure.text(0.3 / width, 1 - 0.75 / height, view.caption, size=10, color=MUTED)
-        swatches = [
-            Swatch(facecolor=scene.SEVERAL[i % len(scene.SEVERAL)], label=r.name) for i, r in enumerate(results)
-        ]
-        figure.legend(
-            handles=swatches, loc="upper right", fontsize=10, ncols=min(len(swatches), 6), handlelength=1.2,
-            bbox_to_anchor=(1 - 0.25 / width, 1 - 0.2 / height),
-        )  # fmt: skip
-        _save(figure, path)
-    return ""
-
-
-def _scale(view: Scene) -> str:
-    return view.caption.rstrip(".").replace("Seen", "seen")
-
-
-def _height(shape: float) -> float:
-    """Height of a flat picture in inches: the map is about 5.2 wide, axis labels take 0.9."""
-    return float(np.clip(5.2 * shape + 0.9, 2.4, 7.0))
-
-
-def _flat(plot: Callable[[Axes, HorizonResult], None], result: HorizonResult, height: float) -> str:
-    from matplotlib.figure import Figure
-
-    with drawing():
-        figure = Figure(figsize=(WIDTH, height), dpi=190)
-        plot(figure.add_axes((0.115, 0.52 / height, 0.635, 1 - 0.85 / height)), result)
-        return _address(figure)
-
-
-def _space(view: Scene) -> str:
-    from matplotlib.figure import Figure
-
-    with drawing():
-        wide, tall = view.image.shape[1], view.image.shape[0]
-        picture = 0.96 * WIDTH * tall / wide
-        height = picture * (1 + plots.BELOW) + 0.35
-        figure = Figure(figsize=(WIDTH, height), dpi=190)
-        plots.space(figure.add_axes((0.02, 1 - picture / height, 0.96, picture / height)), view)
-        return _address(figure)
-
-
-def _address(figure: Figure) -> str:
-    stream = io.BytesIO()
-    figure.savefig(stream, format="png", metadata=_METADATA)
-    return "data:image/png;base64," + base64.b64encode(stream.getvalue()).decode("ascii")
-
-
-def _save(figure: Figure, path: Path) -> None:
+        figure.text(0.025, second, line, color=MUTED, size=10)
+        verdict, colour = (t("PASS"), PASS) if a.passed else (t("FAIL"), FAIL)
+        figure.text(0.555, top, verdict, size=17, weight="bold", color=colour)
+        below, above = (
+            t("σ is below ε = {epsilon:g} m", epsilon=a.epsilon),
+            t("σ is not below ε = {epsilon:g} m", epsilon=a.epsilon),
+        )
+        relation = below if a.passed else above
+        failed = ", ".join(tell(check.name, t) for check in a.checks if check.passed is False)
+        rest = " · " + t("does not hold: {names}", names=failed) if failed else ""
+        figure.text(0.555, second, relation + rest, color=MUTED, size=10)
+        data = _png(figure, margin=40)
     with replacing(path) as part:
-        figure.savefig(part, format="png", metadata=_METADATA)
+        part.write_bytes(data)
+
+
+def _map(
+    plot: Callable[[Axes, HorizonResult, Language], None], result: HorizonResult, t: Language, shape: float
+) -> bytes:
+    """Draw a map: about 4.5 inches wide, its legend beside it."""
+    from matplotlib.figure import Figure
+
+    height = float(np.clip(4.3 * shape + 0.75, 2.4, 4.0))
+    with drawing(TYPE):
+        figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
+        plot(figure.add_axes((0.115, 0.45 / height, 0.63, 1 - 0.7 / height)), result, t)
+        return _png(figure)
+
+
+def _residuals(result: HorizonResult, t: Language) -> bytes:
+    from matplotlib.figure import Figure
+
+    height = 2.8
+    with drawing(TYPE):
+        figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
+        bottom, tall = 1.0 / height, 1 - 1.25 / height
+        histogram(figure.add_axes((0.075, bottom, 0.39, tall)), result, t)
+        normal_plot(figure.add_axes((0.575, bottom, 0.415, tall)), result, t)
+        return _png(figure)
+
+
+def _space(view: Scene, t: Language) -> bytes:
+    from matplotlib.figure import Figure
+
+    with drawing(TYPE):
+        shape = view.image.shape[0] / view.image.shape[1]
+        tall = min(WIDTH * shape, 3.0)
+        height = tall * (1 + plots.BELOW) + 0.32
+        figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
+        plots.space(figure.add_axes((0.0, 1 - tall / height, 1.0, tall / height), anchor="NW"), view, t)
+        return _png(figure)
+
+
+def _png(figure: Figure, margin: int = 0) -> bytes:
+    """Return a figure as PNG: no transparency, no version of matplotlib, no white rows above and below."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from PIL import Image
+
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.draw()
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3]
+    drawn = np.flatnonzero((pixels < 250).any(axis=(1, 2)))
+    if drawn.size:
+        pixels = pixels[max(drawn[0] - margin, 0) : drawn[-1] + 1 + margin]
+    stream = io.BytesIO()
+    Image.fromarray(pixels).save(stream, format="PNG", compress_level=6)
+    return stream.getvalue()

@@ -1,33 +1,39 @@
-"""The flat pictures of a report: site plan, deviation map, histogram. Matplotlib objects, no global state."""
+"""The maps of a report: site plan and deviations. Matplotlib objects, no global state."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.report.histogram import histogram
+from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
-from geofit.report.style import CORE, FAIL, INK, LINE, MUTED, bands, kind_style, quiet
+from geofit.report.style import CORE, INK, LINE, MUTED, bands, kind_style, quiet
 from geofit.report.view import choose_view, rims, trimmed
+from geofit.site import Hole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from geofit.report.scene import Scene
 
-__all__ = ["deviation_map", "histogram", "map_shape", "site_plan", "space"]
+__all__ = ["deviation_map", "histogram", "legend", "map_axes", "map_shape", "site_plan", "space"]
 
 Floats = NDArray[np.float64]
 
 #: More points than this are drawn as a rasterised layer.
 MANY = 5_000
+#: Width and height of a hole's name as a share of the map: of names that would overlap the first is drawn.
+LABEL = (0.11, 0.03)
 #: How far below a picture in space its scale stands, as a share of the picture's height.
 BELOW = 0.1
 
 
-def space(axes: Axes, scene: Scene, label: str = "Elevation, m") -> None:
-    """Show the picture in space with the scale of its colours."""
+def space(axes: Axes, scene: Scene, t: Language = EN) -> None:
+    """Show the picture in space with the scale of its colours, and say from where it is seen."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -36,11 +42,12 @@ def space(axes: Axes, scene: Scene, label: str = "Elevation, m") -> None:
     axes.imshow(scene.image, interpolation="antialiased")
     axes.set_axis_off()
     # Below the picture, where no surface stands.
-    scale = axes.inset_axes((0.0, -BELOW, 0.26, 0.022))
+    scale = axes.inset_axes((0.02, -BELOW, 0.26, 0.022))
     colours = ScalarMappable(Normalize(*scene.limits), elevation_colours())
     bar = axes.figure.colorbar(colours, cax=scale, ticks=_ticks(*scene.limits), orientation="horizontal")
     bar.outline.set_visible(False)
-    scale.set_title(label, fontsize=8, fontweight="normal", color=MUTED, pad=3)
+    scale.set_title(t("Elevation, m"), fontsize=7.5, fontweight="normal", color=MUTED, pad=3)
+    axes.text(1.0, -BELOW, tell(scene.caption, t), size=7.5, color=MUTED, ha="right", transform=axes.transAxes)
     scale.tick_params(length=0, pad=2)
 
 
@@ -52,34 +59,35 @@ def map_shape(result: HorizonResult, *, plan: bool) -> float:
     return float(height / width)
 
 
-def site_plan(axes: Axes, result: HorizonResult) -> None:
+def site_plan(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
     """Draw what the horizon was fitted to: points by kind, core, patches, study area, section lines."""
     surface, site, core = result.surface, result.site, result.core
     xyz = surface.points.xyz
     for section in site.sections:
         axes.plot(*section.line.T, color=LINE, lw=0.9, zorder=1)
     if site.boundary is not None:
-        _closed(axes, site.boundary, color=MUTED, lw=1.0, ls=(0, (6, 3)), label="study area", zorder=2)
+        _closed(axes, site.boundary, color=MUTED, lw=1.0, ls=(0, (6, 3)), label=t("study area"), zorder=2)
     for rim in rims(surface, steps=400).values():
         rim[trimmed(surface, rim[:, 0], rim[:, 1]) < -1e-6] = np.nan
         axes.plot(rim[:, 0], rim[:, 1], color=LINE, lw=0.8, zorder=1)
     if surface.partition is not None and surface.partition.corners is not None:
         corners = np.asarray(surface.partition.corners)
         axes.fill(*corners.T, facecolor=CORE, alpha=0.07, edgecolor="none", zorder=1)
-        _closed(axes, corners, color=CORE, lw=1.6, label=f"core ({int(core.sum())} points)", zorder=3)
+        _closed(axes, corners, color=CORE, lw=1.6, label=t("core ({count} points)", count=int(core.sum())), zorder=3)
+    _holes(axes, site.holes, t)
     for kind in sorted(set(surface.points.kind.tolist())):
         of = surface.points.kind == kind
         marker, colour = kind_style(kind)
         axes.scatter(
             xyz[of, 0], xyz[of, 1], s=9 if marker == "." else 16, marker=marker, color=colour, lw=0, zorder=4,
-            label=f"{kind} ({int(of.sum())})", rasterized=len(xyz) > MANY,
+            label=f"{tell(kind, t)} ({int(of.sum())})", rasterized=len(xyz) > MANY,
         )  # fmt: skip
-    axes.set_title("Site plan")
-    _map_axes(axes, "Easting, m", "Northing, m")
-    _legend(axes)
+    axes.set_title(t("Site plan"))
+    map_axes(axes, t("Easting, m"), t("Northing, m"))
+    legend(axes)
 
 
-def deviation_map(axes: Axes, result: HorizonResult) -> None:
+def deviation_map(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
     """Draw every residual in fixed tolerance bands: colour and marker tell the side, size the distance."""
     surface, a = result.surface, result.accuracy
     view = choose_view(surface)
@@ -100,8 +108,8 @@ def deviation_map(axes: Axes, result: HorizonResult) -> None:
             _residuals(axes, place[of], ".", band.below, band.area, f"{band.label} ({int(of.sum())})", 3)
             continue
         for side, marker, colour, word in (
-            (d < 0, "v", band.below, "below"),
-            (d > 0, "^", band.above, "above"),
+            (d < 0, "v", band.below, t("below")),
+            (d > 0, "^", band.above, t("above")),
         ):
             both = of & side
             _residuals(
@@ -113,38 +121,26 @@ def deviation_map(axes: Axes, result: HorizonResult) -> None:
                 f"{band.label} {word} ({int(both.sum())})",
                 3 + i,
             )
-    axes.set_title("Deviation of every point")
-    _map_axes(axes, *view.labels)
-    _legend(axes)
+    axes.set_title(t("Deviation of every point"))
+    map_axes(axes, *(tell(label, t) for label in view.labels))
+    legend(axes)
 
 
-def histogram(axes: Axes, result: HorizonResult) -> None:
-    """Draw how many residuals lie where, with the control error as bounds; exact core points are left out."""
-    a, settings = result.accuracy, result.surface.settings
-    d = a.residuals[~result.core]
-    axes.set_title("Residuals of the approximated points")
-    if not len(d):
-        axes.text(
-            0.5, 0.5, "Every point is interpolated exactly;\nno residual to count.",
-            ha="center", va="center", color=MUTED, transform=axes.transAxes,
-        )  # fmt: skip
-        axes.set_axis_off()
-        return
-    widest = max(float(np.abs(d).max()), settings.interior_tolerance)
-    edges = np.linspace(-widest, widest, 42)
-    axes.hist(d, bins=list(edges), color="#8fa9bd", edgecolor="white", lw=0.5, zorder=2)
-    limits = [(settings.interior_tolerance, MUTED, "dashed", "interior tolerance")]
-    if a.epsilon <= widest * 1.5:
-        limits.append((a.epsilon, FAIL, "solid", "control error ε"))
-    for value, colour, dashes, label in limits:
-        for sign in (-1, 1):
-            axes.axvline(sign * value, color=colour, lw=1.1, ls=dashes, zorder=3, label=label if sign > 0 else None)
-    axes.set_xlabel("d, m (below the surface < 0 < above)")
-    axes.set_ylabel("points")
-    axes.grid(axis="y", color=LINE, lw=0.6, zorder=0)
-    axes.set_axisbelow(True)
-    quiet(axes)
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, labelcolor=INK)
+def _holes(axes: Axes, holes: Sequence[Hole], t: Language) -> None:
+    """Draw where holes and adits run in plan, and their names where there is room for them."""
+    named: list[Floats] = []
+    room = np.ptp([hole.xyz[0, :2] for hole in holes], axis=0).max() if holes else 0.0
+    for i, hole in enumerate(holes):
+        label = t("holes and adits ({count})", count=len(holes)) if i == 0 else None
+        axes.plot(hole.xyz[:, 0], hole.xyz[:, 1], color=MUTED, lw=0.7, zorder=2)
+        axes.plot(*hole.xyz[0, :2], "o", ms=4.5, mfc="none", mec=MUTED, mew=0.7, ls="none", label=label, zorder=2)
+        collar = hole.xyz[0, :2]
+        if not any((np.abs(collar - other) < room * np.array(LABEL)).all() for other in named):
+            named.append(collar)
+            axes.annotate(
+                hole.name, (collar[0], collar[1]), xytext=(3, 2), textcoords="offset points", size=4.8, color=MUTED,
+                annotation_clip=True, zorder=3,
+            )  # fmt: skip
 
 
 def _residuals(axes: Axes, place: Floats, marker: str, colour: str, area: float, label: str, level: int) -> None:
@@ -183,7 +179,8 @@ def _closed(axes: Axes, corners: Floats, **style: object) -> None:
     axes.plot(ring[:, 0], ring[:, 1], **style)  # type: ignore[arg-type]
 
 
-def _map_axes(axes: Axes, xlabel: str, ylabel: str) -> None:
+def map_axes(axes: Axes, xlabel: str, ylabel: str) -> None:
+    """Give a map equal scales and round coordinates."""
     from matplotlib.ticker import FuncFormatter, MaxNLocator
 
     axes.set_aspect("equal", adjustable="box", anchor="NW")
@@ -198,5 +195,6 @@ def _map_axes(axes: Axes, xlabel: str, ylabel: str) -> None:
     quiet(axes)
 
 
-def _legend(axes: Axes) -> None:
+def legend(axes: Axes) -> None:
+    """Put the legend beside a map."""
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, labelcolor=INK, handletextpad=0.5)

@@ -14,11 +14,12 @@ from numpy.typing import NDArray
 import geofit
 from geofit.accuracy import Accuracy, ReadBack, Seam, plain
 from geofit.files import replacing
+from geofit.offdata import OffData
 from geofit.site import ImportIssue, Site
 from geofit.storage import Storage
 from geofit.surface import HorizonSurface
 
-__all__ = ["HorizonResult", "horizon_data", "write_json"]
+__all__ = ["HorizonResult", "horizon_data", "sigma_of", "write_json"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +40,8 @@ class HorizonResult:
         Size of the STEP file.
     seconds : mapping of str to float
         Time of each stage.
+    offdata : OffData or None
+        The surface away from its data; None: not examined.
     """
 
     surface: HorizonSurface
@@ -47,6 +50,7 @@ class HorizonResult:
     storage: Storage | None = None
     step_bytes: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
+    offdata: OffData | None = None
 
     @property
     def name(self) -> str:
@@ -107,7 +111,7 @@ def horizon_data(result: HorizonResult) -> dict[str, Any]:
         "core": {"n": int(core.sum()), "max_abs": d[core].max() if core.any() else None},
         "periphery": {
             "n": int((~core).sum()),
-            "sigma": _sigma(out),
+            "sigma": sigma_of(out),
             "max_abs": out.max() if len(out) else None,
             "share_within_interior_tolerance": within.mean() if len(out) else None,
         },
@@ -159,7 +163,8 @@ def write_json(result: HorizonResult, path: Path) -> None:
         part.write_text(json.dumps(horizon_data(result), ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
 
 
-def _sigma(d: NDArray[np.float64]) -> float | None:
+def sigma_of(d: NDArray[np.float64]) -> float | None:
+    """Return sigma of eq. 3 over a part of the points, metres; None for less than two."""
     return float(np.sqrt((d**2).sum() / (len(d) - 1))) if len(d) > 1 else None
 
 

@@ -18,6 +18,7 @@ from geofit.report.style import kind_style
 from geofit.report.view import rims, trimmed
 from geofit.site import Hole
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 if TYPE_CHECKING:
     import pyvista
@@ -57,8 +58,9 @@ class Scene:
     @property
     def caption(self) -> str:
         """Direction and scale in words."""
-        scale = "true scale" if self.raised == 1 else f"heights × {self.raised}"
-        return f"Seen from the south-west, {scale}."
+        if self.raised == 1:
+            return said("Seen from the south-west, true scale.")
+        return said("Seen from the south-west, heights × {times}.", times=self.raised)
 
 
 def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -> Scene:

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["INK", "KIND_STYLE", "LINE", "MUTED", "PAPER", "Band", "bands", "drawing", "kind_style", "quiet"]
 
 INK, MUTED, LINE, PAPER = "#1c2733", "#5d6b7a", "#d4dae1", "#ffffff"
-CORE, PASS, FAIL, QUIET = "#0b5c8a", "#1b6e3c", "#a3271c", "#8795a3"
+CORE, PASS, FAIL, QUIET, WARNING = "#0b5c8a", "#1b6e3c", "#a3271c", "#8795a3", "#b2611b"
 
 #: Marker and colour of each kind of source; shapes differ, so that a black-and-white print still tells.
 KIND_STYLE = {
@@ -76,29 +76,29 @@ def bands(settings: FitSettings) -> tuple[Band, ...]:
 
 
 @contextmanager
-def drawing() -> Iterator[None]:
-    """Hold matplotlib's settings for one picture; a missing glyph is told of once, by the caller."""
+def drawing(size: float = 9.0) -> Iterator[None]:
+    """Hold matplotlib's settings for one picture, type in points; a missing glyph is told of once, by the caller."""
     import matplotlib as mpl
 
     # The names that matplotlib's types allow change with its release.
     settings: dict[Any, Any] = {
         "font.family": families(),
-        "font.size": 9.0,
+        "font.size": size,
         "text.color": INK,
         "axes.edgecolor": LINE,
         "axes.labelcolor": MUTED,
         "axes.linewidth": 0.8,
-        "axes.titlesize": 10.0,
+        "axes.titlesize": size + 1,
         "axes.titleweight": "bold",
         "axes.titlelocation": "left",
         "axes.titlepad": 8.0,
         "axes.unicode_minus": True,
         "xtick.color": MUTED,
         "ytick.color": MUTED,
-        "xtick.labelsize": 8.0,
-        "ytick.labelsize": 8.0,
+        "xtick.labelsize": size - 1,
+        "ytick.labelsize": size - 1,
         "legend.frameon": False,
-        "legend.fontsize": 8.0,
+        "legend.fontsize": size - 1,
         "figure.facecolor": PAPER,
         "savefig.facecolor": PAPER,
     }

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.surface import HorizonSurface, Patch
+from geofit.words import said
 
 __all__ = ["View", "choose_view", "rims", "trimmed"]
 
@@ -36,7 +37,7 @@ def choose_view(surface: HorizonSurface) -> View:
     normal = np.mean([_normals(patch) for patch in surface.patches], axis=0)
     dip = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), abs(normal[2])))
     if dip < STEEP:
-        return View(np.eye(3)[:2], np.zeros(3), ("Easting, m", "Northing, m"), "plan")
+        return View(np.eye(3)[:2], np.zeros(3), (said("Easting, m"), said("Northing, m")), "plan")
     strike = np.array([-normal[1], normal[0], 0.0])
     strike /= np.linalg.norm(strike)
     # Seen so that the strike runs to the right and towards the east (or the north).
@@ -47,7 +48,12 @@ def choose_view(surface: HorizonSurface) -> View:
     return View(
         np.stack([strike, [0.0, 0.0, 1.0]]),
         strike * along.min(),
-        (f"Along strike towards {azimuth:03.0f}°, m (mean dip {dip:.0f}°)", "Elevation, m"),
+        (
+            said(
+                "Along strike towards {azimuth:03.0f}°, m (mean dip {dip:.0f}°)", azimuth=float(azimuth), dip=float(dip)
+            ),
+            said("Elevation, m"),
+        ),
         "across the strike",
     )
 

@@ -1,0 +1,341 @@
+"""The accuracy report of a site as plain data: numbers, words and tuples; pictures are named, not held.
+
+What the JSON holds, and all that the HTML and the PDF are written from. None stands for what was not measured; a
+part that was not examined at all is None as a whole, and the reader is told so.
+"""
+
+from __future__ import annotations
+
+import json
+import types
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+from geofit.accuracy import plain
+from geofit.files import replacing
+
+__all__ = [
+    "AccuracyReport",
+    "CheckLine",
+    "ConflictLine",
+    "FileCheck",
+    "GroupLine",
+    "HorizonReport",
+    "InputFile",
+    "LeftOutLine",
+    "OffDataReport",
+    "OrderLine",
+    "OutlierLine",
+    "PatchLine",
+    "PointLine",
+    "RejectedRow",
+    "SeamLine",
+    "SuggestionLine",
+    "from_json",
+    "to_json",
+    "write_json",
+]
+
+Words = tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
+class PointLine:
+    """A data point and where it was read: coordinates and signed residual in metres."""
+
+    file: str
+    row: int
+    kind: str
+    source: str
+    x: float
+    y: float
+    z: float
+    patch: str
+    residual: float
+
+
+@dataclass(frozen=True)
+class GroupLine:
+    """Residuals of a part of the points; ``by`` is "kind", "hole", "section" or "patch"; metres."""
+
+    by: str
+    name: str
+    n: int
+    sigma: float
+    max_abs: float
+    mean: float
+
+
+@dataclass(frozen=True)
+class CheckLine:
+    """A question put to the surface or to the file; ``passed`` is None where it does not apply.
+
+    ``places`` are where it is worst, map coordinates in metres, worst first.
+    """
+
+    name: str
+    passed: bool | None
+    value: float | None
+    limit: float | None
+    unit: str
+    text: str
+    places: tuple[tuple[float, float, float], ...]
+
+
+@dataclass(frozen=True)
+class SeamLine:
+    """Largest gap (m) and angle (degrees) where two patches meet."""
+
+    first: str
+    second: str
+    gap: float
+    angle: float
+
+
+@dataclass(frozen=True)
+class PatchLine:
+    """A patch: its name, degrees and number of control points in both directions."""
+
+    name: str
+    degree: tuple[int, int]
+    control: tuple[int, int]
+
+
+@dataclass(frozen=True)
+class FileCheck:
+    """What OpenCASCADE found when it read the STEP file back; metres, ``bytes`` the file's size."""
+
+    file: str
+    sha256: str
+    bytes: int
+    faces: int
+    valid: bool
+    self_intersects: bool
+    sigma: float
+    max_abs: float
+    core_max_abs: float | None
+    free_edges: int
+    outline_edges: int
+    edge_tolerance: float
+    checks: tuple[CheckLine, ...]
+    seams: tuple[SeamLine, ...]
+
+
+@dataclass(frozen=True)
+class ConflictLine:
+    """Two points that contradict each other: which stayed, which gave way, by how much (m), and why."""
+
+    kept: str
+    dropped: str
+    difference: float
+    text: str
+
+
+@dataclass(frozen=True)
+class LeftOutLine:
+    """Cross-validation by one scheme ("hole", "section", "block"): errors in metres, shares in the 90 % band.
+
+    ``peers`` holds the root mean square error of other methods on the same folds, by name.
+    """
+
+    scheme: str
+    groups: int
+    points: int
+    rms: float
+    mean_abs: float
+    bias: float
+    max_abs: float
+    inside: float | None
+    inside_raw: float | None
+    peers: tuple[tuple[str, float | None], ...]
+
+
+@dataclass(frozen=True)
+class SuggestionLine:
+    """A place for a hole, in order of use: metres; the standard deviation before, and what this hole leaves."""
+
+    x: float
+    y: float
+    z: float | None
+    sd: float
+    mean_after: float
+    max_after: float
+
+
+@dataclass(frozen=True)
+class OutlierLine:
+    """A point that its neighbours do not bear out: left-out error, its standard deviation (m), their ratio."""
+
+    point: PointLine
+    error: float
+    sd: float
+    ratio: float
+
+
+@dataclass(frozen=True)
+class OffDataReport:
+    """The surface away from its data: cross-validation, standard deviation, places to drill, outliers.
+
+    ``factor`` is by how much the standard deviation was widened; ``sd_mean`` and ``sd_max`` are metres.
+    """
+
+    left_out: tuple[LeftOutLine, ...]
+    factor: float | None
+    sd_mean: float | None
+    sd_max: float | None
+    suggestions: tuple[SuggestionLine, ...]
+    outliers: tuple[OutlierLine, ...]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class OrderLine:
+    """Two horizons: thickness in metres, and where and how much they cross.
+
+    ``passed`` is None where they share no area. ``crossing_area`` (m²) and ``crossing_volume`` (m³) are 0 where the
+    upper stays above the lower; else ``deepest`` is the place (x, y) of the least thickness.
+    """
+
+    upper: str
+    lower: str
+    passed: bool | None
+    minimum: float | None
+    mean: float | None
+    crossing_area: float
+    crossing_volume: float
+    deepest: tuple[float, float] | None
+    text: str
+
+
+@dataclass(frozen=True)
+class HorizonReport:
+    """Everything said about one horizon; metres.
+
+    ``verdict`` is PASS or FAIL by sigma against epsilon alone; ``sound`` tells whether every check holds too.
+    ``over`` counts points beyond each tolerance. ``pictures`` names those that belong here, by what they show.
+    """
+
+    name: str
+    verdict: str
+    sound: bool
+    n: int
+    n_core: int
+    n_periphery: int
+    n_dropped: int
+    sigma: float
+    epsilon: float
+    max_abs: float
+    mean: float
+    core_max_abs: float | None
+    periphery_sigma: float | None
+    periphery_max_abs: float | None
+    within_interior: float | None
+    tolerances: tuple[float, float, float]
+    over: tuple[tuple[str, int], ...]
+    reason: str
+    notes: tuple[str, ...]
+    groups: tuple[GroupLine, ...]
+    worst: tuple[PointLine, ...]
+    seams: tuple[SeamLine, ...]
+    checks: tuple[CheckLine, ...]
+    read_back: FileCheck | None
+    off_data: OffDataReport | None
+    conflicts: tuple[ConflictLine, ...]
+    patches: tuple[PatchLine, ...]
+    tin_points: int | None
+    grid_points: int | None
+    equal_accuracy: float | None
+    settings: Words
+    fit: Words
+    pictures: Words
+
+    @property
+    def control_points(self) -> int:
+        """Number of control points over all patches."""
+        return sum(patch.control[0] * patch.control[1] for patch in self.patches)
+
+    @property
+    def all_checks(self) -> tuple[CheckLine, ...]:
+        """Checks of the surface, then those of the file."""
+        return self.checks + (self.read_back.checks if self.read_back else ())
+
+
+@dataclass(frozen=True)
+class InputFile:
+    """A file that was read: its hash; rows read, used and listed (None for a file without rows)."""
+
+    file: str
+    sha256: str
+    read: int | None
+    used: int | None
+    listed: int | None
+
+
+@dataclass(frozen=True)
+class RejectedRow:
+    """A row that the readers did not use, or used with a warning."""
+
+    severity: str
+    file: str
+    row: int
+    column: str
+    value: str
+    reason: str
+    remedy: str
+
+
+@dataclass(frozen=True)
+class AccuracyReport:
+    """The accuracy report of a site.
+
+    ``date`` is ISO 8601 (2026-11-21). ``orders`` is None where the order was not examined, empty where the site has
+    no two horizons to compare. ``failures`` holds horizons that could not be fitted, with the reason. ``issues``
+    counts errors, warnings and notes of the readers; ``rejected`` lists errors and warnings. ``versions`` names the
+    programs. ``picture`` names the picture of all horizons, empty if there is none.
+    """
+
+    site: str
+    crs: str
+    date: str
+    horizons: tuple[HorizonReport, ...]
+    failures: Words
+    orders: tuple[OrderLine, ...] | None
+    inputs: tuple[InputFile, ...]
+    issues: tuple[tuple[str, int], ...]
+    rejected: tuple[RejectedRow, ...]
+    versions: Words
+    picture: str
+
+
+def to_json(report: AccuracyReport) -> str:
+    """Return the report as JSON text: the names of the fields, null for None."""
+    return json.dumps(plain(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
+
+
+def from_json(text: str) -> AccuracyReport:
+    """Return the report that :func:`to_json` wrote; texts that could be told in Chinese come back in English."""
+    report: AccuracyReport = _restored(AccuracyReport, json.loads(text))
+    return report
+
+
+def write_json(report: AccuracyReport, path: Path) -> None:
+    """Write the report as JSON (UTF-8)."""
+    with replacing(path) as part:
+        part.write_text(to_json(report), encoding="utf-8")
+
+
+def _restored(kind: Any, value: Any) -> Any:
+    """Turn what JSON holds back into a type: dataclasses, tuples of one or of several types, and None."""
+    origin, inner = typing.get_origin(kind), typing.get_args(kind)
+    if origin in (types.UnionType, typing.Union):
+        return None if value is None else _restored(next(k for k in inner if k is not type(None)), value)
+    if origin is tuple:
+        kinds = [inner[0]] * len(value) if inner[-1] is Ellipsis else inner
+        return tuple(_restored(k, v) for k, v in zip(kinds, value, strict=True))
+    if isinstance(kind, type) and is_dataclass(kind):
+        hints: Mapping[str, Any] = typing.get_type_hints(kind)
+        return kind(**{f.name: _restored(hints[f.name], value[f.name]) for f in fields(kind)})
+    return float(value) if kind is float else value

@@ -1,0 +1,246 @@
+"""The accuracy report as pages in a language: cover, the site as a whole, a chapter for each horizon."""
+
+from __future__ import annotations
+
+from geofit.report import digits
+from geofit.report.accuracy_report import AccuracyReport, HorizonReport, OrderLine
+from geofit.report.document import (
+    Block,
+    Cell,
+    Chapter,
+    Column,
+    Document,
+    Heading,
+    Mark,
+    Paragraph,
+    Picture,
+    Signatures,
+    Table,
+    Verdict,
+)
+from geofit.report.horizon_chapter import horizon_chapter
+from geofit.report.language import Language, sentence, tell
+
+__all__ = ["document"]
+
+#: Rows of a list in the document; the JSON and the CSV hold all of them.
+LONGEST = 40
+
+
+def document(report: AccuracyReport, t: Language, *, missing_picture: str = "", warning: str = "") -> Document:
+    """Lay an accuracy report out as chapters.
+
+    Parameters
+    ----------
+    report : AccuracyReport
+        What to say.
+    t : Language
+        In which language.
+    missing_picture : str
+        Why there are no pictures in space; empty if there are.
+    warning : str
+        Something the reader must know about the report itself, a missing font for one.
+    """
+    site = report.site or t("Site")
+    whole = Chapter(t("The site as a whole"), (*_order(report, t), *_inputs(report, t)))
+    chapters = [_cover(report, t, missing_picture, warning), whole]
+    chapters += [horizon_chapter(horizon, t, missing_picture) for horizon in report.horizons]
+    return Document(
+        title=site,
+        subject=t("Accuracy report of the geological surfaces"),
+        site=site,
+        date=report.date,
+        language=t.html,
+        footer=f"geofit {dict(report.versions)['geofit']} · {report.date}",
+        chapters=tuple(chapters),
+    )
+
+
+def _cover(report: AccuracyReport, t: Language, missing_picture: str, warning: str) -> Chapter:
+    blocks: list[Block] = []
+    facts = [t("Coordinate system: {crs}", crs=report.crs or t("not stated")), t("Date: {date}", date=report.date)]
+    facts.append("geofit " + dict(report.versions)["geofit"])
+    blocks.append(Paragraph(" · ".join(facts), "quiet"))
+    if warning:
+        blocks.append(Paragraph(warning, "warning"))
+    blocks.append(Heading(t("Verdict")))
+    columns = (
+        Column(t("Horizon")),
+        Column(t("Verdict")),
+        Column(t("σ, m"), "number"),
+        Column(t("ε, m"), "number"),
+        Column(t("Largest |d|, m"), "number"),
+        Column(t("Points"), "number"),
+        Column(t("Left-out error, m"), "number"),
+        Column(t("Checks"), "wide"),
+    )
+    blocks.append(Table(columns, tuple(_verdict_row(horizon, t) for horizon in report.horizons)))
+    blocks.append(
+        Paragraph(
+            t(
+                "σ = √(Σ d² / (n − 1)) over all n points; d is the orthogonal distance from a point to the surface, "
+                "positive above it. PASS: σ is below the control error ε. The left-out error is the root mean square "
+                "of what the surface misses where a whole hole is left out: σ says nothing about that."
+            ),
+            "quiet",
+        )
+    )
+    for name, reason in report.failures:
+        blocks.append(Paragraph(t("{name} could not be fitted: {reason}", name=name, reason=reason), "warning"))
+    if missing_picture:
+        blocks.append(Paragraph(missing_picture, "warning"))
+    else:
+        blocks.append(Picture(report.picture, t("All horizons and holes.")))
+    blocks.append(Heading(t("Signatures")))
+    blocks.append(
+        Signatures(
+            ("", t("Name"), t("Signature"), t("Date")),
+            (t("Prepared"), t("Checked"), t("Approved")),
+        )
+    )
+    return Chapter(t("Accuracy report"), tuple(blocks))
+
+
+def verdict_word(horizon: HorizonReport, t: Language) -> str:
+    """Return PASS or FAIL in a language."""
+    return t("PASS") if horizon.verdict == "PASS" else t("FAIL")
+
+
+def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
+    failed = [check for check in horizon.all_checks if check.passed is False]
+    if failed:
+        names = ", ".join(dict.fromkeys(tell(check.name, t) for check in failed))
+        checks = Mark(False, t("{count} fail: {names}", count=len(failed), names=names))
+    else:
+        held = sum(check.passed is True for check in horizon.all_checks)
+        checks = Mark(True, t("all {count} hold", count=held))
+    off = horizon.off_data
+    error = off.left_out[0].rms if off and off.left_out else None
+    return (
+        horizon.name,
+        Verdict(horizon.verdict == "PASS", verdict_word(horizon, t)),
+        digits.metres(horizon.sigma),
+        digits.given(horizon.epsilon),
+        digits.metres(horizon.max_abs),
+        digits.count(horizon.n),
+        t("not examined") if off is None else digits.metres(error),
+        checks,
+    )
+
+
+def _order(report: AccuracyReport, t: Language) -> list[Block]:
+    blocks: list[Block] = [Heading(t("Order of the horizons"))]
+    if report.orders is None:
+        blocks.append(Paragraph(t("Not examined: whether horizons cross and how thick the beds between them are.")))
+    elif not report.orders:
+        blocks.append(Paragraph(t("Nothing to examine: the site states no order of its horizons.")))
+    else:
+        columns = (
+            Column(t("Upper horizon")),
+            Column(t("Lower horizon")),
+            Column(t("Answer")),
+            Column(t("Least thickness, m"), "number"),
+            Column(t("Mean thickness, m"), "number"),
+            Column(t("Crossing area, m²"), "number"),
+            Column(t("Crossing volume, m³"), "number"),
+            Column(t("Deepest at x, y, m"), "number"),
+        )
+        blocks.append(
+            Paragraph(
+                t(
+                    "Thickness is measured vertically from the upper horizon down to the lower one. Below zero they "
+                    "cross: the area and the volume say how much."
+                ),
+                "quiet",
+            )
+        )
+        blocks.append(Table(columns, tuple(_order_row(order, t) for order in report.orders)))
+        blocks += [Paragraph(sentence(order.text, t), "quiet") for order in report.orders]
+    return blocks
+
+
+def _order_row(order: OrderLine, t: Language) -> tuple[Cell, ...]:
+    words = {True: t("holds"), False: t("does not hold"), None: t("not applicable")}
+    where = "–" if order.deepest is None else f"{digits.place(order.deepest[0])}, {digits.place(order.deepest[1])}"
+    return (
+        order.upper,
+        order.lower,
+        Mark(order.passed, words[order.passed]),
+        digits.metres(order.minimum),
+        digits.metres(order.mean),
+        digits.count(order.crossing_area),
+        digits.count(order.crossing_volume),
+        where,
+    )
+
+
+def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
+    counts = dict(report.issues)
+    blocks: list[Block] = [
+        Heading(t("Files")),
+        Paragraph(t("Rows read = rows used + rows listed. SHA-256 tells whether a file is the one that was read.")),
+        Table(
+            (
+                Column(t("File"), "wide"),
+                Column(t("Rows read"), "number"),
+                Column(t("Used"), "number"),
+                Column(t("Listed"), "number"),
+                Column("SHA-256", "hash"),
+            ),
+            tuple(
+                (f.file, digits.count(f.read), digits.count(f.used), digits.count(f.listed), f.sha256 or "–")
+                for f in report.inputs
+            ),
+        ),
+        Heading(t("Rejected rows and warnings")),
+        Paragraph(
+            t(
+                "{errors} rows were not used, {warnings} warnings, {notes} notes on how files were understood; "
+                "import_issues.csv lists all of them.",
+                errors=counts["error"],
+                warnings=counts["warning"],
+                notes=counts["note"],
+            )
+        ),
+    ]
+    if report.rejected:
+        rows = tuple(
+            (
+                Mark(False, t("not used")) if r.severity == "error" else Mark(None, t("warning")),
+                r.file,
+                str(r.row) if r.row else "–",
+                r.column or "–",
+                r.value or "–",
+                f"{sentence(r.reason, t)} {tell(r.remedy, t)}".strip(),
+            )
+            for r in report.rejected[:LONGEST]
+        )
+        columns = (
+            Column(t("What")),
+            Column(t("File"), "wide"),
+            Column(t("Row"), "number"),
+            Column(t("Column")),
+            Column(t("Value")),
+            Column(t("Reason and remedy"), "wide"),
+        )
+        blocks.append(Table(columns, rows))
+        blocks += more(len(report.rejected), LONGEST, "import_issues.csv", t)
+    blocks.append(Heading(t("Versions")))
+    blocks.append(Table((Column(t("Program")), Column(t("Version"))), report.versions))
+    blocks.append(
+        Paragraph(
+            t(
+                "Method: Li, Miao, Liu, Wang (2011), interpolation–approximation fitting of complex geological "
+                "surfaces; checks and errors off the data as geofit documents them."
+            ),
+            "quiet",
+        )
+    )
+    return blocks
+
+
+def more(total: int, shown: int, where: str, t: Language) -> list[Block]:
+    """Say that a table is longer than what is shown, and where the rest stands; nothing if it is not."""
+    if total <= shown:
+        return []
+    return [Paragraph(t("{count} more stand in {file}.", count=total - shown, file=where), "quiet")]

@@ -1,0 +1,149 @@
+"""Numbers as people read them: one place that decides how many digits a figure has."""
+
+from __future__ import annotations
+
+import math
+
+__all__ = ["count", "degrees", "equals", "given", "length", "measured", "metres", "place", "share", "size"]
+
+#: A figure that is not there.
+NOTHING = "–"
+#: Below this a distance is the rounding of the computer, not a property of a surface; metres or degrees.
+NOISE = 1e-9
+#: Below this, powers of ten are shorter than zeros.
+SMALL = 1e-4
+#: Keeps the groups of thousands on one line.
+_GAP = "\N{NO-BREAK SPACE}"
+_UNITS = {"m": "m", "deg": "°", "degrees": "°", "m2": "m²", "m3": "m³", "": ""}
+
+
+def metres(value: float | None) -> str:
+    """Write metres: three significant digits, and never less than a millimetre.
+
+    Examples
+    --------
+    >>> metres(0.000423), metres(0.1699), metres(-12.34567), metres(4.2e-6), metres(0.0)
+    ('0.000423', '0.170', '−12.346', '4.20e-6', '0')
+    >>> metres(3e-14).split(), metres(None), metres(float("nan"))
+    (['<', '1e-9'], '–', '–')
+    """
+    if value is None or not math.isfinite(value):
+        return NOTHING
+    if value == 0:
+        return "0"
+    sign = "−" if value < 0 else ""
+    size = abs(value)
+    if size < NOISE:
+        return f"<{_GAP}1e-9"
+    if size < SMALL:
+        mantissa, exponent = f"{size:.2e}".split("e")
+        return f"{sign}{mantissa}e{int(exponent)}"
+    return sign + _grouped(f"{size:.{max(3, 2 - math.floor(math.log10(size)))}f}")
+
+
+def length(value: float | None) -> str:
+    """Write metres with their unit; a dash alone for nothing.
+
+    Examples
+    --------
+    >>> length(0.25).split(), length(None)
+    (['0.250', 'm'], '–')
+    """
+    text = metres(value)
+    return text if text == NOTHING else f"{text}{_GAP}m"
+
+
+def equals(value: float | None) -> str:
+    """Write metres behind the sign that stands between a symbol and its value.
+
+    Examples
+    --------
+    >>> equals(0.0301).split(), equals(3e-14).split()
+    (['=', '0.0301', 'm'], ['<', '1e-9', 'm'])
+    """
+    text = length(value)
+    return text if text.startswith("<") else f"={_GAP}{text}"
+
+
+def degrees(value: float | None) -> str:
+    """Write degrees, with the digits of metres.
+
+    Examples
+    --------
+    >>> degrees(0.1)
+    '0.100'
+    """
+    return metres(value)
+
+
+def place(value: float | None) -> str:
+    """Write a map coordinate or an elevation to the centimetre, metres.
+
+    Examples
+    --------
+    >>> place(3_100_012.346)
+    '3100012.35'
+    """
+    return NOTHING if value is None or not math.isfinite(value) else f"{value:.2f}".replace("-", "−")
+
+
+def given(value: float) -> str:
+    """Write a number that a person chose, a tolerance for one, as it was chosen.
+
+    Examples
+    --------
+    >>> given(0.5), given(0.01)
+    ('0.5', '0.01')
+    """
+    return f"{value:g}"
+
+
+def count(value: float | None) -> str:
+    """Write a whole number, or a large area or volume, in groups of three.
+
+    Examples
+    --------
+    >>> count(1234567).split(), count(None)
+    (['1', '234', '567'], '–')
+    """
+    return NOTHING if value is None or not math.isfinite(value) else _grouped(f"{value:.0f}".replace("-", "−"))
+
+
+def share(value: float | None) -> str:
+    """Write a part of one as per cent.
+
+    Examples
+    --------
+    >>> share(0.9021).split()
+    ['90.2', '%']
+    """
+    return NOTHING if value is None or not math.isfinite(value) else f"{100 * value:.1f}{_GAP}%"
+
+
+def size(value: float) -> str:
+    """Write bytes as kilobytes."""
+    return f"{count(value / 1024)}{_GAP}kB"
+
+
+def measured(value: float | None, unit: str) -> str:
+    """Write what a check measured with its unit: lengths and angles as metres(), counts as they are.
+
+    Examples
+    --------
+    >>> measured(3.0, ""), measured(0.25, "deg").split()
+    ('3', ['0.250', '°'])
+    """
+    if value is None or not math.isfinite(value):
+        return NOTHING
+    if unit in ("m", "deg", "°"):
+        return f"{metres(value)}{_GAP}{_UNITS.get(unit, unit)}"
+    text = count(value) if float(value).is_integer() else f"{value:.3g}".replace("-", "−")
+    return f"{text}{_GAP}{_UNITS.get(unit, unit)}".rstrip(_GAP)
+
+
+def _grouped(text: str) -> str:
+    """Part the digits before the point in threes, from five digits on."""
+    whole, point, rest = text.partition(".")
+    if len(whole.lstrip("−")) > 4:
+        whole = f"{int(whole.replace('−', '-')):,}".replace(",", _GAP).replace("-", "−")
+    return whole + point + rest

@@ -1,0 +1,268 @@
+"""From the results of a site to its accuracy report."""
+
+from __future__ import annotations
+
+import datetime
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+import geofit
+from geofit.accuracy import Check, Seam
+from geofit.offdata import LeftOut, OffData
+from geofit.report.accuracy_report import (
+    AccuracyReport,
+    CheckLine,
+    ConflictLine,
+    FileCheck,
+    GroupLine,
+    HorizonReport,
+    InputFile,
+    LeftOutLine,
+    OffDataReport,
+    OrderLine,
+    OutlierLine,
+    PatchLine,
+    PointLine,
+    RejectedRow,
+    SeamLine,
+    SuggestionLine,
+)
+from geofit.report.result import HorizonResult, sigma_of
+from geofit.site import Site
+
+if TYPE_CHECKING:
+    from geofit.order import Order
+
+__all__ = ["PICTURES", "accuracy_report", "picture_name", "today"]
+
+#: What the pictures of a horizon show, in the order of the report.
+PICTURES = ("plan", "view", "deviation", "residuals", "uncertainty")
+SITE_PICTURE = "site"
+WORST = 20
+_PROGRAMS = ("numpy", "scipy")
+
+
+def picture_name(what: str, horizon: str) -> str:
+    """Return the name by which a report speaks of a picture of a horizon."""
+    return f"{what}/{horizon}"
+
+
+def today() -> str:
+    """Return the date of a report that names none: SOURCE_DATE_EPOCH where it is set, else today; ISO 8601."""
+    stamp = os.environ.get("SOURCE_DATE_EPOCH", "")
+    if stamp.isdigit():
+        return datetime.datetime.fromtimestamp(int(stamp), datetime.UTC).date().isoformat()
+    return datetime.date.today().isoformat()
+
+
+def accuracy_report(
+    results: Sequence[HorizonResult],
+    orders: Sequence[Order] | None = None,
+    *,
+    failures: Mapping[str, str] | None = None,
+    date: str = "",
+) -> AccuracyReport:
+    """Gather the report of a site.
+
+    Parameters
+    ----------
+    results : sequence of HorizonResult
+        At least one; all of one site.
+    orders : sequence of Order, optional
+        What :func:`geofit.order.orders` found; None: not examined.
+    failures : mapping of str to str, optional
+        Horizons that could not be fitted, and why.
+    date : str
+        ISO 8601; empty: :func:`today`.
+    """
+    site = results[0].site
+    severities = [issue.severity for issue in site.issues]
+    return AccuracyReport(
+        site=site.name,
+        crs=site.crs,
+        date=date or today(),
+        horizons=tuple(_horizon(result) for result in results),
+        failures=tuple((failures or {}).items()),
+        orders=None if orders is None else tuple(_order(order) for order in orders),
+        inputs=_inputs(site),
+        issues=tuple((word, severities.count(word)) for word in ("error", "warning", "note")),
+        rejected=tuple(RejectedRow(**_issue(i)) for i in site.issues if i.severity in ("error", "warning")),
+        versions=_versions(),
+        picture=SITE_PICTURE,
+    )
+
+
+def _issue(issue: Any) -> dict[str, Any]:
+    return {f: getattr(issue, f) for f in ("severity", "file", "row", "column", "value", "reason", "remedy")}
+
+
+def _horizon(result: HorizonResult) -> HorizonReport:
+    surface, a, core = result.surface, result.accuracy, result.core
+    d = np.abs(a.residuals)
+    out, settings = d[~core], surface.settings
+    points, storage = surface.points, result.storage
+    groups = {"kind": a.by_kind, "section": a.by_section, "hole": a.by_hole, "patch": a.by_patch}
+    shown = [what for what in PICTURES if what != "uncertainty" or _has_uncertainty(result.offdata)]
+    return HorizonReport(
+        name=result.name,
+        verdict=a.verdict,
+        sound=result.sound,
+        n=a.n,
+        n_core=int(core.sum()),
+        n_periphery=int((~core).sum()),
+        n_dropped=len(result.dropped),
+        sigma=a.sigma,
+        epsilon=a.epsilon,
+        max_abs=a.max_abs,
+        mean=a.mean,
+        core_max_abs=float(d[core].max()) if core.any() else None,
+        periphery_sigma=sigma_of(out),
+        periphery_max_abs=float(out.max()) if len(out) else None,
+        within_interior=float((out <= settings.interior_tolerance).mean()) if len(out) else None,
+        tolerances=(settings.boundary_tolerance, settings.interior_tolerance, settings.epsilon),
+        over=tuple((str(name), int(n)) for name, n in a.over.items()),
+        reason=surface.partition.reason if surface.partition else "",
+        notes=a.notes,
+        groups=tuple(
+            GroupLine(by, name, g.n, g.sigma, g.max_abs, g.mean)
+            for by, rows in groups.items()
+            for name, g in rows.items()
+            if name
+        ),
+        worst=tuple(_point(result, i) for i in a.worst[:WORST]),
+        seams=_seams(a.seams),
+        checks=_checks(a.checks),
+        read_back=_file(result),
+        off_data=None if result.offdata is None else _off_data(result, result.offdata),
+        conflicts=tuple(
+            ConflictLine(points.describe(c.kept), points.describe(c.dropped), c.difference, c.text) for c in a.conflicts
+        ),
+        patches=tuple(PatchLine(p.name, p.degree, (p.control.shape[0], p.control.shape[1])) for p in surface.patches),
+        tin_points=storage.tin_points if storage else None,
+        grid_points=storage.grid_points if storage else None,
+        equal_accuracy=storage.tolerance if storage else None,
+        settings=tuple((key, _word(value)) for key, value in asdict(settings).items()),
+        fit=tuple((k, _word(v)) for k, v in surface.fit.items() if isinstance(v, bool | int | float | str)),
+        pictures=tuple((what, picture_name(what, result.name)) for what in shown),
+    )
+
+
+def _has_uncertainty(offdata: OffData | None) -> bool:
+    return offdata is not None and offdata.uncertainty is not None
+
+
+def _word(value: Any) -> str:
+    if value is None:
+        return "auto"
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, tuple):
+        return "; ".join(f"{x:.2f} {y:.2f}" for x, y in value)
+    return str(value)
+
+
+def _point(result: HorizonResult, i: int) -> PointLine:
+    points, a = result.surface.points, result.accuracy
+    x, y, z = (float(value) for value in points.xyz[i])
+    source = str(points.hole[i] or points.section[i])
+    residual = float(a.residuals[i])
+    return PointLine(
+        str(points.file[i]), int(points.row[i]), str(points.kind[i]), source, x, y, z, str(a.patch[i]), residual
+    )
+
+
+def _seams(seams: Sequence[Seam]) -> tuple[SeamLine, ...]:
+    return tuple(SeamLine(s.first, s.second, float(s.gap), float(s.angle)) for s in seams)
+
+
+def _checks(checks: Sequence[Check]) -> tuple[CheckLine, ...]:
+    return tuple(
+        CheckLine(
+            c.name,
+            None if c.passed is None else bool(c.passed),
+            _finite(c.value),
+            _finite(c.limit),
+            c.unit,
+            c.text,
+            tuple((float(x), float(y), float(z)) for x, y, z in c.places),
+        )
+        for c in checks
+    )
+
+
+def _finite(value: float | None) -> float | None:
+    return float(value) if value is not None and math.isfinite(value) else None
+
+
+def _file(result: HorizonResult) -> FileCheck | None:
+    back = result.read_back
+    if back is None:
+        return None
+    return FileCheck(
+        back.file, back.sha256, result.step_bytes, back.faces, back.brep_valid, back.self_intersects, back.sigma,
+        back.max_abs, _finite(back.core_max_abs), back.free_edges, back.outline_edges, back.edge_tolerance,
+        _checks(back.checks), _seams(back.seams),
+    )  # fmt: skip
+
+
+def _off_data(result: HorizonResult, found: OffData) -> OffDataReport:
+    field = found.uncertainty
+    return OffDataReport(
+        left_out=tuple(_left_out(scheme) for scheme in found.left_out),
+        factor=_finite(field.factor) if field else None,
+        sd_mean=_finite(field.mean) if field else None,
+        sd_max=_finite(field.max) if field else None,
+        suggestions=tuple(
+            SuggestionLine(s.x, s.y, _finite(s.z), s.sd, s.mean_after, s.max_after) for s in found.suggestions
+        ),
+        outliers=tuple(OutlierLine(_point(result, o.index), o.error, o.sd, o.ratio) for o in found.outliers),
+        notes=found.notes,
+    )
+
+
+def _left_out(scheme: LeftOut) -> LeftOutLine:
+    return LeftOutLine(
+        scheme.scheme, scheme.groups, int(np.isfinite(scheme.error).sum()), scheme.rms, scheme.mean_abs, scheme.bias,
+        scheme.max_abs, _finite(scheme.inside), _finite(scheme.inside_raw),
+        tuple((name, _finite(rms)) for name, rms in scheme.peers.items()),
+    )  # fmt: skip
+
+
+def _order(order: Order) -> OrderLine:
+    found = order.check()
+    return OrderLine(
+        order.upper, order.lower, found.passed, _finite(order.min), _finite(order.mean), order.crossed_area,
+        order.crossed_volume, order.thinnest if order.crossings else None, found.text,
+    )  # fmt: skip
+
+
+def _inputs(site: Site) -> tuple[InputFile, ...]:
+    counts = {c.file: c for c in site.counts}
+    lines = []
+    for file in dict.fromkeys([*site.inputs, *counts]):
+        c = counts.get(file)
+        lines.append(
+            InputFile(file, site.inputs.get(file, ""), c and c.read, c and c.used, c and c.listed)  # type: ignore[arg-type]
+        )
+    return tuple(lines)
+
+
+@lru_cache(maxsize=1)
+def _versions() -> tuple[tuple[str, str], ...]:
+    import platform
+
+    found = [("geofit", geofit.__version__), ("Python", platform.python_version())]
+    found += [(name, version(name)) for name in _PROGRAMS]
+    try:
+        # The wheel's version is OpenCASCADE's own, with the packager's digits behind.
+        found.append(("OpenCASCADE", ".".join(version("cadquery-ocp").split(".")[:3])))
+    except PackageNotFoundError:
+        found.append(("OpenCASCADE", "not installed"))
+    return tuple(found)

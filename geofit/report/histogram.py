@@ -1,0 +1,84 @@
+"""How the residuals are spread: counted in bars, and against a normal law."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geofit.report.language import EN, Language
+from geofit.report.result import HorizonResult
+from geofit.report.style import CORE, FAIL, INK, LINE, MUTED, quiet
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["histogram", "normal_plot"]
+
+#: Residuals below this are the rounding of the computer, metres.
+NOISE = 1e-9
+
+
+def histogram(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
+    """Draw how many residuals lie where, with the tolerances as bounds; exact core points are left out.
+
+    The axis ends at the largest residual; a tolerance beyond it is named in the legend only.
+    """
+    a, settings = result.accuracy, result.surface.settings
+    d = a.residuals[~result.core]
+    axes.set_title(t("Residuals of the approximated points"))
+    widest = float(np.abs(d).max(initial=0.0)) * 1.04
+    if widest < NOISE:
+        _nothing(axes, t)
+        return
+    axes.hist(d, bins=list(np.linspace(-widest, widest, 42)), color="#8fa9bd", edgecolor="white", lw=0.5, zorder=2)
+    for value, colour, dashes, label in (
+        (
+            settings.interior_tolerance,
+            MUTED,
+            "dashed",
+            t("interior tolerance {value:g} m", value=float(settings.interior_tolerance)),
+        ),
+        (a.epsilon, FAIL, "solid", t("control error ε {value:g} m", value=float(a.epsilon))),
+    ):
+        if value <= widest:
+            axes.axvline(-value, color=colour, lw=1.1, ls=dashes, zorder=3)
+            axes.axvline(value, color=colour, lw=1.1, ls=dashes, zorder=3, label=label)
+        else:
+            axes.plot([], [], color=colour, lw=1.1, ls=dashes, label=t("{bound}: off the axis", bound=label))
+    axes.set_xlim(-widest, widest)
+    axes.locator_params(axis="x", nbins=6)
+    axes.set_xlabel(t("d, m (below the surface < 0 < above)"))
+    axes.set_ylabel(t("points"))
+    axes.grid(axis="y", color=LINE, lw=0.6, zorder=0)
+    axes.set_axisbelow(True)
+    quiet(axes)
+    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.3), borderaxespad=0, labelcolor=INK)
+
+
+def normal_plot(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
+    """Draw the sorted residuals of the approximated points against the quantiles of a normal law."""
+    from scipy.special import ndtri
+
+    d = np.sort(result.accuracy.residuals[~result.core])
+    axes.set_title(t("Against a normal law"))
+    if np.abs(d).max(initial=0.0) < NOISE:
+        _nothing(axes, t)
+        return
+    at = ndtri((np.arange(len(d)) + 0.5) / len(d))
+    axes.plot(at, d.mean() + d.std() * at, color=MUTED, lw=1.0, ls="dashed", label=t("normal law"), zorder=2)
+    axes.plot(at, d, ".", ms=3.2, color=CORE, label=t("residuals"), zorder=3, rasterized=True)
+    axes.set_xlabel(t("quantile of the normal law"))
+    axes.set_ylabel(t("d, m"))
+    axes.grid(color=LINE, lw=0.6, zorder=0)
+    axes.set_axisbelow(True)
+    quiet(axes)
+    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.3), borderaxespad=0, labelcolor=INK, ncols=2)
+
+
+def _nothing(axes: Axes, t: Language) -> None:
+    axes.text(
+        0.5, 0.5, t("Every point is interpolated exactly;\nno residual to count."),
+        ha="center", va="center", color=MUTED, transform=axes.transAxes,
+    )  # fmt: skip
+    axes.set_axis_off()

@@ -1,0 +1,147 @@
+"""What a report says about the surface away from its data: cross-validation, uncertainty, holes to drill."""
+
+from __future__ import annotations
+
+from geofit.report import digits
+from geofit.report.accuracy_report import HorizonReport, LeftOutLine, OffDataReport
+from geofit.report.document import Block, Cell, Column, Facts, Heading, Mark, Paragraph, Picture, Table
+from geofit.report.language import Language, sentence, tell
+from geofit.report.point_table import point_cells, point_columns
+from geofit.words import said
+
+__all__ = ["CALIBRATED", "off_data_blocks"]
+
+#: Of the left-out points this share should lie inside the 90 % band.
+CALIBRATED = (0.85, 0.95)
+_SCHEMES = {
+    "hole": said("one hole at a time"),
+    "section": said("one section at a time"),
+    "block": said("one block at a time"),
+}
+#: Methods beside ours, in the order of their columns.
+_PEERS = ("thin plate", "kriging")
+
+
+def off_data_blocks(h: HorizonReport, t: Language) -> list[Block]:
+    """Lay out the error off the data, or say that it was not examined."""
+    off = h.off_data
+    blocks: list[Block] = [Heading(t("The error off the data"))]
+    if off is None:
+        return [*blocks, Paragraph(t("Not examined: how far the surface may lie from the rock where nobody drilled."))]
+    blocks.append(
+        Paragraph(
+            t(
+                "Each group of points is left out in turn and predicted from all others; geofit, thin plate spline and "
+                "kriging have the same groups. Of the left-out points, 85 to 95 % should lie inside the 90 % band."
+            )
+        )
+    )
+    blocks += _left_out(off, t)
+    blocks += [Paragraph(sentence(note, t), "quiet") for note in off.notes]
+    blocks += _uncertainty(h, off, t)
+    blocks.append(Heading(t("Outliers"), 3))
+    if off.outliers:
+        blocks.append(
+            Paragraph(
+                t("Points that their neighbours do not bear out. They were used all the same: look at them."), "quiet"
+            )
+        )
+        columns = (
+            *point_columns(t),
+            Column(t("Left-out error, m"), "number"),
+            Column(t("Standard deviation, m"), "number"),
+            Column(t("Ratio"), "number"),
+        )
+        rows = tuple(
+            (*point_cells(o.point, t), digits.metres(o.error), digits.metres(o.sd), f"{o.ratio:.1f}".replace("-", "−"))
+            for o in off.outliers
+        )
+        blocks.append(Table(columns, rows))
+    else:
+        blocks.append(Paragraph(t("None.")))
+    return blocks
+
+
+def _left_out(off: OffDataReport, t: Language) -> list[Block]:
+    if not off.left_out:
+        return [Paragraph(t("Cross-validation was not possible."))]
+    columns = (
+        Column(t("Left out"), "wide"),
+        Column(t("Groups"), "number"),
+        Column(t("Points"), "number"),
+        Column(t("geofit, m"), "number"),
+        Column(t("Thin plate, m"), "number"),
+        Column(t("Kriging, m"), "number"),
+        Column(t("Bias, m"), "number"),
+        Column(t("Largest, m"), "number"),
+        Column(t("In the 90 % band"), "number"),
+        Column(t("Calibration")),
+    )
+    return [
+        Heading(t("Cross-validation and calibration"), 3),
+        Table(columns, tuple(_scheme_row(scheme, t) for scheme in off.left_out)),
+        Paragraph(t("Errors are root mean squares; the least of the three methods is marked *."), "quiet"),
+    ]
+
+
+def _scheme_row(scheme: LeftOutLine, t: Language) -> tuple[Cell, ...]:
+    peers = dict(scheme.peers)
+    errors = [scheme.rms, *(peers.get(name) for name in _PEERS)]
+    known = [error for error in errors if error is not None]
+    least = min(known, default=None)
+    cells = [digits.metres(e) + (" *" if e is not None and e == least and len(known) > 1 else "") for e in errors]
+    low, high = CALIBRATED
+    if scheme.inside is None:
+        calibrated = Mark(None, t("not examined"))
+    else:
+        good = low <= scheme.inside <= high
+        calibrated = Mark(good, t("holds") if good else t("outside 85–95 %"))
+    return (
+        tell(_SCHEMES.get(scheme.scheme, scheme.scheme), t),
+        digits.count(scheme.groups),
+        digits.count(scheme.points),
+        *cells,
+        digits.metres(scheme.bias),
+        digits.metres(scheme.max_abs),
+        digits.share(scheme.inside),
+        calibrated,
+    )
+
+
+def _uncertainty(h: HorizonReport, off: OffDataReport, t: Language) -> list[Block]:
+    blocks: list[Block] = [Heading(t("Standard deviation and where to drill next"), 3)]
+    name = dict(h.pictures).get("uncertainty")
+    if off.sd_mean is None or off.sd_max is None or name is None:
+        blocks.append(Paragraph(t("The standard deviation was not examined.")))
+    else:
+        held = t("holds the standard deviation to the left-out errors")
+        factor = "–" if off.factor is None else f"× {off.factor:.2f}"
+        facts = (
+            (t("Mean standard deviation"), digits.length(off.sd_mean), ""),
+            (t("Largest standard deviation"), digits.length(off.sd_max), ""),
+            (t("Calibration factor"), factor, held),
+        )
+        caption = t("Standard deviation of the surface. Numbered crosses: suggested holes, in the order of their use.")
+        blocks += [Facts(facts), Picture(name, caption)]
+    if not off.suggestions:
+        return [*blocks, Paragraph(t("No holes are suggested."))]
+    columns = (
+        Column(t("No."), "number"),
+        Column("x, m", "number"),
+        Column("y, m", "number"),
+        Column("z, m", "number"),
+        Column(t("Standard deviation there, m"), "number"),
+        Column(t("Mean afterwards, m"), "number"),
+        Column(t("Largest afterwards, m"), "number"),
+        Column(t("Mean lower by"), "number"),
+    )
+    rows = tuple(
+        (
+            str(i),
+            *(digits.place(value) for value in (s.x, s.y, s.z)),
+            *(digits.metres(value) for value in (s.sd, s.mean_after, s.max_after)),
+            digits.share(1 - s.mean_after / off.sd_mean) if off.sd_mean else "–",
+        )
+        for i, s in enumerate(off.suggestions, 1)
+    )
+    return [*blocks, Table(columns, rows)]

@@ -1,0 +1,85 @@
+"""The map of the standard deviation, with the places where a hole would lower it most."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.offdata import Uncertainty
+from geofit.report.language import EN, Language
+from geofit.report.plots import legend, map_axes
+from geofit.report.result import HorizonResult
+from geofit.report.style import FAIL, INK, MUTED
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["uncertainty_map"]
+
+Floats = NDArray[np.float64]
+
+
+def uncertainty_map(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
+    """Draw the standard deviation of a horizon in shades and lines, its points, and the suggested holes.
+
+    Raises
+    ------
+    ValueError
+        If the standard deviation was not examined.
+    """
+    found = result.offdata
+    if found is None or found.uncertainty is None:
+        raise ValueError(f"The standard deviation of horizon '{result.name}' was not examined.")
+    _shades(axes, found.uncertainty, t)
+    turned = found.uncertainty.frame == "best-plane"
+    points = _flat(result, result.surface.points.xyz, turned)
+    axes.plot(*points.T, ".", ms=2.2, color=INK, alpha=0.6, label=t("data points"), zorder=3)
+    _places(axes, _flat(result, np.array([(s.x, s.y, s.z) for s in found.suggestions]).reshape(-1, 3), turned), t)
+    axes.set_title(t("Standard deviation of the surface"))
+    if turned:
+        map_axes(axes, t("Along the strike, m"), t("Up the dip, m"))
+    else:
+        map_axes(axes, t("Easting, m"), t("Northing, m"))
+    legend(axes)
+
+
+def _flat(result: HorizonResult, xyz: Floats, turned: bool) -> Floats:
+    """Return plan coordinates, or those in the best plane of a steep surface, (n, 2)."""
+    model = result.surface.model
+    if not turned or model is None:
+        return np.asarray(xyz[:, :2])
+    return model.problem.chart.frame.to_local(xyz)[:, :2]
+
+
+def _shades(axes: Axes, field: Uncertainty, t: Language) -> None:
+    from matplotlib.colors import LinearSegmentedColormap
+    from matplotlib.ticker import MaxNLocator
+
+    # White to dark in one hue: a black-and-white print keeps the order.
+    colours = LinearSegmentedColormap.from_list("doubt", ["#f7f8f6", "#d9d3c0", "#b99a6b", "#7d5a35"])
+    sd = np.ma.masked_invalid(field.sd)
+    top = float(sd.max()) if sd.count() else 1.0
+    levels = MaxNLocator(6).tick_values(0.0, max(top, 1e-9))
+    shades = axes.contourf(field.x, field.y, sd, levels=list(levels), cmap=colours, zorder=0)
+    lines = axes.contour(field.x, field.y, sd, levels=list(levels), colors="#8a7a5c", linewidths=0.5, zorder=1)
+    axes.clabel(lines, fmt="%g", fontsize=6, colors=MUTED)
+    scale = axes.inset_axes((1.03, 0.0, 0.035, 0.55))
+    bar = axes.figure.colorbar(shades, cax=scale)
+    bar.outline.set_visible(False)
+    scale.tick_params(length=0, pad=2)
+    scale.set_title(t("m"), fontsize=7.5, fontweight="normal", color=MUTED, pad=4)
+
+
+def _places(axes: Axes, places: Floats, t: Language) -> None:
+    from matplotlib.patheffects import withStroke
+
+    if not len(places):
+        return
+    axes.plot(*places.T, "x", ms=6, mew=1.6, color=FAIL, label=t("suggested hole"), zorder=4)
+    for i, place in enumerate(places, 1):
+        axes.annotate(
+            str(i), (place[0], place[1]), xytext=(4, 3), textcoords="offset points", size=7.5, weight="bold",
+            color=FAIL, path_effects=[withStroke(linewidth=2, foreground="white")], zorder=5,
+        )  # fmt: skip
