@@ -22,7 +22,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import asdict, dataclass, field, fields, replace
 from os import PathLike
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -71,7 +71,10 @@ class Edit:
 
 @dataclass(frozen=True, kw_only=True)
 class ProjectResult:
-    """A surface that was fitted: its STEP file and hash, its figures, and the version that made it."""
+    """A surface that was fitted: its STEP file and hash, its figures, and the version that made it.
+
+    ``recipe`` holds from what it was made (settings, excluded rows, changes by hand) where the writer knows it.
+    """
 
     horizon: str
     surface: str
@@ -80,6 +83,7 @@ class ProjectResult:
     sigma: float | None = None
     passed: bool | None = None
     geofit: str = ""
+    recipe: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -112,6 +116,7 @@ def save_project(
     project: Project,
     path: str | PathLike[str],
     surfaces: Mapping[str, HorizonSurface] | None = None,
+    recipes: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Project:
     """Write a project file, and the surfaces that are given, as STEP, into ``NAME_surfaces`` beside it.
 
@@ -123,6 +128,8 @@ def save_project(
         The file, usually ``*.geofit``.
     surfaces : mapping of str to HorizonSurface, optional
         Surfaces by horizon; each takes the place of its horizon's former result.
+    recipes : mapping of str to mapping, optional
+        From what each surface was made, by horizon, as JSON holds it.
 
     Returns
     -------
@@ -137,10 +144,10 @@ def save_project(
         If patches do not make one valid shell; the project file on the disk stays as it was.
     """
     target = Path(path)
-    former = {result.surface for result in project.results}
+    former = {result.surface for result in (*project.results, *_written(target))}
     results = {result.horizon: result for result in project.results}
     for name, surface in (surfaces or {}).items():
-        results[name] = _write_surface(name, surface, target)
+        results[name] = replace(_write_surface(name, surface, target), recipe=plain((recipes or {}).get(name, {})))
     sources = tuple(_hashed(source, target.parent) for source in project.sources)
     saved = Project(
         name=project.name,
@@ -263,12 +270,22 @@ def _from_0(data: Mapping[str, Any]) -> dict[str, Any]:
 MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {0: _from_0}
 
 
+def _written(target: Path) -> tuple[ProjectResult, ...]:
+    """Return the results of the project that stands where another is to be written."""
+    if not target.is_file():
+        return ()
+    try:
+        return open_project(target).results
+    except InputError:
+        return ()  # no project, or a broken one: nothing in it can be trusted
+
+
 def _folder(target: Path) -> Path:
     return target.with_name(f"{target.stem}_surfaces")
 
 
 def _write_surface(name: str, surface: HorizonSurface, target: Path) -> ProjectResult:
-    from geofit.io.step import write_step
+    from geofit.io.step import store_step
 
     folder = _folder(target)
     try:
@@ -280,7 +297,7 @@ def _write_surface(name: str, surface: HorizonSurface, target: Path) -> ProjectR
     stem = file_stems([name])[name]
     draft = folder / f".{stem}.draft.step"
     try:
-        write_step({name: surface}, draft)
+        store_step({name: surface}, draft)
         digest = _sha256(draft)
         final = folder / f"{stem}-{digest[:8]}.step"
         draft.replace(final)

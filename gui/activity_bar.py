@@ -1,0 +1,62 @@
+"""The status bar's right end: where the pointer is, the coordinate system, and what runs, with Cancel."""
+
+from __future__ import annotations
+
+import math
+
+from PySide6.QtWidgets import QLabel, QMainWindow, QProgressBar, QToolButton
+
+from geofit.gui.activity import Activity
+from geofit.gui.icons import icon
+
+__all__ = ["ActivityBar"]
+
+
+class ActivityBar:
+    """Fills a window's status bar."""
+
+    def __init__(self, window: QMainWindow, activity: Activity) -> None:
+        self.place, self.crs, self.stage = QLabel(), QLabel(), QLabel()
+        self.progress, self.stop = QProgressBar(), QToolButton()
+        self.progress.setRange(0, 1000)
+        self.progress.setTextVisible(False)
+        self.progress.setFixedWidth(140)
+        self.progress.setAccessibleName(window.tr("Progress"))
+        self.stop.setIcon(icon("cancel"))
+        self.stop.setAutoRaise(True)
+        self.stop.setToolTip(window.tr("Stop the task (Esc)"))
+        self.stop.setAccessibleName(window.tr("Stop the task"))
+        self.stop.clicked.connect(activity.cancel)
+        self.place.setToolTip(window.tr("Easting, northing and elevation under the pointer, without exaggeration"))
+        self._title = ""
+        self._task = (self.stage, self.progress, self.stop)
+        bar = window.statusBar()
+        bar.setSizeGripEnabled(False)
+        for widget in (*self._task, self.place, self.crs):
+            bar.addPermanentWidget(widget)
+        self._show_task(False)
+        activity.began.connect(self._begin)
+        activity.progressed.connect(self._progress)
+        activity.ended.connect(lambda: self._show_task(False))
+
+    def show_place(self, x: float, y: float, z: float) -> None:
+        """Show map coordinates, metres; nothing where they are nan."""
+        if math.isnan(x) or math.isnan(y):
+            self.place.clear()
+            return
+        height = "" if math.isnan(z) else f"   Z {z:.2f}"
+        self.place.setText(f"E {x:.2f}   N {y:.2f}{height} m")
+
+    def _begin(self, title: str) -> None:
+        self._title = title
+        self.stage.setText(title)
+        self.progress.setValue(0)
+        self._show_task(True)
+
+    def _progress(self, stage: str, fraction: float) -> None:
+        self.stage.setText(f"{self._title}: {stage}")
+        self.progress.setValue(round(1000 * fraction))
+
+    def _show_task(self, shown: bool) -> None:
+        for widget in self._task:
+            widget.setVisible(shown)

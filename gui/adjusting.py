@@ -1,0 +1,74 @@
+"""The adjust panel and the fitting behind it: effects before a change is made, and the change itself."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject
+
+from geofit.accuracy import Accuracy
+from geofit.gui.document.document import Document
+from geofit.gui.document.making import edited
+from geofit.gui.document.recipe import HandEdit, Move, Pull
+from geofit.gui.fitting import Fitting
+from geofit.gui.panels.adjust import AdjustPanel
+from geofit.gui.words import spoken
+from geofit.gui.worker import Task, run
+from geofit.progress import Progress
+from geofit.surface import HorizonSurface
+
+__all__ = ["Adjusting"]
+
+
+class Adjusting(QObject):
+    """Tries a change beside the document, shows its effect, and hands it to the fitting when it is applied."""
+
+    def __init__(self, document: Document, fitting: Fitting, panel: AdjustPanel, parent: QObject) -> None:
+        super().__init__(parent)
+        self._document, self._fitting, self._panel = document, fitting, panel
+        self._trial: Task | None = None
+        panel.adjust_wanted.connect(lambda patch, i, j, dz: self._try(Move(patch, i, j, dz)))
+        panel.pull_wanted.connect(lambda index, share: self._try(Pull(index, share)))
+        panel.adjust_requested.connect(self._adjust)
+        panel.pull_requested.connect(self.pull)
+        fitting.adjusted.connect(panel.show_effect)
+
+    def pull(self, index: int, share: float = 1.0) -> None:
+        """Pull the chosen horizon's surface to one of its points."""
+        self._stop()
+        if self._document.selection.horizon is not None:
+            self._fitting.pull(self._document.selection.horizon, index, share)
+
+    def _adjust(self, patch: str, i: int, j: int, dz: float) -> None:
+        self._stop()
+        if self._document.selection.horizon is not None:
+            self._fitting.adjust(self._document.selection.horizon, patch, i, j, dz)
+
+    def _try(self, edit: HandEdit) -> None:
+        self._stop()
+        name = self._document.selection.horizon
+        surface = None if name is None else self._document.surface(name)
+        if surface is None or surface.accuracy is None:
+            return
+        self._trial = run(
+            self,
+            _effect,
+            surface,
+            edit,
+            on_done=self._show,
+            on_failed=lambda error: self._panel.say(spoken(str(error))),
+        )
+        self._trial.ended.connect(self._forget)
+
+    def _show(self, found: tuple[Accuracy, Accuracy]) -> None:
+        self._panel.show_effect(*found)
+
+    def _stop(self) -> None:
+        if self._trial is not None:
+            self._trial.cancel()
+
+    def _forget(self) -> None:
+        if self.sender() is self._trial:
+            self._trial = None
+
+
+def _effect(surface: HorizonSurface, edit: HandEdit, *, progress: Progress) -> tuple[Accuracy | None, Accuracy | None]:
+    return surface.accuracy, edited(surface, edit, progress).accuracy

@@ -1,0 +1,44 @@
+"""``geofit-gui [site.toml|project.geofit]``: what the machine lacks is said before a window is tried."""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from geofit import __version__
+from geofit.errors import GeofitError
+from geofit.gui.ready import require_display, require_packages
+
+__all__ = ["main", "start"]
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the desktop application; return its exit code, 2 if it cannot start."""
+    multiprocessing.freeze_support()
+    parser = argparse.ArgumentParser("geofit-gui", description="NURBS surfaces of geological horizons, in a window.")
+    parser.add_argument("file", nargs="?", type=Path, metavar="FILE", help="site.toml or project.geofit to open")
+    parser.add_argument("--version", action="version", version=f"geofit {__version__}")
+    return start(parser.parse_args(argv).file)
+
+
+def start(file: Path | None) -> int:
+    """Open the window, on a file if one is given; say on stderr what is missing if it cannot open, and return 2."""
+    try:
+        if file is not None and not file.is_file():
+            raise GeofitError(f"There is no file {file}. Give a site file (site.toml) or a project (*.geofit).")
+        require_packages()
+        require_display()
+        from geofit.gui.desktop import Desktop
+
+        desktop = Desktop()
+    except GeofitError as error:
+        print(f"geofit-gui: {error}", file=sys.stderr)
+        return 2
+    return desktop.run(file)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

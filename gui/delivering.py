@@ -1,0 +1,137 @@
+"""What leaves the application: STEP and other formats, reports, screenshots."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Mapping
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QUrl, Signal
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from geofit.errors import GeofitError
+from geofit.exporting import FORMATS, Request
+from geofit.files import file_stems
+from geofit.gui.activity import Activity
+from geofit.gui.document.document import Document
+from geofit.gui.document.exporting import export_surfaces
+from geofit.gui.preferences import Preferences
+from geofit.gui.workspace import Workspace
+from geofit.report.result import HorizonResult
+from geofit.surface import HorizonSurface
+
+__all__ = ["Delivering"]
+
+_LOG = logging.getLogger(__name__)
+
+#: File endings of the formats that are named otherwise.
+_ENDINGS = {"step": "step", "iges": "igs", "dxf-mesh": "dxf", "landxml": "xml", "tsurf": "ts", "tif": "tif"}
+#: Times the view's own size: an A4 page at 300 dots an inch from half a screen.
+PRINT_SCALE = 3
+
+
+class Delivering(QObject):
+    """Exports, reports and pictures. ``told(text)`` says what was written, ``refused(exception)`` why not."""
+
+    told = Signal(str)
+    refused = Signal(object)
+
+    def __init__(
+        self,
+        document: Document,
+        activity: Activity,
+        preferences: Preferences,
+        workspace: Workspace,
+        window: QWidget,
+    ) -> None:
+        super().__init__(window)
+        self._document, self._activity, self._preferences = document, activity, preferences
+        self._panels, self._window = workspace, window
+        self._reports: list[str] = []
+        workspace.tree.report_chosen.connect(lambda path: QDesktopServices.openUrl(QUrl.fromLocalFile(path)))
+
+    def export_step(self) -> None:
+        """Ask for units and tolerance, write STEP and read it back."""
+        from geofit.gui.dialogs.export_step import ExportDialog
+
+        surfaces = self._surfaces()
+        if surfaces:
+            ExportDialog(surfaces, self._window).exec()
+
+    def export_other(self) -> None:
+        """Ask for a file; its ending is the format."""
+        surfaces = self._surfaces()
+        if not surfaces:
+            return
+        filters = {f"{name} (*.{_ENDINGS.get(name, name)})": name for name in FORMATS if name != "step"}
+        path, chosen = QFileDialog.getSaveFileName(
+            self._window,
+            self.tr("Export"),
+            str(Path(self._preferences.folder) / file_stems([self._document.state.name])[self._document.state.name]),
+            ";;".join(filters),
+        )
+        if path:
+            to = filters[chosen]
+            target = Path(path)
+            if not target.suffix:
+                target = target.with_suffix(f".{_ENDINGS.get(to, to)}")
+            self.write(to, target, surfaces)
+
+    def write(self, to: str, target: Path, surfaces: Mapping[str, HorizonSurface]) -> None:
+        """Write surfaces in a format, with the points and holes that the format can hold."""
+        site = self._document.site_in_use()
+        request = Request(points=dict(site.horizons), holes=site.holes, site=site.name, crs=site.crs)
+        # The patches are enough for every format; what stands behind them need not travel.
+        bare = {name: surface.with_(model=None) for name, surface in surfaces.items()}
+        title = self.tr("Export {name}").format(name=target.name)
+        self._activity.do(title, export_surfaces, bare, to, target, request, on_done=self._written, apart=True)
+
+    def report(self) -> None:
+        """Ask for language and format, and write the accuracy report."""
+        from geofit.gui.dialogs.report import ReportDialog
+
+        surfaces = self._surfaces()
+        if surfaces:
+            site = self._document.site_in_use()
+            results = [
+                HorizonResult(surface, site, offdata=self._document.offdata(name)) for name, surface in surfaces.items()
+            ]
+            dialog = ReportDialog(site, results, self._window)
+            dialog.written.connect(self.list_report)
+            dialog.exec()
+
+    def list_report(self, path: object) -> None:
+        """List a report in the project tree."""
+        self._reports.append(str(path))
+        self._panels.tree.show_reports(self._reports)
+
+    def screenshot(self) -> None:
+        """Ask for a file, and write the 3D view at print size."""
+        path, _ = QFileDialog.getSaveFileName(
+            self._window,
+            self.tr("Screenshot"),
+            str(Path(self._preferences.folder) / "screenshot.png"),
+            self.tr("Pictures (*.png)"),
+        )
+        if path:
+            target = Path(path) if Path(path).suffix else Path(path).with_suffix(".png")
+            try:
+                self._panels.view.screenshot(target, PRINT_SCALE)
+            except (OSError, GeofitError) as error:
+                self.refused.emit(error)
+            else:
+                self._written([target])
+
+    def _surfaces(self) -> Mapping[str, HorizonSurface]:
+        surfaces = self._document.surfaces()
+        if not surfaces:
+            self.refused.emit(GeofitError(self.tr("There is no surface to write yet. Press Fit first.")))
+        return surfaces
+
+    def _written(self, files: list[Path]) -> None:
+        self._preferences.folder = str(files[0].parent)
+        names = ", ".join(file.name for file in files)
+        self.told.emit(self.tr("Wrote {names}.").format(names=names))
+        for file in files:
+            _LOG.info("Wrote %s", file)

@@ -1,0 +1,122 @@
+"""The application as a whole: Qt, preferences, the session, and the window on it."""
+
+from __future__ import annotations
+
+import logging
+import signal
+import sys
+import traceback
+from pathlib import Path
+from types import TracebackType
+
+from PySide6.QtCore import QCoreApplication, QObject, QStandardPaths, Qt, QTimer
+from PySide6.QtGui import QGuiApplication
+from PySide6.QtWidgets import QApplication
+
+from geofit import __version__
+from geofit.gui.icons import application_icon
+from geofit.gui.language import apply_language
+from geofit.gui.main_window import MainWindow
+from geofit.gui.panels.log import qt_to_logging
+from geofit.gui.preferences import Preferences
+from geofit.gui.session import Session
+from geofit.gui.theme import apply_theme, missing_chinese, set_font
+from geofit.gui.view3d.opengl import require_opengl
+
+__all__ = ["Desktop"]
+
+_LOG = logging.getLogger(__name__)
+
+
+class Desktop(QObject):
+    """Holds what lives as long as the application; ``window`` is made anew for another language.
+
+    Raises
+    ------
+    NoOpenGLError
+        If no 3D view can be drawn on this machine.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        QCoreApplication.setOrganizationName("geofit")
+        QCoreApplication.setApplicationName("geofit")
+        QCoreApplication.setApplicationVersion(__version__)
+        if QApplication.instance() is None:
+            QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
+        app = QApplication.instance() or QApplication(sys.argv[:1])
+        assert isinstance(app, QApplication)
+        require_opengl()
+        self.app = app
+        app.setWindowIcon(application_icon())
+        app.setDesktopFileName("geofit")
+        self.preferences = Preferences()
+        qt_to_logging()
+        apply_theme(app, self.preferences.theme)
+        set_font(app)
+        apply_language(self.preferences.language)
+        app.styleHints().colorSchemeChanged.connect(self._follow_system)
+        self.journals = (
+            Path(QStandardPaths.writableLocation(QStandardPaths.StandardLocation.StateLocation)) / "sessions"
+        )
+        self.session = Session(self.journals, self)
+        self.window = self._window()
+
+    def run(self, file: Path | None = None) -> int:
+        """Show the window, offer unsaved work of sessions that were cut off, open a file; return the exit code."""
+        sys.excepthook = self._hear_mistake
+        # Python hears Ctrl+C only while it runs: a timer lets it, now and then.
+        signal.signal(signal.SIGINT, lambda *_: self.window.close())
+        waking = QTimer(self, interval=500)
+        waking.timeout.connect(lambda: None)
+        waking.start()
+        self.window.show()
+        if missing_chinese():
+            _LOG.warning(
+                "No font on this machine has Chinese characters: they are shown as boxes. Install one "
+                "(Debian and Ubuntu: apt-get install fonts-noto-cjk) and start again."
+            )
+            self.window.panels.reveal("log")
+        QTimer.singleShot(0, self, lambda: self._begin(file))
+        code = self.app.exec()
+        self.session.end()
+        return code
+
+    def change_language(self, code: str) -> None:
+        """Speak another language: the window is closed and made anew, the session goes on."""
+        if code == self.preferences.language:
+            return
+        if self.window.activity.busy:
+            self.window.tell(self.tr("Wait for the task to end, then choose the language."))
+            return
+        self.preferences.language = code
+        apply_language(code)
+        old = self.window
+        self.app.setQuitOnLastWindowClosed(False)
+        old.leave_without_asking()
+        self.window = self._window()
+        self.window.show()
+        self.app.setQuitOnLastWindowClosed(True)
+        old.deleteLater()
+
+    def _window(self) -> MainWindow:
+        window = MainWindow(self.session, self.preferences)
+        # Queued: the window that asks for another language is gone when its own event is over.
+        window.language_chosen.connect(self.change_language, Qt.ConnectionType.QueuedConnection)
+        return window
+
+    def _begin(self, file: Path | None) -> None:
+        if not self.window.files.offer_recovery(self.journals) and file is not None:
+            self.window.files.open(file)
+
+    def _follow_system(self) -> None:
+        if self.preferences.theme == "system":
+            apply_theme(self.app, "system")
+
+    def _hear_mistake(self, kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+        if isinstance(error, KeyboardInterrupt) or not isinstance(error, Exception):
+            self.window.leave_without_asking()
+            return
+        traceback.print_exception(kind, error, trace)
+        _LOG.error("%s: %s", kind.__name__, error)
+        self.window.fail("", error)

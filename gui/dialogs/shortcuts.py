@@ -1,0 +1,50 @@
+"""All keys of the window, by menu."""
+
+from __future__ import annotations
+
+from PySide6.QtGui import QAction, QKeySequence
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QHeaderView,
+    QMenu,
+    QMenuBar,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+)
+
+__all__ = ["ShortcutsDialog"]
+
+
+class ShortcutsDialog(QDialog):
+    """Lists every action of a menu bar that has a key."""
+
+    def __init__(self, bar: QMenuBar) -> None:
+        super().__init__(bar.window())
+        self.setWindowTitle(self.tr("Keyboard shortcuts"))
+        self.tree = QTreeWidget()
+        self.tree.setHeaderLabels([self.tr("Action"), self.tr("Key")])
+        self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        for entry in bar.actions():
+            menu = entry.menu()
+            rows = _rows(menu.actions()) if isinstance(menu, QMenu) else []
+            if rows:
+                item = QTreeWidgetItem(self.tree, [entry.text().replace("&", "")])
+                item.addChildren([QTreeWidgetItem(list(row)) for row in rows])
+        self.tree.expandAll()
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        buttons.rejected.connect(self.reject)
+        layout = QVBoxLayout(self)
+        layout.addWidget(self.tree)
+        layout.addWidget(buttons)
+        self.resize(460, 560)
+
+
+def _rows(actions: list[QAction]) -> list[tuple[str, str]]:
+    native = QKeySequence.SequenceFormat.NativeText
+    return [
+        (action.text().replace("&", ""), ", ".join(key.toString(native) for key in action.shortcuts()))
+        for action in actions
+        if action.shortcuts() and action.menu() is None
+    ]

@@ -1,0 +1,1 @@
+"""The document behind the windows: plain state, commands, journal; it knows no Qt."""

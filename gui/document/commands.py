@@ -1,0 +1,312 @@
+"""The changes of a document: one class a command. Each makes a new state from the former one, and can be told as data.
+
+A command is checked by :meth:`Command.on` before anything changes; the document changes in :meth:`Command.redo` only.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from geofit.gui.document.recipe import DocumentError, HandEdit, Move, Pull, Recipe, Row, settings_from
+from geofit.gui.document.state import State
+from geofit.settings import FitSettings
+from geofit.words import Said, said
+
+if TYPE_CHECKING:
+    from geofit.gui.document.document import Document
+
+__all__ = [
+    "COMMANDS",
+    "AdjustControlPoint",
+    "Command",
+    "ExcludeRow",
+    "IncludeRow",
+    "PullToPoint",
+    "RenameSite",
+    "SetCore",
+    "SetOrder",
+    "SetSettings",
+    "SetSurface",
+    "command_from",
+]
+
+#: As FitSettings has it, which looks at the words.
+Core = Any
+
+
+@dataclass
+class Command(ABC):
+    """A named step; ``kind`` names its class in the journal."""
+
+    kind: ClassVar[str]
+    _before: State | None = field(default=None, init=False, repr=False, compare=False)
+
+    @property
+    @abstractmethod
+    def text(self) -> Said:
+        """What the step does, as the Edit menu names it."""
+
+    @abstractmethod
+    def on(self, state: State) -> State:
+        """Return the state after the command; DocumentError if it does not apply to ``state``."""
+
+    def redo(self, document: Document) -> None:
+        """Do it, for the first time or again."""
+        after = self.on(document.state)
+        self._before = document.state
+        document.become(after)
+
+    def undo(self, document: Document) -> None:
+        """Take it back."""
+        if self._before is None:
+            raise DocumentError(f"'{self.text}' was not done yet and cannot be undone. Call redo() first.")
+        document.become(self._before)
+
+    def to_data(self) -> dict[str, Any]:
+        """Return numbers, words, lists and mappings only."""
+        values = {f.name: getattr(self, f.name) for f in fields(self) if f.init}
+        return {"kind": self.kind, **{name: _plain(value) for name, value in values.items()}}
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Command:
+        """Return what :meth:`to_data` was called on."""
+        return cls(**{name: value for name, value in data.items() if name != "kind"})
+
+
+@dataclass
+class SetSettings(Command):
+    """Other settings for a horizon; its surface becomes stale."""
+
+    kind = "settings"
+    horizon: str
+    settings: FitSettings
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Settings of {name}", name=self.horizon)
+
+    def on(self, state: State) -> State:  # noqa: D102
+        _known(state, self.horizon)
+        return replace(state, settings={**state.settings, self.horizon: self.settings})
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
+        return cls(data["horizon"], settings_from(data["settings"]))
+
+
+@dataclass
+class SetCore(Command):
+    """Another core for a horizon: a word, or corners in map coordinates as drawn in plan."""
+
+    kind = "core"
+    horizon: str
+    core: Core
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Core of {name}", name=self.horizon)
+
+    def on(self, state: State) -> State:  # noqa: D102
+        _known(state, self.horizon)
+        settings = replace(state.settings[self.horizon], core=self.core)
+        return replace(state, settings={**state.settings, self.horizon: settings})
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
+        core = data["core"]
+        return cls(data["horizon"], core if isinstance(core, str) else tuple((x, y) for x, y in core))
+
+
+@dataclass
+class _RowCommand(Command):
+    horizon: str
+    row: Row
+
+    def _excluded(self, state: State) -> frozenset[Row]:
+        _known(state, self.horizon)
+        return state.excluded.get(self.horizon, frozenset())
+
+    def _with(self, state: State, rows: frozenset[Row]) -> State:
+        return replace(state, excluded={**state.excluded, self.horizon: rows})
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Command:
+        return cls(data["horizon"], Row(**data["row"]))
+
+
+@dataclass
+class ExcludeRow(_RowCommand):
+    """A row of a file that takes no part in the fit of a horizon."""
+
+    kind = "exclude"
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Exclude {file} row {row} from {name}", file=self.row.file, row=self.row.row, name=self.horizon)
+
+    def on(self, state: State) -> State:  # noqa: D102
+        rows = self._excluded(state)
+        if self.row in rows:
+            raise DocumentError(f"{self.row.file} row {self.row.row} is excluded from '{self.horizon}' already.")
+        return self._with(state, rows | {self.row})
+
+
+@dataclass
+class IncludeRow(_RowCommand):
+    """A row that was excluded takes part again."""
+
+    kind = "include"
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Include {file} row {row} in {name}", file=self.row.file, row=self.row.row, name=self.horizon)
+
+    def on(self, state: State) -> State:  # noqa: D102
+        rows = self._excluded(state)
+        if self.row not in rows:
+            raise DocumentError(f"{self.row.file} row {self.row.row} is not excluded from '{self.horizon}'.")
+        return self._with(state, rows - {self.row})
+
+
+@dataclass
+class SetSurface(Command):
+    """A surface that a fit has made; the document's shelf holds it."""
+
+    kind = "surface"
+    recipe: Recipe
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Fit {name}", name=self.recipe.horizon)
+
+    def on(self, state: State) -> State:  # noqa: D102
+        _known(state, self.recipe.horizon)
+        return replace(state, recipes={**state.recipes, self.recipe.horizon: self.recipe})
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
+        return cls(Recipe.from_data(data["recipe"]))
+
+
+@dataclass
+class _HandCommand(Command):
+    horizon: str
+
+    @property
+    @abstractmethod
+    def edit(self) -> HandEdit:
+        """The change as the recipe has it."""
+
+    def on(self, state: State) -> State:
+        recipe = state.recipes.get(self.horizon)
+        if recipe is None:
+            raise DocumentError(f"'{self.horizon}' has no surface to adjust. Fit it first.")
+        changed = replace(recipe, edits=(*recipe.edits, self.edit))
+        return replace(state, recipes={**state.recipes, self.horizon: changed})
+
+
+@dataclass
+class AdjustControlPoint(_HandCommand):
+    """A control point raised or lowered by hand, metres."""
+
+    kind = "adjust"
+    patch: str
+    i: int
+    j: int
+    dz: float
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said(
+            "Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})",
+            i=self.i, j=self.j, patch=self.patch, dz=self.dz, name=self.horizon,
+        )  # fmt: skip
+
+    @property
+    def edit(self) -> HandEdit:  # noqa: D102
+        return Move(self.patch, self.i, self.j, self.dz)
+
+
+@dataclass
+class PullToPoint(_HandCommand):
+    """The surface pulled to one of its data points."""
+
+    kind = "pull"
+    index: int
+    share: float
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Pull {name} to point {number}", name=self.horizon, number=self.index + 1)
+
+    @property
+    def edit(self) -> HandEdit:  # noqa: D102
+        return Pull(self.index, self.share)
+
+
+@dataclass
+class SetOrder(Command):
+    """Another order of the horizons, the highest first."""
+
+    kind = "order"
+    order: tuple[str, ...]
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Order of the horizons")
+
+    def on(self, state: State) -> State:  # noqa: D102
+        if sorted(self.order) != sorted(state.order):
+            raise DocumentError(f"The order must name each horizon once: {', '.join(state.order)}.")
+        return replace(state, order=self.order)
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
+        return cls(tuple(data["order"]))
+
+
+@dataclass
+class RenameSite(Command):
+    """Another title for the site."""
+
+    kind = "rename"
+    name: str
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Rename the site to {name}", name=self.name)
+
+    def on(self, state: State) -> State:  # noqa: D102
+        if not self.name.strip():
+            raise DocumentError("The site's name is empty. Give it a word.")
+        return replace(state, name=self.name)
+
+
+#: Commands by the word that names them in the journal.
+COMMANDS: dict[str, type[Command]] = {
+    command.kind: command
+    for command in (
+        SetSettings, SetCore, ExcludeRow, IncludeRow, SetSurface, AdjustControlPoint, PullToPoint, SetOrder, RenameSite,
+    )
+}  # fmt: skip
+
+
+def command_from(data: Mapping[str, Any]) -> Command:
+    """Return a command from what its ``to_data`` gave; KeyError, TypeError or ValueError if it is none."""
+    return COMMANDS[data["kind"]].from_data(data)
+
+
+def _known(state: State, horizon: str) -> None:
+    if horizon not in state.settings:
+        raise DocumentError(f"The site has no horizon '{horizon}'. It has {', '.join(state.settings) or 'none'}.")
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Recipe):
+        return value.to_data()
+    if isinstance(value, (FitSettings, Row)):
+        return asdict(value)
+    return value

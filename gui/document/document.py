@@ -1,0 +1,227 @@
+"""The document: a site, the work on it, and the surfaces at hand. Plain Python; windows listen to its signals."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from geofit.gui.document.recipe import DocumentError, Recipe, Row, fingerprint, without_rows
+from geofit.gui.document.shelf import Shelf
+from geofit.gui.document.signal import Signal
+from geofit.gui.document.state import State
+from geofit.offdata import OffData
+from geofit.points import PointSet
+from geofit.settings import FitSettings
+from geofit.site import Site
+from geofit.surface import HorizonSurface
+
+__all__ = ["Document", "Selection"]
+
+_EMPTY = Site("", {})
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What is chosen in all windows: a horizon, and a row of its data or none."""
+
+    horizon: str | None = None
+    row: Row | None = None
+
+
+class Document:
+    """A site with the work on it.
+
+    The state is changed by commands alone (:mod:`geofit.gui.document.commands`). Surfaces belong to recipes: the
+    state says which are wanted, the shelf has those that were made.
+
+    Signals
+    -------
+    site_changed()
+        Another site was opened: look at everything anew.
+    settings_changed(horizon), points_changed(horizon), result_changed(horizon)
+        Settings; rows that take part; the surface, its check or what is known off the data.
+    order_changed(), name_changed()
+        The order of the horizons; the site's title.
+    selection_changed(selection)
+        Another horizon or row was chosen.
+    saved_changed()
+        The project file, or whether it holds the present state.
+    """
+
+    def __init__(self) -> None:
+        self.site: Site = _EMPTY
+        self.site_file: Path | None = None
+        self.project_file: Path | None = None
+        self.selection = Selection()
+        self.shelf = Shelf()
+        self._state = self._saved = State()
+        self._points: dict[tuple[str, frozenset[Row]], PointSet] = {}
+        self._fingerprints: dict[str, str] = {}
+        self._used = _EMPTY
+        self.site_changed: Signal[[]] = Signal()
+        self.settings_changed: Signal[[str]] = Signal()
+        self.points_changed: Signal[[str]] = Signal()
+        self.result_changed: Signal[[str]] = Signal()
+        self.order_changed: Signal[[]] = Signal()
+        self.name_changed: Signal[[]] = Signal()
+        self.selection_changed: Signal[[Selection]] = Signal()
+        self.saved_changed: Signal[[]] = Signal()
+
+    def open(
+        self, site: Site, site_file: Path | None, state: State | None = None, project_file: Path | None = None
+    ) -> None:
+        """Begin with a site, and with the work that a project or a journal holds."""
+        self.site, self.site_file, self.project_file = site, site_file, project_file
+        self.shelf.clear()
+        self._points.clear()
+        self._fingerprints.clear()
+        self._used = site
+        self._state = self._saved = state or State.of_site(site)
+        worked_on = [name for name in self._state.order if name in self._state.recipes]
+        self.selection = Selection(next(iter((*worked_on, *self._state.order)), None))
+        self.site_changed.emit()
+        self.saved_changed.emit()
+
+    @property
+    def state(self) -> State:
+        """What commands change."""
+        return self._state
+
+    @property
+    def saved_state(self) -> State:
+        """The state that the project file holds."""
+        return self._saved
+
+    @property
+    def dirty(self) -> bool:
+        """Whether there is something to save."""
+        return self._state is not self._saved and self._state != self._saved
+
+    @property
+    def horizons(self) -> tuple[str, ...]:
+        """Names of the horizons, the highest first."""
+        return self._state.order
+
+    def become(self, state: State) -> None:
+        """Take another state, and tell what is different. For commands only."""
+        former, was_dirty = self._state, self.dirty
+        self._state = state
+        for name in state.settings:
+            if former.settings.get(name) != state.settings[name]:
+                self.settings_changed.emit(name)
+            if former.excluded.get(name, frozenset()) != state.excluded.get(name, frozenset()):
+                self.points_changed.emit(name)
+            if former.recipes.get(name) != state.recipes.get(name):
+                self.result_changed.emit(name)
+        if former.order != state.order:
+            self.order_changed.emit()
+        if former.name != state.name:
+            self.name_changed.emit()
+        if was_dirty != self.dirty:
+            self.saved_changed.emit()
+
+    def saved(self, project_file: Path, state: State) -> None:
+        """Hear that ``state`` was written to a project file."""
+        self.project_file, self._saved = project_file, state
+        self.saved_changed.emit()
+
+    def points(self, name: str) -> PointSet:
+        """Return the points of a horizon but those of excluded rows."""
+        key = (name, self._state.excluded.get(name, frozenset()))
+        if key not in self._points:
+            self._points = {old: points for old, points in self._points.items() if old[0] != name}
+            self._points[key] = without_rows(self._given(name), key[1])
+        return self._points[key]
+
+    def site_in_use(self) -> Site:
+        """Return the site under its present name, with the points that take part, in the present order.
+
+        It is one object until one of these changes.
+        """
+        horizons = {name: self.points(name) for name in self.horizons}
+        used = self._used
+        same = used.name == self._state.name and list(used.horizons) == list(horizons)
+        if not same or any(used.horizons[name] is not points for name, points in horizons.items()):
+            self._used = replace(self.site, name=self._state.name, horizons=horizons)
+        return self._used
+
+    def settings(self, name: str) -> FitSettings:
+        """Return the settings that the next fit of a horizon will have."""
+        self._given(name)
+        return self._state.settings[name]
+
+    def recipe(self, name: str) -> Recipe:
+        """Return from what the next fit of a horizon will be made."""
+        excluded = tuple(sorted(self._state.excluded.get(name, ())))
+        return Recipe(name, self.settings(name), self.given(name), excluded)
+
+    def given(self, name: str) -> str:
+        """Return the fingerprint of the site's points and study area for a horizon."""
+        if name not in self._fingerprints:
+            self._fingerprints[name] = fingerprint(self._given(name), self.site.boundary)
+        return self._fingerprints[name]
+
+    def surface(self, name: str) -> HorizonSurface | None:
+        """Return the surface of a horizon; None if there is none, or if it is wanted but not made yet."""
+        return self.shelf.surface(self._state.recipes.get(name))
+
+    def surfaces(self) -> Mapping[str, HorizonSurface]:
+        """Return the surfaces at hand, the highest first."""
+        found = {name: self.surface(name) for name in self.horizons}
+        return {name: surface for name, surface in found.items() if surface is not None}
+
+    def offdata(self, name: str) -> OffData | None:
+        """Return what is known about a surface off its data."""
+        return self.shelf.offdata(self._state.recipes.get(name))
+
+    def put(self, recipe: Recipe, surface: HorizonSurface) -> None:
+        """Lay a surface on the shelf; it is shown as soon as the state has its recipe."""
+        self.shelf.put(recipe, surface, set(self._state.recipes.values()))
+        self._tell_of(recipe)
+
+    def put_offdata(self, recipe: Recipe, offdata: OffData) -> None:
+        """Keep what was found out about a surface off its data."""
+        self.shelf.examined(recipe, offdata)
+        self._tell_of(recipe)
+
+    def stale(self, name: str) -> bool:
+        """Whether the surface was made from other settings, rows or files than the horizon has now."""
+        recipe = self._state.recipes.get(name)
+        return recipe is not None and replace(recipe, edits=()) != self.recipe(name)
+
+    def missing(self) -> tuple[Recipe, ...]:
+        """Return recipes whose surfaces are wanted, not at hand, and can be made from the site as it is."""
+        return tuple(
+            recipe
+            for name, recipe in self._state.recipes.items()
+            if self.shelf.surface(recipe) is None and recipe.given == self.given(name)
+        )
+
+    def lost(self) -> tuple[str, ...]:
+        """Return horizons whose surfaces are not at hand and cannot be made: the files have changed since."""
+        return tuple(
+            name
+            for name, recipe in self._state.recipes.items()
+            if self.shelf.surface(recipe) is None and recipe.given != self.given(name)
+        )
+
+    def points_of(self, recipe: Recipe) -> PointSet:
+        """Return the points that a recipe is made from."""
+        return without_rows(self._given(recipe.horizon), recipe.excluded)
+
+    def select(self, horizon: str | None, row: Row | None = None) -> None:
+        """Choose a horizon, and a row of its data."""
+        chosen = Selection(horizon, row)
+        if chosen != self.selection:
+            self.selection = chosen
+            self.selection_changed.emit(chosen)
+
+    def _given(self, name: str) -> PointSet:
+        if name not in self.site.horizons:
+            raise DocumentError(f"The site has no horizon '{name}'. It has {', '.join(self.site.horizons) or 'none'}.")
+        return self.site.horizons[name]
+
+    def _tell_of(self, recipe: Recipe) -> None:
+        if self._state.recipes.get(recipe.horizon) == recipe:
+            self.result_changed.emit(recipe.horizon)

@@ -1,0 +1,247 @@
+"""Opening and saving: sites, projects, sessions that were cut off."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QStandardPaths, Signal
+from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
+
+from geofit.gui.activity import Activity
+from geofit.gui.dialogs.recovery import RecoveryDialog
+from geofit.gui.document.journal import Unfinished, unfinished
+from geofit.gui.document.recipe import Recipe
+from geofit.gui.document.saving import Opened, Written, read_project, read_surfaces, save_state
+from geofit.gui.fitting import Fitting
+from geofit.gui.preferences import Preferences
+from geofit.gui.session import Session
+from geofit.progress import Progress, tell
+from geofit.site import Site
+from geofit.surface import HorizonSurface
+
+__all__ = ["Files"]
+
+_LOG = logging.getLogger(__name__)
+PROJECT = ".geofit"
+
+
+class Files(QObject):
+    """What the File menu does with sites and projects. ``told(text)`` says in the status bar what was done."""
+
+    told = Signal(str)
+
+    def __init__(
+        self, session: Session, activity: Activity, fitting: Fitting, preferences: Preferences, window: QWidget
+    ) -> None:
+        super().__init__(window)
+        self._session, self._activity, self._fitting = session, activity, fitting
+        self._preferences, self._window = preferences, window
+        self._document = session.document
+        self._after_saving: Callable[[], object] | None = None
+
+    def ask_open(self) -> None:
+        """Ask for a project or a site file, and open it."""
+        name, _ = QFileDialog.getOpenFileName(
+            self._window,
+            self.tr("Open a project or a site file"),
+            self._preferences.folder,
+            self.tr("Projects and site files (*.geofit *.toml);;All files (*)"),
+        )
+        if name:
+            self.open(Path(name))
+
+    def open(self, path: Path) -> None:
+        """Open a project or a site file, after asking whether to save what is open."""
+        self.leave(lambda: self._open(path))
+
+    def open_sample(self, folder: Path | None = None) -> None:
+        """Open the sample site; it is written into the user's documents if it is not there yet."""
+        place = folder or Path(_documents()) / "geofit sample site"
+        self.leave(lambda: self._open_sample(place))
+
+    def import_files(self, files: Sequence[Path]) -> None:
+        """Ask for files if none are given, and go through the import wizard."""
+        self.leave(lambda: self._import(files))
+
+    def _import(self, files: Sequence[Path]) -> None:
+        from geofit.gui.wizard.import_wizard import ImportWizard
+
+        chosen = list(files) or [
+            Path(name)
+            for name in QFileDialog.getOpenFileNames(
+                self._window, self.tr("Files of the new site"), self._preferences.folder
+            )[0]
+        ]
+        if not chosen:
+            return
+        wizard = ImportWizard(chosen, chosen[0].parent, parent=self._window)
+        if wizard.exec() == QDialog.DialogCode.Accepted:
+            self._open(wizard.site_file)
+
+    def close(self) -> None:
+        """Close the site, after asking whether to save."""
+        self.leave(self._close)
+
+    def save(self) -> None:
+        """Save the project; ask where if it was never saved."""
+        if self._document.project_file is None:
+            self.save_as()
+        else:
+            self.save_to(self._document.project_file)
+
+    def save_as(self) -> None:
+        """Ask for a file, and save the project there."""
+        site_file = self._document.site_file
+        if site_file is None:
+            return
+        proposed = self._document.project_file or site_file.with_name(f"{site_file.parent.name}{PROJECT}")
+        name, _ = QFileDialog.getSaveFileName(
+            self._window, self.tr("Save the project"), str(proposed), self.tr("geofit projects (*.geofit)")
+        )
+        if name:
+            path = Path(name)
+            self.save_to(path if path.suffix == PROJECT else path.with_name(path.name + PROJECT))
+        else:
+            self._after_saving = None
+
+    def save_to(self, path: Path) -> None:
+        """Save the project into a file."""
+        document = self._document
+        if document.site_file is None:
+            return
+        state, surfaces = document.state, {}
+        for name, recipe in state.recipes.items():
+            surface = document.surface(name)
+            if surface is not None:
+                # What stands behind the patches is made again from the recipe; it need not travel.
+                surfaces[recipe] = surface.with_(model=None)
+        same = path == document.project_file
+        title = self.tr("Save {name}").format(name=path.name)
+        # Of the site its label and the hashes of its files are enough.
+        site = Site(document.site.name, {}, crs=document.site.crs, inputs=document.site.inputs)
+        work = (state, site, document.site_file, path, surfaces, same)
+        self._activity.do(title, save_state, *work, on_done=self._saved, apart=bool(surfaces))
+
+    def leave(self, then: Callable[[], object]) -> None:
+        """Do what ends the document, after asking whether to save; not at all if the user wants to stay."""
+        if not self._document.dirty:
+            then()
+            return
+        box = QMessageBox(self._window)
+        box.setIcon(QMessageBox.Icon.Question)
+        box.setWindowTitle("geofit")
+        box.setText(self.tr("Save the changes of {name}?").format(name=self._document.state.name))
+        box.setInformativeText(self.tr("What is not saved is lost."))
+        box.setStandardButtons(
+            QMessageBox.StandardButton.Save | QMessageBox.StandardButton.Discard | QMessageBox.StandardButton.Cancel
+        )
+        box.setDefaultButton(QMessageBox.StandardButton.Save)
+        answer = box.exec()
+        if answer == QMessageBox.StandardButton.Save:
+            self._after_saving = then
+            self.save()
+        elif answer == QMessageBox.StandardButton.Discard:
+            then()
+
+    def offer_recovery(self, folder: Path) -> bool:
+        """Offer sessions that were cut off; True if one is being brought back."""
+        sessions = unfinished(folder)
+        if not sessions:
+            return False
+        dialog = RecoveryDialog(sessions, self._window)
+        dialog.exec()
+        if dialog.discarded:
+            for session in sessions:
+                session.discard()
+        if dialog.chosen is None:
+            return False
+        self.recover(dialog.chosen)
+        return True
+
+    def recover(self, session: Unfinished) -> None:
+        """Bring a session back: read its site, do its commands again, make its surfaces again."""
+        if session.site_file is None:
+            session.discard()
+            return
+        title = self.tr("Bring back {name}").format(name=session.base.name)
+        self._activity.do(title, _read_site, session.site_file, on_done=lambda site: self._recovered(session, site))
+
+    def _open(self, path: Path) -> None:
+        self._preferences.folder = str(path.parent)
+        title = self.tr("Open {name}").format(name=path.name)
+        read = read_project if path.suffix == PROJECT else _read_site
+        self._activity.do(title, read, path, on_done=lambda found: self._opened(path, found))
+
+    def _open_sample(self, place: Path) -> None:
+        title = self.tr("Open sample site")
+        self._activity.do(title, _read_sample, place, on_done=lambda found: self._opened(*found))
+
+    def _close(self) -> None:
+        self._activity.cancel()
+        self._session.begin(Site("", {}), None)
+
+    def _recovered(self, session: Unfinished, site: Site) -> None:
+        count = self._session.resume(session, site)
+        self._fitting.make_missing()
+        self.told.emit(self.tr("Brought back, {count} steps.").format(count=count))
+        for name in self._document.lost():
+            _LOG.warning("The data of %s have changed since: its surface cannot be made again as it was. Fit it.", name)
+
+    def _opened(self, path: Path, found: Site | Opened) -> None:
+        self._preferences.opened(path)
+        if isinstance(found, Site):
+            self._session.begin(found, path)
+            site = found
+        else:
+            site = found.site
+            self._session.begin(site, found.site_file, found.state, path)
+            for file, what in found.changed.items():
+                _LOG.warning("%s: %s since the project was saved.", file, what)
+            if found.state.recipes:
+                title = self.tr("Read the surfaces of {name}").format(name=path.name)
+                self._activity.do(
+                    title, read_surfaces, found.project, path.parent, site, on_done=self._surfaces_read, apart=True
+                )
+        errors = sum(issue.severity == "error" for issue in site.issues)
+        text = self.tr("{name}: {horizons} horizons, {errors} rows not used.")
+        self.told.emit(text.format(name=site.name, horizons=len(site.horizons), errors=errors))
+        _LOG.info(
+            "Opened %s: %d horizons, %d holes, %d rows not used", path, len(site.horizons), len(site.holes), errors
+        )
+
+    def _surfaces_read(self, surfaces: dict[Recipe, HorizonSurface]) -> None:
+        for recipe, surface in surfaces.items():
+            self._document.put(recipe, surface)
+        self._fitting.complete(tuple(surfaces))
+        self._fitting.make_missing()
+
+    def _saved(self, written: Written) -> None:
+        self._session.saved(written.path, written.state)
+        self._preferences.opened(written.path)
+        self.told.emit(self.tr("Saved {name}.").format(name=written.path.name))
+        _LOG.info("Saved %s", written.path)
+        then, self._after_saving = self._after_saving, None
+        if then is not None and not self._document.dirty:
+            then()
+
+
+def _read_site(path: Path, *, progress: Progress) -> Site:
+    from geofit.io.site_file import read_site
+
+    return read_site(path, progress)
+
+
+def _read_sample(folder: Path, *, progress: Progress) -> tuple[Path, Site]:
+    from geofit.sample import write_site
+
+    site_file = folder / "site.toml"
+    if not site_file.is_file():
+        tell(progress, "write the sample site", 0.0)
+        write_site(folder)
+    return site_file, _read_site(site_file, progress=progress)
+
+
+def _documents() -> str:
+    return QStandardPaths.writableLocation(QStandardPaths.StandardLocation.DocumentsLocation)

@@ -1,0 +1,202 @@
+"""Fitting, making again, examining: long tasks whose results go to the document."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from geofit.accuracy import Accuracy
+from geofit.gui.activity import Activity, Work
+from geofit.gui.document.commands import (
+    AdjustControlPoint,
+    Command,
+    ExcludeRow,
+    IncludeRow,
+    PullToPoint,
+    SetCore,
+    SetSettings,
+    SetSurface,
+)
+from geofit.gui.document.making import edited, make
+from geofit.gui.document.recipe import DocumentError, HandEdit, Recipe, Row
+from geofit.gui.session import Session
+from geofit.offdata import OffData
+from geofit.settings import FitSettings
+from geofit.surface import HorizonSurface
+
+__all__ = ["Fitting"]
+
+
+class Fitting(QObject):
+    """What makes and changes surfaces.
+
+    Signals: ``refused(exception)`` for a step that does not apply; ``adjusted(before, after)`` with the two checks
+    after a change by hand.
+    """
+
+    refused = Signal(object)
+    adjusted = Signal(object, object)
+
+    def __init__(self, session: Session, activity: Activity, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._session, self._activity = session, activity
+        self._document = session.document
+        self._document.result_changed.connect(self._make_missing)
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self._document.result_changed.disconnect(self._make_missing)
+
+    def fit(self, name: str) -> None:
+        """Fit a horizon with its present settings and rows."""
+        title = self.tr("Fit {name}").format(name=name)
+        self._activity.prepare(title, lambda: self._fit_work(name), on_done=lambda made: self._fitted(*made))
+
+    def fit_all(self) -> None:
+        """Fit every horizon whose surface is missing or stale; all of them if none is."""
+        wanted = [name for name in self._document.horizons if self._needs_fit(name)]
+        for name in wanted or self._document.horizons:
+            self.fit(name)
+
+    def examine(self, name: str) -> None:
+        """Find out how far a surface may lie from the rock where nobody drilled."""
+        title = self.tr("Examine {name} off its data").format(name=name)
+        self._activity.prepare(title, lambda: self._examine_work(name), on_done=self._examined)
+
+    def adjust(self, name: str, patch: str, i: int, j: int, dz: float) -> None:
+        """Raise a control point by ``dz`` metres."""
+        self._edit(AdjustControlPoint(name, patch, i, j, dz))
+
+    def pull(self, name: str, index: int, share: float = 1.0) -> None:
+        """Pull a surface to one of its points."""
+        self._edit(PullToPoint(name, index, share))
+
+    def set_settings(self, name: str, settings: FitSettings) -> None:
+        """Give a horizon other settings."""
+        if settings != self._document.settings(name):
+            self.push(SetSettings(name, settings))
+
+    def set_core(self, name: str, core: Any) -> None:
+        """Give a horizon another core: a word, or corners in map coordinates."""
+        corners = core if isinstance(core, str) else tuple((float(x), float(y)) for x, y in core)
+        if corners != self._document.settings(name).core:
+            self.push(SetCore(name, corners))
+
+    def exclude(self, name: str, row: Row) -> None:
+        """Leave a row out of the next fit, or take it in again if it is left out."""
+        out = row in self._document.state.excluded.get(name, frozenset())
+        self.push(IncludeRow(name, row) if out else ExcludeRow(name, row))
+
+    def push(self, command: Command) -> None:
+        """Do a command, or tell why not."""
+        try:
+            self._session.push(command)
+        except DocumentError as error:
+            self.refused.emit(error)
+
+    def make_missing(self) -> None:
+        """Make the surfaces that the document wants and does not have."""
+        for recipe in self._document.missing():
+            self._make_again(recipe)
+
+    def _needs_fit(self, name: str) -> bool:
+        return self._document.surface(name) is None or self._document.stale(name)
+
+    def _fit_work(self, name: str) -> Work:
+        recipe = self._document.recipe(name)
+        surface = self._document.shelf.surface(recipe)
+        if surface is not None and surface.model is not None:
+            self._fitted(recipe, surface)
+            return None
+        return _made, (recipe, self._document.points_of(recipe), self._document.site.boundary)
+
+    def _fitted(self, recipe: Recipe, surface: HorizonSurface) -> None:
+        self._document.put(recipe, surface)
+        if self._document.state.recipes.get(recipe.horizon) != recipe:
+            self.push(SetSurface(recipe))
+
+    def _make_missing(self, name: str) -> None:
+        for recipe in self._document.missing():
+            if recipe.horizon == name:
+                self._make_again(recipe)
+
+    def _make_again(self, recipe: Recipe) -> None:
+        title = self.tr("Make {name} again").format(name=recipe.horizon)
+        self._activity.prepare(title, lambda: self._again_work(recipe), on_done=lambda made: self._document.put(*made))
+
+    def _again_work(self, recipe: Recipe) -> Work:
+        """Undone or closed in the meantime, or put on the shelf by somebody else: then there is nothing to do."""
+        wanted = self._document.state.recipes.get(recipe.horizon) == recipe
+        surface = self._document.shelf.surface(recipe)
+        if not wanted or (surface is not None and surface.model is not None):
+            return None
+        return _made, (recipe, self._document.points_of(recipe), self._document.site.boundary)
+
+    def complete(self, recipes: Sequence[Recipe]) -> None:
+        """Make again what was read from files, so that it can be changed by hand."""
+        for recipe in recipes:
+            if recipe.given == self._document.given(recipe.horizon):
+                self._make_again(recipe)
+
+    def _edit(self, command: AdjustControlPoint | PullToPoint) -> None:
+        self._activity.prepare(
+            str(command.text), lambda: self._edit_work(command), on_done=lambda made: self._edited(command, *made)
+        )
+
+    def _edit_work(self, command: AdjustControlPoint | PullToPoint) -> Work:
+        recipe = self._document.state.recipes.get(command.horizon)
+        surface = self._document.shelf.surface(recipe)
+        if recipe is None or surface is None:
+            self.refused.emit(DocumentError(f"'{command.horizon}' has no surface to adjust. Fit it first."))
+            return None
+        if surface.model is None and recipe.given != self._document.given(command.horizon):
+            text = (
+                f"'{command.horizon}' was read from a file, and its data have changed since. Fit it again, then adjust."
+            )
+            self.refused.emit(DocumentError(text))
+            return None
+        points, boundary = self._document.points_of(recipe), self._document.site.boundary
+        return _changed, (recipe, surface, command.edit, points, boundary)
+
+    def _edited(
+        self, command: Command, former: Recipe, recipe: Recipe, before: Accuracy, surface: HorizonSurface
+    ) -> None:
+        if self._document.state.recipes.get(former.horizon) != former:
+            self.refused.emit(DocumentError("The surface changed while it was adjusted. Adjust it once more."))
+            return
+        self._document.put(recipe, surface)
+        self.push(command)
+        self.adjusted.emit(before, surface.accuracy)
+
+    def _examine_work(self, name: str) -> Work:
+        recipe = self._document.state.recipes.get(name)
+        surface = self._document.shelf.surface(recipe)
+        if recipe is None or surface is None:
+            self.refused.emit(DocumentError(f"'{name}' has no surface to examine. Fit it first."))
+            return None
+        return _looked, (recipe, surface)
+
+    def _examined(self, found: tuple[Recipe, OffData]) -> None:
+        self._document.put_offdata(*found)
+
+
+def _made(recipe: Recipe, points: Any, boundary: Any, *, progress: Any) -> tuple[Recipe, HorizonSurface]:
+    return recipe, make(recipe, points, boundary, progress)
+
+
+def _changed(
+    recipe: Recipe, surface: HorizonSurface, edit: HandEdit, points: Any, boundary: Any, *, progress: Any
+) -> tuple[Recipe, Recipe, Accuracy | None, HorizonSurface]:
+    before = surface.accuracy
+    if surface.model is None:
+        surface = make(recipe, points, boundary, progress)
+    return recipe, replace(recipe, edits=(*recipe.edits, edit)), before, edited(surface, edit, progress)
+
+
+def _looked(recipe: Recipe, surface: HorizonSurface, *, progress: Any) -> tuple[Recipe, OffData]:
+    from geofit.examine import examine
+
+    return recipe, examine(surface, progress)

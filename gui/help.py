@@ -1,0 +1,87 @@
+"""The Help menu, the preferences and the list of import problems: dialogs that are shown and gone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from PySide6.QtCore import QObject, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QDialog, QMenuBar, QMessageBox, QWidget
+
+from geofit import __version__
+from geofit.gui.dialogs.issues import IssuesDialog
+from geofit.gui.dialogs.preferences import PreferencesDialog
+from geofit.gui.dialogs.shortcuts import ShortcutsDialog
+from geofit.gui.dialogs.system_report import SystemReport
+from geofit.gui.preferences import Preferences
+from geofit.site import Site
+
+__all__ = ["Help"]
+
+#: The page of the tutorial in a checkout; an installed package has the short form below.
+TUTORIAL = Path(__file__).resolve().parents[1] / "docs" / "tutorial.md"
+
+
+class Help(QObject):
+    """Shows what explains."""
+
+    def __init__(self, window: QWidget) -> None:
+        super().__init__(window)
+        self._window = window
+
+    def tutorial(self) -> None:
+        """Open the tutorial, or tell the way through the application in short."""
+        if TUTORIAL.is_file():
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(TUTORIAL)))
+            return
+        self._box(
+            self.tr("The way through geofit"),
+            self.tr(
+                "<ol><li>Open the sample site, a project, or drop your tables on the window.</li>"
+                "<li>Choose a horizon in the project tree; its plan shows the dense core that is interpolated.</li>"
+                "<li>Press Fit (F5). The badge says PASS when σ is below ε.</li>"
+                "<li>Go to the worst point (F8): its hole, file and row are shown. Exclude it, or adjust by hand.</li>"
+                "<li>Examine off the data (F6) to see how far the rock may lie elsewhere.</li>"
+                "<li>Export STEP (Ctrl+E); write the report (Ctrl+R).</li></ol>"
+            ),
+        )
+
+    def shortcuts(self, bar: QMenuBar) -> None:
+        """List all keys."""
+        ShortcutsDialog(bar).exec()
+
+    def system_report(self) -> None:
+        """Show what the application runs on."""
+        SystemReport(self._window).exec()
+
+    def issues(self, site: Site) -> None:
+        """List the rows that the readers did not use."""
+        IssuesDialog(site, self._window).exec()
+
+    def preferences(
+        self, preferences: Preferences, set_theme: Callable[[str], object], set_language: Callable[[str], object]
+    ) -> None:
+        """Ask for theme and language."""
+        dialog = PreferencesDialog(preferences, self._window)
+        if dialog.exec() == QDialog.DialogCode.Accepted:
+            if dialog.theme != preferences.theme:
+                set_theme(dialog.theme)
+            if dialog.language != preferences.language:
+                set_language(dialog.language)
+
+    def about(self) -> None:
+        """Name the program, its version and its licence."""
+        self._box(
+            self.tr("About geofit"),
+            self.tr(
+                "<h3>geofit {version}</h3><p>NURBS surfaces of geological horizons: fitted, checked against a "
+                "tolerance, stitched, written as STEP.</p><p>Apache-2.0. Windows by Qt (LGPL-3), 3D by VTK (BSD-3), "
+                "solids by OpenCASCADE (LGPL-2.1 with exception).</p>"
+            ).format(version=__version__),
+        )
+
+    def _box(self, title: str, text: str) -> None:
+        box = QMessageBox(QMessageBox.Icon.NoIcon, title, text, QMessageBox.StandardButton.Close, self._window)
+        box.setIconPixmap(self._window.windowIcon().pixmap(48))
+        box.exec()

@@ -1,0 +1,47 @@
+"""Icons of the actions: line drawings beside this module, in the colour of the theme's text."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QByteArray, QSize
+from PySide6.QtGui import QColor, QGuiApplication, QIcon, QPainter, QPalette, QPixmap
+from PySide6.QtSvg import QSvgRenderer
+
+__all__ = ["application_icon", "icon"]
+
+FOLDER = Path(__file__).with_name("icons")
+#: Pixels, for tool bars and menus at 1x to 3x.
+SIZES = (16, 24, 32, 48, 72)
+
+
+def icon(name: str) -> QIcon:
+    """Return an icon for the present theme."""
+    palette = QGuiApplication.palette()
+    drawn = QIcon()
+    for mode, group in (
+        (QIcon.Mode.Normal, QPalette.ColorGroup.Active),
+        (QIcon.Mode.Disabled, QPalette.ColorGroup.Disabled),
+    ):
+        colour = palette.color(group, QPalette.ColorRole.ButtonText)
+        for size in SIZES:
+            drawn.addPixmap(_pixmap(name, size, colour), mode)
+    return drawn
+
+
+def application_icon() -> QIcon:
+    """Return the icon of the windows."""
+    drawn = QIcon()
+    for size in (16, 32, 48, 64, 128, 256):
+        drawn.addPixmap(_pixmap("geofit", size, QColor()))
+    return drawn
+
+
+def _pixmap(name: str, size: int, colour: QColor) -> QPixmap:
+    text = (FOLDER / f"{name}.svg").read_text(encoding="utf-8").replace("currentColor", colour.name())
+    pixmap = QPixmap(QSize(size, size))
+    pixmap.fill(QColor(0, 0, 0, 0))
+    painter = QPainter(pixmap)
+    QSvgRenderer(QByteArray(text.encode())).render(painter)
+    painter.end()
+    return pixmap

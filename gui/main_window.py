@@ -1,0 +1,306 @@
+"""The main window: it holds the widgets and the controllers, and connects actions with what they do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QEvent, QSize, Signal
+from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QApplication, QInputDialog, QMainWindow
+
+from geofit.gui.actions import Actions
+from geofit.gui.activity import Activity
+from geofit.gui.activity_bar import ActivityBar
+from geofit.gui.adjusting import Adjusting
+from geofit.gui.delivering import Delivering
+from geofit.gui.dialogs.error import ErrorDialog
+from geofit.gui.document.commands import RenameSite
+from geofit.gui.document.recipe import Row
+from geofit.gui.files import Files
+from geofit.gui.fitting import Fitting
+from geofit.gui.help import Help
+from geofit.gui.icons import application_icon
+from geofit.gui.menus import Menus
+from geofit.gui.ordering import Ordering
+from geofit.gui.preferences import Preferences
+from geofit.gui.selecting import Selecting
+from geofit.gui.session import Session
+from geofit.gui.showing import Showing
+from geofit.gui.theme import apply_theme, is_dark
+from geofit.gui.worker import finish_all
+from geofit.gui.workspace import LAYOUT_VERSION, Workspace
+
+__all__ = ["MainWindow"]
+
+#: Actions that need no open site.
+_ALWAYS = {
+    "new", "open", "sample", "quit", "preferences", "reset_layout", "tutorial", "shortcuts", "system_report", "about",
+}  # fmt: skip
+
+
+class MainWindow(QMainWindow):
+    """The window on a session; it can be closed and made anew (another language) while the session goes on."""
+
+    language_chosen = Signal(str)
+    closed = Signal()
+
+    def __init__(self, session: Session, preferences: Preferences) -> None:
+        super().__init__()
+        self.session, self.preferences = session, preferences
+        self._ready = self._leaving = False
+        self.setWindowIcon(application_icon())
+        self.setAcceptDrops(True)
+        self.setMinimumSize(QSize(960, 640))
+        self.resize(1280, 800)
+        self.activity = Activity(self)
+        self.actions_ = Actions(self)
+        self.menus = Menus(self, self.actions_, session.stack)
+        self.panels = Workspace(self)
+        self.bar = ActivityBar(self, self.activity)
+        document = session.document
+        self.showing = Showing(document, self.panels, self)
+        self.fitting = Fitting(session, self.activity, self)
+        self.files = Files(session, self.activity, self.fitting, preferences, self)
+        self.selecting = Selecting(document, self.panels, self.showing, self)
+        self.adjusting = Adjusting(document, self.fitting, self.panels.adjust, self)
+        self.ordering = Ordering(document, self.activity, self.showing, self.panels, self)
+        self.delivering = Delivering(document, self.activity, preferences, self.panels, self)
+        self.help = Help(self)
+        self._connect_actions()
+        self._connect_panels()
+        self._connect_messages()
+        self.menus.show_panels(self.panels.switches())
+        self._show_recent()
+        self._choose_in(self.actions_.themes, preferences.theme)
+        self._choose_in(self.actions_.languages, preferences.language)
+        self._restore_layout()
+        self.showing.everything()
+        self._show_title()
+        self._enable()
+        self._ready = True
+
+    def fail(self, title: str, error: Exception) -> None:
+        """Tell of a failure in a dialog."""
+        ErrorDialog(title, error, self).exec()
+
+    def tell(self, text: str) -> None:
+        """Say something in the status bar for a while."""
+        self.statusBar().showMessage(text, 8000)
+
+    def leave_without_asking(self) -> None:
+        """Close at the next chance: the session goes on, or the user has been asked."""
+        self._leaving = True
+        self.close()
+
+    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
+        """Ask whether to save, end what runs, and let go of the 3D view."""
+        if not self._leaving and self.session.document.dirty:
+            event.ignore()
+            self.files.leave(self.leave_without_asking)
+            return
+        self._ready = False
+        self.preferences.layout = (self.saveGeometry(), self.saveState(LAYOUT_VERSION))
+        self.activity.cancel()
+        finish_all()
+        for part in (self.showing, self.selecting, self.fitting):
+            part.close()
+        for end in self._ends:
+            end()
+        self.panels.close()
+        event.accept()
+        self.closed.emit()
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
+        """Take files, wherever they are dropped."""
+        self.panels.start.dragEnterEvent(event)
+
+    def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802
+        """Open or import what is dropped."""
+        self.panels.start.dropEvent(event)
+
+    def changeEvent(self, event: QEvent) -> None:  # noqa: N802
+        """Draw in the colours of another theme."""
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self._ready:
+            self.actions_.draw_icons()
+            self.menus.draw_icons()
+            self.panels.view.set_dark(is_dark(self.palette()))
+
+    def _connect_actions(self) -> None:
+        files, view, give = self.files, self.panels.view, self.delivering
+        for name, do in {
+            "new": lambda: files.import_files([]),
+            "open": files.ask_open,
+            "sample": lambda: files.open_sample(),
+            "save": files.save,
+            "save_as": files.save_as,
+            "export_step": give.export_step,
+            "export_other": give.export_other,
+            "report": give.report,
+            "screenshot": give.screenshot,
+            "issues": lambda: self.help.issues(self.session.document.site),
+            "close": files.close,
+            "quit": self.close,
+            "rename": self._rename,
+            "preferences": lambda: self.help.preferences(self.preferences, self._set_theme, self.language_chosen.emit),
+            "home": view.reset_camera,
+            "reset_layout": self.panels.arrange,
+            "fit": self._with_horizon(self.fitting.fit),
+            "fit_all": self.fitting.fit_all,
+            "examine": self._with_horizon(self.fitting.examine),
+            "check_order": self.ordering.check,
+            "worst": self.selecting.go_to_worst,
+            "exclude": self._exclude_chosen,
+            "stop": self.activity.cancel,
+            "tutorial": self.help.tutorial,
+            "shortcuts": lambda: self.help.shortcuts(self.menuBar()),
+            "system_report": self.help.system_report,
+            "about": self.help.about,
+        }.items():
+            self.actions_[name].triggered.connect(_plain(do))
+        for name in ("top", "north", "south", "east", "west", "iso"):
+            self.actions_[name].triggered.connect(lambda _=False, name=name: view.view(name))
+        for name, switch in {
+            "orthographic": view.set_orthographic,
+            "clip": view.set_clip,
+            "measure": view.set_measuring,
+            "section": self._switch_section,
+            "control_points": lambda on: view.set_control_points(self._horizon() if on else None),
+            "seams": lambda on: view.set_seams(self._horizon() if on else None),
+        }.items():
+            self.actions_[name].toggled.connect(switch)
+        self.actions_.exaggerations.triggered.connect(lambda action: view.set_exaggeration(action.data()))
+        self.actions_.themes.triggered.connect(lambda action: self._set_theme(action.data()))
+        self.actions_.languages.triggered.connect(lambda action: self.language_chosen.emit(action.data()))
+
+    def _connect_panels(self) -> None:
+        panels, fitting, files = self.panels, self.fitting, self.files
+        panels.start.sample_requested.connect(lambda: files.open_sample())
+        panels.start.open_requested.connect(files.ask_open)
+        panels.start.import_requested.connect(files.import_files)
+        panels.start.file_chosen.connect(files.open)
+        panels.fit.applied.connect(fitting.set_settings)
+        panels.fit.fit_requested.connect(fitting.fit)
+        panels.fit.fit_all_requested.connect(fitting.fit_all)
+        panels.plan.core_changed.connect(fitting.set_core)
+        panels.plan.pointer_moved.connect(lambda x, y: self.bar.show_place(x, y, float("nan")))
+        panels.residuals.exclude_requested.connect(self._exclude)
+        panels.residuals.pull_requested.connect(self.adjusting.pull)
+        panels.offdata.examine_requested.connect(self._with_horizon(fitting.examine))
+        panels.section.failed.connect(lambda error: self.fail(self.tr("Section"), error))
+        panels.view.pointer_moved.connect(self.bar.show_place)
+        panels.view.measured.connect(self.tell)
+        panels.view.set_dark(is_dark(self.palette()))
+
+    def _connect_messages(self) -> None:
+        document = self.session.document
+        self.activity.failed.connect(self.fail)
+        self.activity.began.connect(lambda _: self._enable())
+        self.activity.ended.connect(self._enable)
+        self.fitting.refused.connect(lambda error: self.fail("", error))
+        self.delivering.refused.connect(lambda error: self.fail("", error))
+        for part in (self.files, self.delivering, self.ordering):
+            part.told.connect(self.tell)
+        self.selecting.said.connect(self.tell)
+        self._ends: list[Callable[[], None]] = []
+        for signal, listener in (
+            (document.site_changed, self._on_site),
+            (document.saved_changed, self._show_title),
+            (document.name_changed, self._show_title),
+        ):
+            signal.connect(listener)
+            self._ends.append(lambda signal=signal, listener=listener: signal.disconnect(listener))  # type: ignore[misc]
+
+    def _on_site(self) -> None:
+        self._show_recent()
+        self._show_title()
+        self._enable()
+        self.actions_["section"].setChecked(False)
+
+    def _show_title(self) -> None:
+        document = self.session.document
+        file = document.project_file or document.site_file
+        name = f"{document.state.name}[*] – {file.name} – geofit" if file else "geofit[*]"
+        self.setWindowTitle(name)
+        self.setWindowModified(document.dirty)
+        self.bar.crs.setText(document.site.crs)
+        self._show_recent()
+
+    def _show_recent(self) -> None:
+        recent = self.preferences.recent
+        self.panels.start.show_recent(recent)
+        self.menus.show_recent(recent, self.files.open)
+
+    def _enable(self) -> None:
+        """Enable what can be done with what is open."""
+        is_open = bool(self.session.document.site.horizons)
+        for name, action in self.actions_.all().items():
+            if name not in _ALWAYS:
+                action.setEnabled(is_open)
+        self.actions_["stop"].setEnabled(self.activity.busy)
+        self.actions_.exaggerations.setEnabled(is_open)
+
+    def _horizon(self) -> str | None:
+        return self.session.document.selection.horizon
+
+    def _with_horizon(self, do: Callable[[str], object]) -> Callable[[], None]:
+        def with_chosen() -> None:
+            name = self._horizon()
+            if name is not None:
+                do(name)
+
+        return with_chosen
+
+    def _switch_section(self, on: bool) -> None:
+        if on:
+            self.panels.reveal("section")
+            self.showing.begin_section()
+        self.panels.view.set_section(self.showing.line if on else None, self.showing.thickness)
+
+    def _exclude(self, index: int) -> None:
+        name = self._horizon()
+        surface = None if name is None else self.session.document.surface(name)
+        if name is not None and surface is not None:
+            self.fitting.exclude(name, Row.of(surface.points, index))
+
+    def _exclude_chosen(self) -> None:
+        chosen = self.session.document.selection
+        if chosen.horizon is not None and chosen.row is not None:
+            self.fitting.exclude(chosen.horizon, chosen.row)
+
+    def _rename(self) -> None:
+        name, given = QInputDialog.getText(
+            self, self.tr("Rename site"), self.tr("Name of the site"), text=self.session.document.state.name
+        )
+        if given and name != self.session.document.state.name:
+            self.fitting.push(RenameSite(name.strip()))
+
+    def _set_theme(self, theme: str) -> None:
+        app = QApplication.instance()
+        assert isinstance(app, QApplication)
+        self.preferences.theme = theme  # type: ignore[assignment]
+        self._choose_in(self.actions_.themes, theme)
+        apply_theme(app, self.preferences.theme)
+
+    def _choose_in(self, group: object, value: object) -> None:
+        for action in group.actions():  # type: ignore[attr-defined]
+            action.setChecked(action.data() == value)
+
+    def _restore_layout(self) -> None:
+        layout = self.preferences.layout
+        if layout is not None:
+            self.panels.give_docks()
+        if layout is None or not self.restoreState(layout[1], LAYOUT_VERSION):
+            # Only then: docks that are put in tabs twice before the window is shown leave their first tab bars behind.
+            self.panels.arrange()
+        if layout is not None:
+            self.restoreGeometry(layout[0])
+
+
+def _plain(do: Callable[[], object]) -> Callable[..., None]:
+    """Return a slot that drops what the signal carries."""
+
+    def slot(*_: object) -> None:
+        do()
+
+    return slot

@@ -1,0 +1,1 @@
+"""Panels beside and below the view; each takes plain data and emits signals."""

@@ -1,0 +1,229 @@
+"""Every question put to a surface, with its answer: the checks, conflicts, notes, order, and the file read back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QAction, QKeySequence, QResizeEvent
+from PySide6.QtWidgets import (
+    QAbstractItemView,
+    QApplication,
+    QHeaderView,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
+
+from geofit.accuracy import Accuracy, Check, ReadBack
+from geofit.gui.panels.marks import icon, verdict_mark
+from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.words import spoken
+from geofit.offdata import OffData
+from geofit.order import Order
+from geofit.report.digits import measured
+from geofit.surface import HorizonSurface
+
+__all__ = ["ChecksPanel"]
+
+_POINT = Qt.ItemDataRole.UserRole
+_PLACE = Qt.ItemDataRole.UserRole + 1
+
+
+class ChecksPanel(QWidget):
+    """Checks in groups; each says passed, failed or not applicable by a mark and by a word.
+
+    ``point_chosen`` carries the index of the point that gave way, when its conflict is chosen;
+    ``place_chosen`` map coordinates, when a check that has a worst place is.
+    """
+
+    point_chosen = Signal(int)
+    place_chosen = Signal(float, float, float)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.tree = QTreeWidget()
+        self.tree.setAccessibleName(self.tr("Checks of the surface"))
+        self.tree.setHeaderLabels([self.tr("Check"), self.tr("Result"), self.tr("Value"), self.tr("Limit"), ""])
+        self.tree.headerItem().setText(4, self.tr("In words"))
+        self.tree.setWordWrap(True)
+        self.tree.setIndentation(8)
+        self.tree.setAlternatingRowColors(True)
+        self.tree.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
+        self.tree.setHorizontalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
+        header = self.tree.header()
+        header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
+        header.setStretchLastSection(True)
+        copy = QAction(self.tr("Copy"), self.tree)
+        copy.setShortcut(QKeySequence.StandardKey.Copy)
+        copy.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
+        copy.triggered.connect(self.copy)
+        self.tree.addAction(copy)
+        self.tree.setContextMenuPolicy(Qt.ContextMenuPolicy.ActionsContextMenu)
+        self.tree.currentItemChanged.connect(self._tell)
+        content = QWidget()
+        column = QVBoxLayout(content)
+        column.setContentsMargins(8, 8, 8, 8)
+        column.addWidget(self.tree)
+        self.pages = Placeholder(content)
+        self.setLayout(self.pages)
+        self._rows: list[QTreeWidgetItem] = []
+        self.show_surface(None)
+
+    def show_surface(
+        self,
+        surface: HorizonSurface | None,
+        offdata: OffData | None = None,
+        orders: Sequence[Order] = (),
+        read_back: ReadBack | None = None,
+    ) -> None:
+        """Show what was asked of a surface.
+
+        Parameters
+        ----------
+        surface : HorizonSurface or None
+            With its accuracy; None while there is none.
+        offdata : OffData or None
+            What is known away from the data.
+        orders : sequence of Order
+            How the horizon lies to its neighbours.
+        read_back : ReadBack or None
+            What the reader found in the STEP file.
+        """
+        self._rows.clear()
+        self.tree.clear()
+        if surface is None or surface.accuracy is None:
+            self.pages.say(self.tr("No surface yet: press Fit, and every check of it is listed here."))
+            return
+        accuracy = surface.accuracy
+        self._group(self.tr("Surface"), [self._sigma(accuracy), *map(self._check, accuracy.checks)])
+        self._group(self.tr("Order of horizons"), [self._order(order) for order in orders])
+        self._group(self.tr("Away from the data"), self._away(offdata))
+        self._group(self.tr("Conflicts"), self._conflicts(surface, accuracy))
+        self._group(self.tr("Notes"), [self._note(note) for note in accuracy.notes])
+        self._group(self.tr("STEP file read back"), self._file(read_back))
+        self.tree.expandAll()
+        self._fit_columns()
+        self.pages.reveal()
+
+    def copy(self) -> None:
+        """Put the selected rows on the clipboard as tab-separated text; all of them if none is selected."""
+        chosen = self.tree.selectedItems()
+        rows = chosen or self._rows
+        heads = [self.tree.headerItem().text(k) for k in range(5)]
+        lines = [heads, *([row.text(k).replace("\n", " ") for k in range(5)] for row in rows)]
+        QApplication.clipboard().setText("\n".join("\t".join(line) for line in lines) + "\n")
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Wrap the words anew."""
+        super().resizeEvent(event)
+        self.tree.scheduleDelayedItemsLayout()
+
+    def _group(self, title: str, rows: Sequence[QTreeWidgetItem]) -> None:
+        if not rows:
+            return
+        group = QTreeWidgetItem([title])
+        font = group.font(0)
+        font.setBold(True)
+        group.setFont(0, font)
+        self.tree.addTopLevelItem(group)
+        self._rows.extend(rows)
+        group.setFirstColumnSpanned(True)
+        group.addChildren(list(rows))
+
+    def _row(
+        self, name: str, passed: bool | None, value: str = "", limit: str = "", words: str = "", *, word: str = ""
+    ) -> QTreeWidgetItem:
+        result = word or (
+            self.tr("not applicable") if passed is None else self.tr("passed") if passed else self.tr("failed")
+        )
+        item = QTreeWidgetItem([name, result, value, limit, words])
+        item.setIcon(0, verdict_mark(passed))
+        for column in (2, 3):
+            item.setTextAlignment(column, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        for column in range(5):
+            item.setToolTip(column, "\n".join((name, words)) if words else name)
+        return item
+
+    def _sigma(self, a: Accuracy) -> QTreeWidgetItem:
+        words = self.tr("standard deviation of all {n} points from the surface").format(n=a.n)
+        return self._row("σ", a.passed, measured(a.sigma, "m"), measured(a.epsilon, "m"), words)
+
+    def _check(self, check: Check) -> QTreeWidgetItem:
+        value, limit = (measured(number, check.unit) for number in (check.value, check.limit))
+        item = self._row(spoken(check.name), check.passed, value, limit, spoken(check.text))
+        item.setData(0, _PLACE, _places(check))
+        return item
+
+    def _order(self, order: Order) -> QTreeWidgetItem:
+        name = self.tr("{upper} above {lower}").format(upper=order.upper, lower=order.lower)
+        check = order.check()
+        item = self._row(name, check.passed, measured(order.min, "m"), measured(0.0, "m"), spoken(check.text))
+        if not order.area:
+            item.setText(2, "")
+        item.setData(0, _PLACE, _places(check))
+        return item
+
+    def _away(self, offdata: OffData | None) -> list[QTreeWidgetItem]:
+        if offdata is None:
+            return []
+        rows = []
+        schemes = {
+            "hole": self.tr("holes left out"),
+            "section": self.tr("sections left out"),
+            "block": self.tr("blocks left out"),
+        }
+        for left in offdata.left_out:
+            words = self.tr("{share:.0%} of the left-out points lie in the 90 % band; mean error {bias:+.2f} m").format(
+                share=left.inside, bias=left.bias
+            )
+            name = schemes.get(left.scheme, left.scheme)
+            rows.append(self._row(name, None, measured(left.rms, "m"), words=words, word=self.tr("for knowledge")))
+        return rows + [self._note(note) for note in offdata.notes]
+
+    def _conflicts(self, surface: HorizonSurface, a: Accuracy) -> list[QTreeWidgetItem]:
+        rows = []
+        for conflict in a.conflicts:
+            name = surface.points.describe(conflict.dropped)
+            value = measured(conflict.difference, "m")
+            item = self._row(name, None, value, words=spoken(conflict.text), word=self.tr("gave way"))
+            item.setIcon(0, icon("stale"))
+            item.setData(0, _POINT, conflict.dropped)
+            rows.append(item)
+        return rows
+
+    def _note(self, note: str) -> QTreeWidgetItem:
+        item = QTreeWidgetItem([spoken(note)])
+        item.setFirstColumnSpanned(True)
+        item.setToolTip(0, spoken(note))
+        return item
+
+    def _file(self, back: ReadBack | None) -> list[QTreeWidgetItem]:
+        if back is None:
+            return []
+        words = self.tr("{faces} faces, {edges} free edges, edge tolerance {tolerance:.1e} m").format(
+            faces=back.faces, edges=back.free_edges, tolerance=back.edge_tolerance
+        )
+        return [self._row(back.file, back.passed, words=words), *map(self._check, back.checks)]
+
+    def _fit_columns(self) -> None:
+        for column in range(4):
+            self.tree.resizeColumnToContents(column)
+            self.tree.setColumnWidth(column, min(self.tree.columnWidth(column), max(self.tree.width() - 110, 130)))
+        for row in self._rows:
+            # A note has no figures; it takes the whole line.
+            row.setFirstColumnSpanned(not row.text(1))
+
+    def _tell(self, current: QTreeWidgetItem | None) -> None:
+        index = None if current is None else current.data(0, _POINT)
+        place = None if current is None else current.data(0, _PLACE)
+        if index is not None:
+            self.point_chosen.emit(int(index))
+        elif place is not None:
+            self.place_chosen.emit(*place)
+
+
+def _places(check: Check) -> tuple[float, float, float] | None:
+    """Return the worst place of a check that has places."""
+    return check.places[0] if check.places else None

@@ -1,0 +1,69 @@
+"""The effect of a change by hand on the check, before it is applied."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFrame, QGridLayout, QLabel
+
+from geofit.accuracy import Accuracy
+from geofit.report.digits import metres
+
+__all__ = ["Effect"]
+
+
+class Effect(QFrame):
+    """Figures before and after a change."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setFrameShape(QFrame.Shape.StyledPanel)
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(8, 6, 8, 6)
+        self._grid.setHorizontalSpacing(10)
+        self._grid.setVerticalSpacing(2)
+        self.cells = [[QLabel() for _ in range(3)] for _ in range(4)]
+        for k, row in enumerate(self.cells):
+            for c, label in enumerate(row):
+                self._grid.addWidget(label, k, c, Qt.AlignmentFlag.AlignRight if c else Qt.AlignmentFlag.AlignLeft)
+        self._grid.setColumnStretch(0, 1)
+        self.words = QLabel()
+        self.words.setWordWrap(True)
+        self._grid.addWidget(self.words, 4, 0, 1, 3)
+        self.clear()
+
+    def clear(self) -> None:
+        """Show that no effect is known."""
+        self.say(self.tr("Effect: move or pull, and the deviation before and after stands here."))
+
+    def say(self, text: str) -> None:
+        """Show a sentence instead of figures."""
+        for label in (label for row in self.cells for label in row):
+            label.hide()
+        self.words.setText(text)
+        self.words.show()
+
+    def show_effect(self, before: Accuracy, after: Accuracy | None) -> None:
+        """Show both checks."""
+        if after is None:
+            self.clear()
+            return
+        worst = before.worst[0] if before.worst else None
+        rows: list[tuple[str, str, str]] = [
+            (self.tr("Effect"), self.tr("before"), self.tr("after")),
+            (self.tr("σ, m"), metres(before.sigma), metres(after.sigma)),
+            (self.tr("max |d|, m"), metres(before.max_abs), metres(after.max_abs)),
+        ]
+        if worst is not None and worst < len(after.residuals):
+            d0, d1 = before.residuals[worst], after.residuals[worst]
+            rows.append((self.tr("worst point's d, m"), metres(d0), metres(d1)))
+        for k, row in enumerate(self.cells):
+            for c, label in enumerate(row):
+                label.setVisible(k < len(rows))
+                label.setText(rows[k][c] if k < len(rows) else "")
+        font = self.font()
+        font.setBold(True)
+        for label in self.cells[0]:
+            label.setFont(font)
+        verdict = self.tr("{before} → {after}").format(before=before.verdict, after=after.verdict)
+        self.words.setText(verdict)
+        self.words.setVisible(before.passed != after.passed)

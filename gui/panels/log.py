@@ -1,0 +1,114 @@
+"""The log: what geofit, its libraries and Qt had to say since the start."""
+
+from __future__ import annotations
+
+import logging
+import time
+
+from PySide6.QtCore import QMessageLogContext, QObject, QtMsgType, Signal, qInstallMessageHandler
+from PySide6.QtGui import QColor, QGuiApplication, QPalette, QTextCharFormat, QTextCursor
+from PySide6.QtWidgets import QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
+
+from geofit.report.style import FAIL
+
+__all__ = ["LogPanel", "qt_to_logging"]
+
+#: Lines kept.
+LINES = 5000
+_QT_LEVELS = {
+    QtMsgType.QtDebugMsg: logging.DEBUG,
+    QtMsgType.QtInfoMsg: logging.INFO,
+    QtMsgType.QtWarningMsg: logging.WARNING,
+    QtMsgType.QtCriticalMsg: logging.ERROR,
+    QtMsgType.QtFatalMsg: logging.CRITICAL,
+}
+
+
+def qt_to_logging() -> None:
+    """Let Qt's messages go where Python's go."""
+    qInstallMessageHandler(_hear_qt)
+
+
+def _hear_qt(kind: QtMsgType, context: QMessageLogContext, text: str | None) -> None:
+    logging.getLogger("qt").log(_QT_LEVELS.get(kind, logging.INFO), "%s", text or "")
+
+
+class _Bridge(QObject):
+    heard = Signal(int, str)
+
+
+class _Handler(logging.Handler):
+    """Hands records over to the window's thread, whichever thread they come from."""
+
+    def __init__(self) -> None:
+        super().__init__(logging.INFO)
+        self.bridge = _Bridge()
+
+    def filter(self, record: logging.LogRecord) -> bool:
+        """Let what geofit and Qt say pass, and failures of the libraries."""
+        return record.name.split(".")[0] in ("geofit", "qt") or record.levelno >= logging.ERROR
+
+    def emit(self, record: logging.LogRecord) -> None:
+        try:
+            text = self.format(record)
+        except (TypeError, ValueError):
+            self.handleError(record)
+            return
+        self.bridge.heard.emit(record.levelno, text)
+
+
+class LogPanel(QWidget):
+    """Shows the records of Python's logging from INFO on, warnings coloured."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.text = QPlainTextEdit()
+        self.text.setReadOnly(True)
+        self.text.setMaximumBlockCount(LINES)
+        self.text.setAccessibleName(self.tr("Log"))
+        self.text.setPlaceholderText(self.tr("Nothing to tell yet: what geofit does is written here."))
+        copy, clear = QPushButton(self.tr("Copy all")), QPushButton(self.tr("Clear"))
+        copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(self.text.toPlainText()))
+        clear.clicked.connect(self.text.clear)
+        buttons = QHBoxLayout()
+        buttons.addStretch(1)
+        buttons.addWidget(copy)
+        buttons.addWidget(clear)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 8, 8, 8)
+        layout.setSpacing(6)
+        layout.addWidget(self.text)
+        layout.addLayout(buttons)
+        self._handler = _Handler()
+        self._handler.setFormatter(_Formatter())
+        self._handler.bridge.heard.connect(self._write)
+        self._root = logging.getLogger()
+        self._geofit = logging.getLogger("geofit")
+        self._geofit.setLevel(logging.INFO)
+        self._root.addHandler(self._handler)
+
+    def detach(self) -> None:
+        """Hear no more; to be called before the window goes."""
+        self._root.removeHandler(self._handler)
+
+    def _write(self, level: int, text: str) -> None:
+        look = QTextCharFormat()
+        look.setForeground(QColor(FAIL) if level >= logging.ERROR else self._colour(level))
+        cursor = QTextCursor(self.text.document())
+        cursor.movePosition(QTextCursor.MoveOperation.End)
+        if not self.text.document().isEmpty():
+            cursor.insertBlock()
+        cursor.insertText(text, look)
+        bar = self.text.verticalScrollBar()
+        bar.setValue(bar.maximum())
+
+    def _colour(self, level: int) -> QColor:
+        role = QPalette.ColorRole.Text if level < logging.WARNING else QPalette.ColorRole.Link
+        return self.palette().color(role)
+
+
+class _Formatter(logging.Formatter):
+    def format(self, record: logging.LogRecord) -> str:
+        at = time.strftime("%H:%M:%S", time.localtime(record.created))
+        word = "" if record.levelno < logging.WARNING else f"{record.levelname.lower()}: "
+        return f"{at}  {word}{record.getMessage()}"

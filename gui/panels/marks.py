@@ -1,0 +1,140 @@
+"""Marks that differ in shape as well as colour, drawn sharply at every scale: passed, failed, stale and the like."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import lru_cache
+
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPalette, QPen, QPixmap, QPolygonF
+
+from geofit.report.style import CORE, FAIL, PASS, QUIET
+
+__all__ = ["icon", "is_dark", "readable", "verdict_mark"]
+
+_SIZE = 16
+_RATIOS = (1.0, 1.25, 1.5, 2.0)
+
+
+def is_dark(palette: QPalette) -> bool:
+    """Whether the palette's windows are dark."""
+    return palette.color(QPalette.ColorRole.Window).lightness() < 128
+
+
+def readable(colour: str, palette: QPalette) -> QColor:
+    """Return one of the fixed colours, lightened where it would sink into a dark window."""
+    made = QColor(colour)
+    if not is_dark(palette) or made.lightness() > 150:
+        return made
+    return QColor.fromHsl(made.hslHue(), min(made.hslSaturation(), 170), 165)
+
+
+def verdict_mark(passed: bool | None, *, stale: bool = False) -> QIcon:
+    """Return the mark of a verdict: a disc with a tick, a square with a cross, a ring with a dash."""
+    if stale:
+        return icon("stale")
+    return icon("none" if passed is None else "passed" if passed else "failed")
+
+
+@lru_cache(maxsize=64)
+def icon(name: str) -> QIcon:
+    """Return a mark by name: passed, failed, none, stale; hole, section, ...; up, down, dot with a colour."""
+    made = QIcon()
+    for ratio in _RATIOS:
+        pixmap = QPixmap(round(_SIZE * ratio), round(_SIZE * ratio))
+        pixmap.setDevicePixelRatio(ratio)
+        pixmap.fill(Qt.GlobalColor.transparent)
+        painter = QPainter(pixmap)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        paint(painter, QRectF(1, 1, 14, 14), name)
+        painter.end()
+        for mode in (QIcon.Mode.Normal, QIcon.Mode.Selected, QIcon.Mode.Active):
+            made.addPixmap(pixmap, mode)
+    return made
+
+
+def paint(painter: QPainter, box: QRectF, name: str) -> None:
+    """Paint a mark into a box."""
+    side = box.width()
+    pen = QPen(QColor("white"), side / 7)
+    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+
+    def at(x: float, y: float) -> QPointF:
+        return QPointF(box.left() + x * side, box.top() + y * side)
+
+    painter.setPen(Qt.PenStyle.NoPen)
+    if name == "passed":
+        painter.setBrush(QColor(PASS))
+        painter.drawEllipse(box)
+        painter.setPen(pen)
+        painter.drawPolyline(QPolygonF([at(0.27, 0.53), at(0.44, 0.7), at(0.74, 0.34)]))
+    elif name == "failed":
+        painter.setBrush(QColor(FAIL))
+        painter.drawRect(box)
+        painter.setPen(pen)
+        painter.drawLine(at(0.28, 0.28), at(0.72, 0.72))
+        painter.drawLine(at(0.72, 0.28), at(0.28, 0.72))
+    elif name == "none":
+        painter.setPen(QPen(QColor(QUIET), side / 9))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawEllipse(box.adjusted(1, 1, -1, -1))
+        painter.drawLine(at(0.32, 0.5), at(0.68, 0.5))
+    elif name == "stale":
+        painter.setBrush(QColor("#c98a12"))
+        painter.drawPolygon(QPolygonF([at(0.5, 0.02), at(1.0, 0.95), at(0.0, 0.95)]))
+        painter.setPen(pen)
+        painter.drawLine(at(0.5, 0.38), at(0.5, 0.62))
+        painter.drawPoint(at(0.5, 0.81))
+    else:
+        _things(painter, box, name, at)
+
+
+def _things(painter: QPainter, box: QRectF, name: str, at: Callable[[float, float], QPointF]) -> None:
+    side = box.width()
+    line = QPen(QColor("#8d6b3f" if name == "horizon" else "#3f86b8"), side / 8)
+    line.setCapStyle(Qt.PenCapStyle.RoundCap)
+    painter.setPen(line)
+    if name == "hole":
+        painter.drawLine(at(0.5, 0.1), at(0.5, 0.95))
+        painter.drawLine(at(0.25, 0.1), at(0.75, 0.1))
+    elif name == "adit":
+        line.setColor(QColor("#9a6dba"))
+        painter.setPen(line)
+        path = QPainterPath(at(0.18, 0.92))
+        path.lineTo(at(0.18, 0.45))
+        path.cubicTo(at(0.18, 0.0), at(0.82, 0.0), at(0.82, 0.45))
+        path.lineTo(at(0.82, 0.92))
+        painter.drawPath(path)
+    elif name == "section":
+        line.setColor(QColor(QUIET))
+        painter.setPen(line)
+        painter.drawLine(at(0.05, 0.85), at(0.95, 0.15))
+    elif name in {"horizon", "patch"}:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QBrush(QColor("#b98d57" if name == "horizon" else CORE)))
+        shift = 0.0 if name == "horizon" else 0.12
+        painter.drawPolygon(QPolygonF([at(0.0, 0.6), at(0.45, 0.2 + shift), at(1.0, 0.4), at(0.55, 0.85 - shift)]))
+    elif name == "report":
+        painter.setPen(QPen(QColor(QUIET), side / 12))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawRect(QRectF(at(0.18, 0.05), at(0.82, 0.95)))
+        for y in (0.3, 0.5, 0.7):
+            painter.drawLine(at(0.32, y), at(0.68, y))
+    elif name.startswith(("up", "down", "dot")):
+        _band(painter, name, at)
+    else:
+        raise ValueError(f"there is no mark named '{name}'")
+
+
+def _band(painter: QPainter, name: str, at: Callable[[float, float], QPointF]) -> None:
+    """Paint a deviation's mark as the map has it: a triangle up or down, or a dot; the colour follows the colon."""
+    shape, _, colour = name.partition(":")
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(colour or QUIET))
+    if shape == "dot":
+        painter.drawEllipse(at(0.5, 0.5), 2.6, 2.6)
+    elif shape == "up":
+        painter.drawPolygon(QPolygonF([at(0.5, 0.12), at(0.92, 0.84), at(0.08, 0.84)]))
+    else:
+        painter.drawPolygon(QPolygonF([at(0.5, 0.88), at(0.92, 0.16), at(0.08, 0.16)]))

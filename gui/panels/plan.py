@@ -1,0 +1,192 @@
+"""The partition in plan: what is met exactly and why, changed by dragging the core's corners."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
+
+from geofit.chart import Chart
+from geofit.frame import Frame, map_frame
+from geofit.gui.panels.core_box import CoreBox, chart_of, taken
+from geofit.gui.panels.flow import FlowLayout
+from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.panels.plan_view import PlanData, PlanView
+from geofit.gui.words import spoken
+from geofit.report.view import rims
+from geofit.settings import FitSettings
+from geofit.site import Site
+from geofit.surface import HorizonSurface
+
+__all__ = ["PlanPanel"]
+
+
+class PlanPanel(QWidget):
+    """The plan of one horizon.
+
+    ``core_changed`` carries the horizon and its new core: "auto", "all", "none", or the four corners that were dragged,
+    when Use is pressed.
+    """
+
+    core_changed = Signal(str, object)
+    pointer_moved = Signal(float, float)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.view = PlanView()
+        self.view.setAccessibleName(self.tr("Plan with the core's rectangle"))
+        self.buttons: dict[str, QPushButton] = {}
+        tools = FlowLayout()
+        for key, words, about in (
+            ("auto", self.tr("Auto"), self.tr("Let the fit find the dense core.")),
+            ("all", self.tr("All"), self.tr("Meet every point exactly.")),
+            ("none", self.tr("None"), self.tr("Approximate all points.")),
+            ("draw", self.tr("Draw"), self.tr("Draw a new rectangle: press and drag in the plan.")),
+            ("undo", self.tr("Undo drag"), self.tr("Take back the last drag that was not used yet.")),
+            ("use", self.tr("Use"), self.tr("Make the rectangle the core of the next fit.")),
+        ):
+            button = QPushButton(words)
+            button.setToolTip(about)
+            button.setCheckable(key in {"auto", "all", "none", "draw"})
+            button.setAutoDefault(False)
+            # Narrow enough for all to stand in two lines of a dock.
+            button.setMinimumWidth(button.fontMetrics().horizontalAdvance(words) + 22)
+            button.setMaximumWidth(button.fontMetrics().horizontalAdvance(words) + 34)
+            tools.addWidget(button)
+            self.buttons[key] = button
+        self.reason = QLabel()
+        self.reason.setWordWrap(True)
+        self.reason.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        content = QWidget()
+        column = QVBoxLayout(content)
+        column.setContentsMargins(8, 8, 8, 8)
+        column.setSpacing(6)
+        column.addLayout(tools)
+        column.addWidget(self.view, 1)
+        column.addWidget(self.reason)
+        self.pages = Placeholder(content)
+        self.setLayout(self.pages)
+        for word in ("auto", "all", "none"):
+            self.buttons[word].clicked.connect(lambda _, word=word: self._choose_word(word))
+        self.buttons["draw"].toggled.connect(self._draw)
+        self.buttons["undo"].clicked.connect(self.undo_drag)
+        self.buttons["use"].clicked.connect(self.use)
+        self.view.box_dragging.connect(self._tell_pending)
+        self.view.box_dragged.connect(self._dragged)
+        self.view.pointer_moved.connect(self.pointer_moved)
+        self._name, self._settings = "", FitSettings()
+        self._why = ""
+        self._chart: Chart | None = None
+        self._past: list[CoreBox | None] = []
+        self._last: CoreBox | None = None
+        self.show_surface(None, "", None, FitSettings())
+
+    def show_surface(self, site: Site | None, name: str, surface: HorizonSurface | None, settings: FitSettings) -> None:
+        """Show the plan of a horizon, fitted or not; drags that were not used are dropped."""
+        if site is None or (name not in site.horizons and surface is None):
+            self._name = ""
+            self.pages.say(self.tr("No horizon chosen: choose one in the project tree to see its plan."))
+            return
+        same, self._name, self._settings = name == self._name, name, settings
+        points = site.horizons[name] if surface is None else surface.points
+        chart = self._chart = chart_of(points, settings, site.boundary, surface)
+        frame = map_frame(points) if chart is None else chart.frame
+        self._past.clear()
+        self._last = self._box(surface, frame)
+        exact = np.zeros(len(points), bool)
+        if surface is not None and len(surface.core) == len(points):
+            exact = surface.core
+        self.view.show_data(
+            PlanData(
+                points=points.xyz[:, :2],
+                exact=exact,
+                boundary=site.boundary,
+                patches=() if surface is None else tuple(rim[:, :2] for rim in rims(surface).values()),
+                sections=tuple((section.name, section.line) for section in site.sections),
+                holes=tuple((hole.name, hole.xyz[:, :2]) for hole in site.holes),
+            ),
+            keep_view=same,
+        )
+        self.view.blank = CoreBox(frame, np.zeros(2), np.zeros(2))
+        self.view.locked = frame.kind != "map"
+        self.view.show_box(self._last)
+        self.buttons["draw"].setChecked(False)
+        self.buttons["draw"].setEnabled(not self.view.locked)
+        for word in ("auto", "all", "none"):
+            self.buttons[word].setChecked(settings.core == word)
+        if surface is not None and surface.partition is not None:
+            self._why = spoken(surface.partition.reason)
+        else:
+            self._why = self.tr("Not fitted yet: the core is found when the horizon is fitted.")
+        if self.view.locked:
+            more = self.tr("A rectangle can be drawn only for a surface that is laid over the map.")
+            self._why = f"{self._why}\n{more}"
+        self._settle()
+        self.pages.reveal()
+
+    def undo_drag(self) -> None:
+        """Take back the last drag."""
+        if self._past:
+            self._last = self._past.pop()
+            self.view.show_box(self._last)
+        self._settle()
+
+    def use(self) -> None:
+        """Make the rectangle the core of the next fit."""
+        if self._last is not None:
+            self._past.clear()
+            self._settle()
+            corners = tuple((float(x), float(y)) for x, y in self._last.corners)
+            self.core_changed.emit(self._name, corners)
+
+    def _box(self, surface: HorizonSurface | None, frame: Frame) -> CoreBox | None:
+        drawn: object = self._settings.core
+        if isinstance(drawn, str):
+            partition = None if surface is None else surface.partition
+            drawn = None if partition is None or self._settings.core == "none" else partition.corners
+        return None if drawn is None else CoreBox.around(frame, np.asarray(drawn, float))
+
+    def _choose_word(self, word: str) -> None:
+        for key in ("auto", "all", "none"):
+            self.buttons[key].setChecked(key == word)
+        self._past.clear()
+        self._settle()
+        if self._settings.core != word:
+            self.core_changed.emit(self._name, word)
+
+    def _draw(self, drawing: bool) -> None:
+        self.view.drawing = drawing
+        if drawing:
+            self.view.setFocus()
+            self.reason.setText(self.tr("Press and drag in the plan to draw the core's rectangle."))
+        else:
+            self._settle()
+
+    def _dragged(self, box: CoreBox) -> None:
+        self._past.append(self._last)
+        self._last = box
+        self.buttons["draw"].setChecked(False)
+        self._settle()
+
+    def _settle(self) -> None:
+        self.buttons["undo"].setEnabled(bool(self._past))
+        self.buttons["use"].setEnabled(bool(self._past) and self._last is not None)
+        if self._past and self._last is not None:
+            self._tell_pending(self._last)
+        else:
+            self.reason.setText(self._why)
+
+    def _tell_pending(self, box: CoreBox) -> None:
+        """Say what the fit would take, while the rectangle is dragged."""
+        total = len(self.view.data.points)
+        if self._chart is None:
+            inside, widened = int(box.holds(self.view.data.points).sum()), False
+        else:
+            inside, widened = taken(self._chart, box)
+        width, height = box.size
+        words = self.tr("{width:.0f} m × {height:.0f} m: {inside} points inside, {outside} outside.").format(
+            width=width, height=height, inside=inside, outside=total - inside
+        )
+        if widened:
+            words += " " + self.tr("The fit widens it to the edge of the area, where next to nothing lies between.")
+        self.reason.setText(words + " " + self.tr("Press Use to take it."))

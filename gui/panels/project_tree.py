@@ -1,0 +1,256 @@
+"""What the project holds: horizons with their verdicts, holes, adits, sections and reports."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Mapping, Sequence
+from pathlib import Path
+
+from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
+from PySide6.QtGui import QIcon, QStandardItem, QStandardItemModel
+from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QLineEdit, QTreeView, QVBoxLayout, QWidget
+
+from geofit.gui.panels.marks import icon, verdict_mark
+from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.panels.tables import natural
+from geofit.gui.words import spoken
+from geofit.report.digits import given, metres
+from geofit.site import Site
+from geofit.surface import HorizonSurface
+
+__all__ = ["ProjectTree"]
+
+_TARGET = Qt.ItemDataRole.UserRole
+
+
+class ProjectTree(QWidget):
+    """The tree of a site. What it shows is chosen here; what the scene shows is the scene list's business."""
+
+    horizon_chosen = Signal(str)
+    patch_chosen = Signal(str, str)
+    hole_chosen = Signal(str)
+    section_chosen = Signal(str)
+    report_chosen = Signal(str)
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.search = QLineEdit(clearButtonEnabled=True)
+        self.search.setPlaceholderText(self.tr("Filter by name"))
+        self.search.setAccessibleName(self.tr("Filter of the project tree"))
+        self.items = QStandardItemModel(0, 2, self)
+        self.shown = QSortFilterProxyModel(self)
+        self.shown.setSourceModel(self.items)
+        self.shown.setRecursiveFilteringEnabled(True)
+        self.shown.setAutoAcceptChildRows(True)
+        self.shown.setFilterCaseSensitivity(Qt.CaseSensitivity.CaseInsensitive)
+        self.view = QTreeView()
+        self.view.setModel(self.shown)
+        self.view.setAccessibleName(self.tr("Project tree"))
+        self.view.setUniformRowHeights(True)
+        self.view.setIndentation(16)
+        self.view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.view.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        self.search.textChanged.connect(self._filter)
+        self.view.selectionModel().currentChanged.connect(self._tell)
+        self.view.activated.connect(self._tell)
+        content = QWidget()
+        column = QVBoxLayout(content)
+        column.setContentsMargins(8, 8, 8, 8)
+        column.setSpacing(6)
+        column.addWidget(self.search)
+        column.addWidget(self.view, 1)
+        self.pages = Placeholder(content)
+        self.setLayout(self.pages)
+        self._reports: tuple[str, ...] = ()
+        self._silent = False
+        self._given: tuple[Site | None, Mapping[str, HorizonSurface], Container[str]] = (None, {}, ())
+        self.show_site(None, {}, ())
+
+    def show_site(self, site: Site | None, surfaces: Mapping[str, HorizonSurface], stale: Container[str] = ()) -> None:
+        """Show a site with its surfaces; names in ``stale`` have settings newer than their surface."""
+        self._given = (site, surfaces, stale)
+        if site is None:
+            self.items.removeRows(0, self.items.rowCount())
+            self.pages.say(self.tr("No site open: open a site or a project, or drop its files on the window."))
+            return
+        chosen, folded = self._chosen(), self._folded()
+        self._silent = True
+        self.items.removeRows(0, self.items.rowCount())
+        self.items.setHorizontalHeaderLabels([self.tr("Project"), self.tr("Points")])
+        self.items.horizontalHeaderItem(1).setTextAlignment(Qt.AlignmentFlag.AlignRight)
+        self._group(
+            "horizons", self.tr("Horizons"), [self._horizon(name, site, surfaces, stale) for name in site.horizons]
+        )
+        for kind, title in (("borehole", self.tr("Boreholes")), ("adit", self.tr("Adits"))):
+            holes = sorted((hole for hole in site.holes if hole.kind == kind), key=lambda hole: natural(hole.name))
+            counts = _counts(site, "hole")
+            mark = icon("hole" if kind == "borehole" else "adit")
+            rows = [_row(h.name, counts.get(h.name, 0), mark, ("hole", h.name)) for h in holes]
+            self._group(kind, title, rows)
+        counts = _counts(site, "section")
+        sections = sorted(site.sections, key=lambda section: natural(section.name))
+        rows = [_row(s.name, counts.get(s.name, 0), icon("section"), ("section", s.name)) for s in sections]
+        self._group("sections", self.tr("Sections"), rows)
+        self._group(
+            "reports",
+            self.tr("Reports"),
+            [_row(Path(path).name, None, icon("report"), ("report", path), path) for path in self._reports],
+        )
+        self._arrange(folded)
+        self._go(chosen)
+        self._silent = False
+        self.pages.reveal()
+
+    def show_reports(self, paths: Sequence[str]) -> None:
+        """List the reports that were written."""
+        self._reports = tuple(str(path) for path in paths)
+        self.show_site(*self._given)
+
+    def choose_horizon(self, name: str) -> None:
+        """Go to a horizon; nothing is emitted."""
+        self._silent = True
+        self._go(("horizon", name))
+        self._silent = False
+
+    def choose_hole(self, name: str) -> None:
+        """Go to a hole; nothing is emitted."""
+        self._silent = True
+        self._go(("hole", name))
+        self._silent = False
+
+    def _horizon(
+        self, name: str, site: Site, surfaces: Mapping[str, HorizonSurface], stale: Container[str]
+    ) -> list[QStandardItem]:
+        surface = surfaces.get(name)
+        count = len(site.horizons[name])
+        if surface is None or surface.accuracy is None:
+            row = _row(
+                name, count, icon("horizon"), ("horizon", name), self.tr("{name}: not fitted yet").format(name=name)
+            )
+            return row
+        a, old = surface.accuracy, name in stale
+        verdict = self.tr("PASS") if a.passed else self.tr("FAIL")
+        words = self.tr("{name}: {verdict}, σ {sigma} m, ε {epsilon} m, {patches} patches, {n} points").format(
+            name=name,
+            verdict=verdict,
+            sigma=metres(a.sigma),
+            epsilon=given(a.epsilon),
+            patches=len(surface.patches),
+            n=a.n,
+        )
+        title = name
+        if old:
+            title = self.tr("{name} (stale)").format(name=name)
+            words += "\n" + self.tr("Older than the settings: press Fit")
+        row = _row(title, count, verdict_mark(a.passed, stale=old), ("horizon", name), words)
+        row[0].setData(f"{name}, {verdict}", Qt.ItemDataRole.AccessibleTextRole)
+        if old:
+            font = row[0].font()
+            font.setItalic(True)
+            row[0].setFont(font)
+        for patch in surface.patches:
+            group = a.by_patch.get(patch.name)
+            rows, columns = patch.control.shape[:2]
+            about = self.tr("Patch {name}: {rows} × {columns} control points, largest |d| {most} m").format(
+                name=spoken(patch.name), rows=rows, columns=columns, most=metres(group.max_abs if group else 0.0)
+            )
+            row[0].appendRow(
+                _row(
+                    spoken(patch.name),
+                    group.n if group else 0,
+                    icon("patch"),
+                    ("patch", f"{name}\n{patch.name}"),
+                    about,
+                )
+            )
+        return row
+
+    def _group(self, key: str, title: str, rows: Sequence[list[QStandardItem]]) -> None:
+        if not rows:
+            return
+        head = QStandardItem(self.tr("{title} ({n})").format(title=title, n=len(rows)))
+        font = head.font()
+        font.setBold(True)
+        head.setFont(font)
+        head.setData(("group", key), _TARGET)
+        head.setFlags(Qt.ItemFlag.ItemIsEnabled)
+        for row in rows:
+            head.appendRow(row)
+        end = QStandardItem()
+        end.setFlags(Qt.ItemFlag.ItemIsEnabled)
+        self.items.appendRow([head, end])
+
+    def _filter(self, text: str) -> None:
+        self.shown.setFilterFixedString(text.strip())
+        if text.strip():
+            self.view.expandAll()
+
+    def _arrange(self, folded: set[object] | None) -> None:
+        header = self.view.header()
+        header.setStretchLastSection(False)
+        header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
+        for i in range(self.items.rowCount()):
+            item = self.items.item(i)
+            key = item.data(_TARGET)
+            # A first look shows the horizons, and the rest only where it is short.
+            small = key[1] == "horizons" or item.rowCount() <= 6
+            opened = small if folded is None else key not in folded
+            self.view.setExpanded(self.shown.mapFromSource(item.index()), opened)
+
+    def _folded(self) -> set[object] | None:
+        if not self.items.rowCount():
+            return None
+        heads = [self.items.item(i) for i in range(self.items.rowCount())]
+        closed = [h for h in heads if not self.view.isExpanded(self.shown.mapFromSource(h.index()))]
+        return {head.data(_TARGET) for head in closed}
+
+    def _chosen(self) -> tuple[str, str] | None:
+        found = self.view.currentIndex().siblingAtColumn(0).data(_TARGET)
+        return None if found is None else (found[0], found[1])
+
+    def _go(self, target: tuple[str, str] | None) -> None:
+        for i in range(self.items.rowCount()):
+            head = self.items.item(i)
+            for k in range(head.rowCount()):
+                item = head.child(k)
+                of = [item, *(item.child(m) for m in range(item.rowCount()))]
+                for each in of:
+                    if target is not None and each.data(_TARGET) == target:
+                        index = self.shown.mapFromSource(each.index())
+                        self.view.setCurrentIndex(index)
+                        self.view.scrollTo(index)
+                        return
+
+    def _tell(self, index: QModelIndex) -> None:
+        target = index.siblingAtColumn(0).data(_TARGET)
+        if self._silent or target is None:
+            return
+        kind, name = target
+        if kind == "horizon":
+            self.horizon_chosen.emit(name)
+        elif kind == "patch":
+            self.patch_chosen.emit(*name.split("\n", 1))
+        elif kind == "hole":
+            self.hole_chosen.emit(name)
+        elif kind == "section":
+            self.section_chosen.emit(name)
+        elif kind == "report":
+            self.report_chosen.emit(name)
+
+
+def _row(name: str, count: int | None, mark: QIcon, target: tuple[str, str], words: str = "") -> list[QStandardItem]:
+    item, number = QStandardItem(mark, name), QStandardItem("" if count is None else f"{count}")
+    item.setData(target, _TARGET)
+    item.setToolTip(words or name)
+    number.setToolTip(words or name)
+    number.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+    return [item, number]
+
+
+def _counts(site: Site, column: str) -> dict[str, int]:
+    """Return how many points of all horizons come from each hole or section."""
+    counts: dict[str, int] = {}
+    for points in site.horizons.values():
+        for name in getattr(points, column).tolist():
+            counts[name] = counts.get(name, 0) + 1
+    return counts

@@ -1,0 +1,82 @@
+"""What the application remembers between sessions, by name and type; QSettings underneath."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import cast
+
+from PySide6.QtCore import QByteArray, QSettings
+
+from geofit.gui.language import LANGUAGES, system_language
+from geofit.gui.theme import THEMES, Theme
+
+__all__ = ["Preferences"]
+
+#: Files that the start page and the File menu offer again.
+RECENT = 10
+
+
+class Preferences:
+    """Theme, language, recent files, and where the docks stood."""
+
+    def __init__(self) -> None:
+        self._store = QSettings()
+
+    @property
+    def theme(self) -> Theme:
+        """Light, dark or as the system has it."""
+        stored = str(self._store.value("theme", "system"))
+        return next((theme for theme in THEMES if theme == stored), "system")
+
+    @theme.setter
+    def theme(self, theme: Theme) -> None:
+        self._store.setValue("theme", theme)
+
+    @property
+    def language(self) -> str:
+        """Code of the windows' language."""
+        stored = str(self._store.value("language", ""))
+        return stored if stored in LANGUAGES else system_language()
+
+    @language.setter
+    def language(self, code: str) -> None:
+        self._store.setValue("language", code)
+
+    @property
+    def recent(self) -> tuple[Path, ...]:
+        """Projects and site files that were opened last and are still there, the latest first."""
+        stored = self._store.value("recent", [])
+        names = [stored] if isinstance(stored, str) else list(cast("list[str]", stored or []))
+        return tuple(path for path in map(Path, names) if path.is_file())
+
+    def opened(self, path: Path) -> None:
+        """Put a file first among the recent ones."""
+        path = path.resolve()
+        others = [one for one in self.recent if one != path]
+        self._store.setValue("recent", [str(one) for one in (path, *others)][:RECENT])
+
+    @property
+    def folder(self) -> str:
+        """Where the last file was opened or written."""
+        return str(self._store.value("folder", ""))
+
+    @folder.setter
+    def folder(self, folder: str) -> None:
+        self._store.setValue("folder", folder)
+
+    @property
+    def layout(self) -> tuple[QByteArray, QByteArray] | None:
+        """Size of the main window and state of its docks."""
+        geometry, state = self._store.value("geometry"), self._store.value("state")
+        if isinstance(geometry, QByteArray) and isinstance(state, QByteArray):
+            return geometry, state
+        return None
+
+    @layout.setter
+    def layout(self, layout: tuple[QByteArray, QByteArray] | None) -> None:
+        if layout is None:
+            self._store.remove("geometry")
+            self._store.remove("state")
+        else:
+            self._store.setValue("geometry", layout[0])
+            self._store.setValue("state", layout[1])

@@ -1,0 +1,132 @@
+"""One selection in all windows: what is clicked in one is shown in the others."""
+
+from __future__ import annotations
+
+from numpy.typing import ArrayLike
+from PySide6.QtCore import QObject, Signal
+
+from geofit.gui.document.document import Document, Selection
+from geofit.gui.document.recipe import Row
+from geofit.gui.showing import Showing
+from geofit.gui.workspace import Workspace
+from geofit.points import PointSet
+
+__all__ = ["Selecting"]
+
+
+class Selecting(QObject):
+    """Links tree, tables, plan, section and view. ``said(text)`` tells what was chosen, for the status bar."""
+
+    said = Signal(str)
+
+    def __init__(self, document: Document, workspace: Workspace, showing: Showing, parent: QObject) -> None:
+        super().__init__(parent)
+        self._document, self._panels, self._showing = document, workspace, showing
+        self._from_view = False
+        panels = workspace
+        panels.tree.horizon_chosen.connect(lambda name: document.select(name))
+        panels.tree.patch_chosen.connect(lambda name, _patch: document.select(name))
+        panels.tree.hole_chosen.connect(self._go_to_hole)
+        panels.tree.section_chosen.connect(self._go_to_section)
+        panels.view.point_picked.connect(self._picked)
+        panels.view.hole_picked.connect(self._hole_picked)
+        panels.view.control_picked.connect(self._control_picked)
+        panels.view.section_changed.connect(self._line_drawn)
+        panels.section.line_changed.connect(self._line_edited)
+        panels.section.thickness_changed.connect(self._thickness_edited)
+        panels.section.point_chosen.connect(self._choose)
+        for table in (panels.residuals.point_chosen, panels.checks.point_chosen, panels.offdata.point_chosen):
+            table.connect(self._chosen_here)
+        panels.offdata.suggestion_chosen.connect(panels.view.focus_place)
+        panels.seams.seam_chosen.connect(self._seam_chosen)
+        document.selection_changed.connect(self._show)
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self._document.selection_changed.disconnect(self._show)
+
+    def index(self) -> int | None:
+        """Return the chosen point as an index into the points that are shown of its horizon."""
+        chosen = self._document.selection
+        if chosen.horizon is None or chosen.row is None:
+            return None
+        return chosen.row.find(self._points(chosen.horizon))
+
+    def go_to_worst(self) -> None:
+        """Choose the point of the chosen horizon that lies farthest from its surface."""
+        name = self._document.selection.horizon
+        surface = None if name is None else self._document.surface(name)
+        if name is None or surface is None or surface.accuracy is None or not surface.accuracy.worst:
+            self.said.emit(self.tr("There is no surface yet: press Fit."))
+            return
+        self._choose(name, surface.accuracy.worst[0])
+
+    def _points(self, name: str) -> PointSet:
+        """Return the points that the windows show of a horizon: those of its surface, if it has one."""
+        surface = self._document.surface(name)
+        return self._document.points(name) if surface is None else surface.points
+
+    def _choose(self, name: str, index: int) -> None:
+        self._document.select(name, Row.of(self._points(name), index))
+
+    def _chosen_here(self, index: int) -> None:
+        if self._document.selection.horizon is not None:
+            self._choose(self._document.selection.horizon, index)
+
+    def _picked(self, name: str, index: int) -> None:
+        self._from_view = True
+        self._choose(name, index)
+        self._from_view = False
+
+    def _show(self, chosen: Selection) -> None:
+        self._showing.now()
+        index, panels = self.index(), self._panels
+        if chosen.horizon is None:
+            return
+        panels.tree.choose_horizon(chosen.horizon)
+        panels.view.highlight_point(chosen.horizon, index)
+        if self._document.surface(chosen.horizon) is not None:
+            panels.residuals.choose(index)
+        if index is None:
+            return
+        if not self._from_view:
+            panels.view.focus_point(chosen.horizon, index)
+        panels.adjust.choose_point(index)
+        points = self._points(chosen.horizon)
+        self.said.emit(f"{chosen.horizon}: {points.describe(index)}")
+
+    def _go_to_hole(self, name: str) -> None:
+        self._panels.view.focus_hole(name)
+        self.said.emit(name)
+
+    def _hole_picked(self, name: str) -> None:
+        self._panels.tree.choose_hole(name)
+        self.said.emit(name)
+
+    def _control_picked(self, horizon: str, patch: str, i: int, j: int) -> None:
+        self._document.select(horizon)
+        self._showing.now()
+        self._panels.adjust.choose_control(patch, i, j)
+        self._panels.reveal("adjust")
+
+    def _go_to_section(self, name: str) -> None:
+        section = next(one for one in self._document.site.sections if one.name == name)
+        self._line_edited(section.line)
+        self._showing.show_section()
+        self._panels.reveal("section")
+
+    def _line_drawn(self, line: ArrayLike | None) -> None:
+        self._showing.line = line
+        self._showing.show_section()
+
+    def _line_edited(self, line: ArrayLike | None) -> None:
+        self._showing.line = line
+        self._panels.view.set_section(line, self._showing.thickness)
+
+    def _thickness_edited(self, thickness: float) -> None:
+        self._showing.thickness = thickness
+        if self._showing.line is not None:
+            self._panels.view.set_section(self._showing.line, thickness)
+
+    def _seam_chosen(self, _: int) -> None:
+        self._panels.view.set_seams(self._document.selection.horizon)

@@ -1,0 +1,108 @@
+"""The session: a document with its undo stack and its journal. All changes of the document pass here."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QUndoCommand, QUndoStack
+
+from geofit.gui.document.commands import Command
+from geofit.gui.document.document import Document
+from geofit.gui.document.journal import Journal, Unfinished
+from geofit.gui.document.state import State
+from geofit.gui.words import spoken
+from geofit.site import Site
+
+__all__ = ["Session"]
+
+_LOG = logging.getLogger(__name__)
+
+
+class Session(QObject):
+    """What is worked on, for as long as the application runs; ``folder`` is where journals stand."""
+
+    def __init__(self, folder: Path, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.document = Document()
+        self.stack = QUndoStack(self)
+        self._folder = folder
+        self._journal: Journal | None = None
+
+    def begin(
+        self, site: Site, site_file: Path | None, state: State | None = None, project_file: Path | None = None
+    ) -> None:
+        """Begin with a site; what was worked on before is over."""
+        self.end()
+        self.stack.clear()
+        self.document.open(site, site_file, state, project_file)
+        try:
+            self._journal = Journal(self._folder, self.document.state, site_file, project_file)
+        except OSError as error:
+            _LOG.warning("There is no journal, so that a crash would lose unsaved work: %s", error)
+
+    def resume(self, unfinished: Unfinished, site: Site) -> int:
+        """Do again what a session did that was cut off; return how many steps came back."""
+        self.begin(site, unfinished.site_file, unfinished.base, unfinished.project_file)
+        if unfinished.project_file is not None:
+            self.saved(unfinished.project_file, unfinished.saved)
+        for command in unfinished.commands:
+            self.push(command)
+        unfinished.discard()
+        return len(unfinished.commands)
+
+    def push(self, command: Command) -> None:
+        """Do a command; DocumentError, and nothing done, if it does not apply."""
+        command.on(self.document.state)
+        self.stack.push(_Step(self, command))
+
+    def saved(self, project_file: Path, state: State) -> None:
+        """Hear that ``state`` was written to a project file."""
+        self.document.saved(project_file, state)
+        if self._journal is not None:
+            self._journal.saved(project_file, state)
+
+    def end(self) -> None:
+        """End the journal: what was unsaved is given up."""
+        if self._journal is not None:
+            self._journal.end()
+            self._journal = None
+
+    def _record(self, command: Command, action: str) -> None:
+        if self._journal is None:
+            return
+        try:
+            if action == "do":
+                self._journal.done(command)
+            elif action == "undo":
+                self._journal.undone()
+            else:
+                self._journal.redone()
+        except OSError as error:
+            self._journal = None
+            _LOG.warning("The journal cannot be written any more, so that a crash would lose unsaved work: %s", error)
+
+
+class _Step(QUndoCommand):
+    """A command on Qt's undo stack."""
+
+    def __init__(self, session: Session, command: Command) -> None:
+        super().__init__(spoken(command.text))
+        self._session, self._command, self._action = session, command, "do"
+
+    def redo(self) -> None:
+        """Do it, for the first time or again."""
+        try:
+            self._command.redo(self._session.document)
+        finally:
+            # Also where a listener failed: push() has tried the command, so the document has changed.
+            self._session._record(self._command, self._action)
+            self._action = "redo"
+
+    def undo(self) -> None:
+        """Take it back."""
+        try:
+            self._command.undo(self._session.document)
+        finally:
+            self._session._record(self._command, "undo")

@@ -1,0 +1,169 @@
+"""From the document to the panels: whatever changes there is shown, once an event is over."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import cast
+
+from numpy.typing import ArrayLike
+from PySide6.QtCore import QObject, QTimer
+
+from geofit.gui.document.document import Document
+from geofit.gui.workspace import Workspace
+from geofit.order import Order
+from geofit.settings import FitSettings
+
+__all__ = ["Showing"]
+
+#: Metres on both sides of a section that is shown.
+THICKNESS = 50.0
+
+
+class Showing(QObject):
+    """Keeps the panels as the document is. Several changes in one event are shown once."""
+
+    def __init__(self, document: Document, workspace: Workspace, parent: QObject) -> None:
+        super().__init__(parent)
+        self._document, self._panels = document, workspace
+        self._site = False
+        self._points: set[str] = set()
+        self._results: set[str] = set()
+        self._chosen = self._settings = False
+        self.line: ArrayLike | None = None
+        self.thickness = THICKNESS
+        self.orders: tuple[Order, ...] = ()
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(self.now)
+        self._ends: list[Callable[[], None]] = []
+        for signal, listener in (
+            (document.site_changed, self._on_site),
+            (document.settings_changed, self._on_settings),
+            (document.points_changed, self._on_points),
+            (document.result_changed, self._on_result),
+            (document.order_changed, self._on_site_again),
+            (document.name_changed, self._on_site_again),
+            (document.selection_changed, self._on_selection),
+        ):
+            signal.connect(listener)  # type: ignore[arg-type]
+            self._ends.append(lambda signal=signal, listener=listener: signal.disconnect(listener))  # type: ignore[misc]
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self._later.stop()
+        for end in self._ends:
+            end()
+        self._ends.clear()
+
+    def everything(self) -> None:
+        """Show the whole document anew."""
+        self._on_site()
+        self.now()
+
+    def now(self) -> None:
+        """Show what has changed since the last time."""
+        self._later.stop()
+        document, panels = self._document, self._panels
+        is_open = bool(document.site.horizons)
+        whole = self._site
+        if whole:
+            panels.show_scene(is_open)
+            panels.view.clear()
+            if is_open:
+                panels.view.show_site(document.site_in_use())
+            self._results = set(document.horizons)
+        elif self._points:
+            panels.view.show_site(document.site_in_use())
+            self._results |= self._points
+        for name in self._results:
+            self._show_in_view(name)
+        if self._results or whole or self._settings:
+            self._show_tree()
+        if self._chosen or self._settings or whole or document.selection.horizon in self._results:
+            self._show_horizon()
+        if self._results or whole or self._points:
+            self.show_section()
+        self._site = self._chosen = self._settings = False
+        self._points, self._results = set(), set()
+
+    def begin_section(self) -> None:
+        """Take the line that the section panel shows, if none was drawn yet."""
+        if self.line is None:
+            self.line = cast("ArrayLike | None", self._panels.section.line)
+
+    def show_section(self) -> None:
+        """Show the section along the present line."""
+        document = self._document
+        site = document.site_in_use() if document.site.horizons else None
+        uncertain = {
+            name: found.uncertainty
+            for name in document.horizons
+            if (found := document.offdata(name)) is not None and found.uncertainty is not None
+        }
+        self._panels.section.show_section(site, document.surfaces(), self.line, self.thickness, uncertain)
+
+    def show_orders(self, orders: tuple[Order, ...]) -> None:
+        """Show how the horizons lie to each other, in the checks."""
+        self.orders = orders
+        self._show_horizon()
+
+    def _show_in_view(self, name: str) -> None:
+        surface, offdata = self._document.surface(name), self._document.offdata(name)
+        if surface is None:
+            self._panels.view.remove_surface(name)
+        else:
+            self._panels.view.show_surface(surface, None if offdata is None else offdata.uncertainty)
+
+    def _show_tree(self) -> None:
+        document = self._document
+        site = document.site_in_use() if document.site.horizons else None
+        stale = {name for name in document.horizons if document.stale(name)}
+        self._panels.tree.show_site(site, document.surfaces(), stale)
+        if document.selection.horizon:
+            self._panels.tree.choose_horizon(document.selection.horizon)
+
+    def _show_horizon(self) -> None:
+        """Show the chosen horizon in every panel that shows one."""
+        document, panels, name = self._document, self._panels, self._document.selection.horizon
+        known = name is not None and name in document.site.horizons
+        surface = document.surface(name) if known and name else None
+        offdata = document.offdata(name) if known and name else None
+        settings = document.settings(name) if known and name else FitSettings()
+        stale = bool(known and name and document.stale(name))
+        panels.fit.show_settings(name if known and name else "", settings, stale)
+        panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale)
+        panels.residuals.show_surface(surface)
+        panels.histogram.show_surface(surface)
+        panels.seams.show_surface(surface)
+        panels.checks.show_surface(surface, offdata, self._orders_of(name))
+        panels.offdata.show_offdata(offdata, None if surface is None else surface.points, fitted=surface is not None)
+        panels.adjust.show_surface(surface)
+        panels.plan.show_surface(document.site_in_use() if known else None, name or "", surface, settings)
+
+    def _orders_of(self, name: str | None) -> tuple[Order, ...]:
+        return tuple(order for order in self.orders if name in (order.upper, order.lower))
+
+    def _on_site(self) -> None:
+        self._site = True
+        self.line, self.orders = None, ()
+        self._later.start()
+
+    def _on_site_again(self) -> None:
+        self._results.update(self._document.horizons)
+        self._later.start()
+
+    def _on_settings(self, _: str) -> None:
+        self._settings = True
+        self._later.start()
+
+    def _on_points(self, name: str) -> None:
+        self._points.add(name)
+        self._later.start()
+
+    def _on_result(self, name: str) -> None:
+        self._results.add(name)
+        self.orders = ()
+        self._later.start()
+
+    def _on_selection(self, _: object) -> None:
+        self._chosen = True
+        self._later.start()

@@ -1,0 +1,137 @@
+"""Colours of points and surfaces, and what they mean. Plain arrays: no Qt, no VTK."""
+
+from __future__ import annotations
+
+import colorsys
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.accuracy import Seam
+from geofit.check import ANGLE_LIMIT, GAP_LIMIT
+from geofit.gui.view3d.layers import Legend, Swatch
+from geofit.points import PointSet
+from geofit.report.style import FAIL, PASS, QUIET, bands, kind_style
+from geofit.settings import FitSettings
+
+__all__ = ["PointColours", "Ramp", "legible", "plain_points", "points_by", "ramp", "rgb", "seam_colours"]
+
+Floats = NDArray[np.float64]
+Bytes = NDArray[np.uint8]
+
+#: Colours of the ramps, from low to high: lightness runs one way in each.
+RAMPS = {
+    "elevation": ("#23506b", "#55877f", "#9dba8c", "#e2d9a4", "#f3e6c8"),
+    "standard deviation": ("#f6f1e4", "#e9c79b", "#cf8a72", "#9c4a63", "#5b2150"),
+    "dip": ("#eef3ee", "#b9d3bf", "#7fae9c", "#467f83", "#23506b"),
+    "thickness": ("#f4efe0", "#cfdcbb", "#8fbfae", "#4f8fa6", "#2a5a8a"),
+}
+UNITS = {"elevation": "m", "standard deviation": "m", "dip": "°", "thickness": "m", "deviation": "m"}
+STEPS = 256
+#: Diameter of a point, logical pixels.
+SIZE = 8.0
+
+
+@dataclass(frozen=True, eq=False)
+class Ramp:
+    """Colours (k, 3) for values from ``low`` to ``high``; values outside have the ends' colours."""
+
+    table: Bytes
+    low: float
+    high: float
+    legend: Legend
+
+    def of(self, values: Floats) -> Bytes:
+        """Return the colour (n, 3) of each value; grey where it is nan."""
+        share = np.nan_to_num((values - self.low) / (self.high - self.low))
+        colours = self.table[np.clip((share * STEPS).astype(int), 0, STEPS - 1)]
+        return np.where(np.isfinite(values)[:, None], colours, np.uint8(160))
+
+
+@dataclass(frozen=True, eq=False)
+class PointColours:
+    """One colour (n, 3) and one size (n,) in pixels for each point."""
+
+    colour: Bytes
+    size: Floats
+    legend: Legend | None
+
+
+def rgb(colour: str) -> tuple[int, int, int]:
+    """Return the three bytes of ``#rrggbb``."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+
+
+def legible(colour: str, dark: bool) -> str:
+    """Return a colour that stands out from a dark background: the same hue, lighter where it is too dark."""
+    if not dark:
+        return colour
+    h, light, s = colorsys.rgb_to_hls(*(c / 255 for c in rgb(colour)))
+    r, g, b = colorsys.hls_to_rgb(h, max(light, 0.62), s)
+    return f"#{round(255 * r):02x}{round(255 * g):02x}{round(255 * b):02x}"
+
+
+def ramp(by: str, values: Floats) -> Ramp:
+    """Return the colours for values (nan left out); the ends stand at their least and largest."""
+    known = values[np.isfinite(values)]
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    if by == "standard deviation":
+        low = 0.0
+    high = max(high, low + 1e-3)
+    stops = np.array([rgb(c) for c in RAMPS[by]], float)
+    share = np.linspace(0, len(stops) - 1, STEPS)
+    table = np.stack([np.interp(share, np.arange(len(stops)), stops[:, k]) for k in range(3)], axis=1)
+    return Ramp(np.round(table).astype(np.uint8), low, high, Legend(by, UNITS[by], (), RAMPS[by], low, high))
+
+
+def plain_points(count: int, colour: str) -> PointColours:
+    """Return one colour for all points."""
+    return PointColours(np.tile(np.array(rgb(colour), np.uint8), (count, 1)), np.full(count, SIZE), None)
+
+
+def points_by(
+    by: str, points: PointSet, colour: str, residuals: Floats | None, settings: FitSettings, dark: bool
+) -> PointColours:
+    """Return the points' colours by "kind", "deviation" (fixed tolerance bands), "elevation", or one for all."""
+    if by == "kind":
+        kinds, of = np.unique(points.kind, return_inverse=True)
+        shades = [legible(kind_style(kind)[1], dark) for kind in kinds.tolist()]
+        legend = Legend("kind", "", tuple(Swatch(c, k, False) for c, k in zip(shades, kinds.tolist(), strict=True)))
+        table = np.array([rgb(c) for c in shades], np.uint8).reshape(-1, 3)
+        return PointColours(table[of.ravel()], np.full(len(points), SIZE), legend)
+    if by == "deviation" and residuals is not None and len(residuals) == len(points):
+        return _by_bands(residuals, settings, dark)
+    if by == "elevation":
+        made = ramp("elevation", points.xyz[:, 2])
+        return PointColours(made.of(points.xyz[:, 2]), np.full(len(points), SIZE), made.legend)
+    return plain_points(len(points), colour)
+
+
+def _by_bands(d: Floats, settings: FitSettings, dark: bool) -> PointColours:
+    colour, size = np.empty((len(d), 3), np.uint8), np.empty(len(d))
+    above: list[Swatch] = []
+    below: list[Swatch] = []
+    for k, band in enumerate(bands(settings)):
+        # On a dark ground the darkest shades would be the least seen.
+        shades = [legible(c, dark) if k else c for c in (band.above, band.below)]
+        for mask, shade in ((band.holds(d) & (d >= 0), shades[0]), (band.holds(d) & (d < 0), shades[1])):
+            colour[mask], size[mask] = rgb(shade), SIZE * (0.75 + 0.4 * k)
+        label = band.label.removeprefix("|d| ").removesuffix(" m")
+        if k == 0:
+            middle = Swatch(QUIET, f"± {label.removeprefix('< ')}")
+        else:
+            above.insert(0, Swatch(shades[0], f"+ {label}"))
+            below.append(Swatch(shades[1], f"− {label}"))
+    return PointColours(colour, size, Legend("deviation", "m", (*above, middle, *below)))
+
+
+def seam_colours(seams: Sequence[Seam], by: str, dark: bool) -> tuple[tuple[str, ...], Legend]:
+    """Return the colour of each seam by its "gap" or "angle": below a tenth of the limit, below it, above it."""
+    limit, unit = (GAP_LIMIT, "m") if by == "gap" else (ANGLE_LIMIT, "°")
+    shades = tuple(legible(c, dark) for c in (PASS, "#c98a12", FAIL))
+    values = [seam.gap if by == "gap" else seam.angle for seam in seams]
+    chosen = tuple(shades[0 if v <= limit / 10 else 1 if v <= limit else 2] for v in values)
+    words = (f"≤ {limit / 10:g}", f"≤ {limit:g}", f"> {limit:g}")
+    return chosen, Legend(by, unit, tuple(Swatch(c, w) for c, w in zip(shades, words, strict=True)))

@@ -1,0 +1,234 @@
+"""Turns a site and its surfaces into layers. It knows the data, not the window."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.gui.view3d.horizon_items import control_item, points_item, seams_item, shape_item, suggestions_item
+from geofit.gui.view3d.item import Item, Look
+from geofit.gui.view3d.layers import Layer
+from geofit.gui.view3d.shape import BAND, Shape, across, next_below, sd_at, seam_lines, shape_of
+from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, holes_item, sections_item
+from geofit.gui.view3d.stage import Stage
+from geofit.offdata import Suggestion, Uncertainty
+from geofit.points import PointSet
+from geofit.report.scene import SEVERAL
+from geofit.settings import FitSettings
+from geofit.site import Site
+from geofit.surface import HorizonSurface
+
+__all__ = ["Contents"]
+
+Floats = NDArray[np.float64]
+
+
+class Contents:
+    """What the scene shows: at most one site, and the surfaces of its horizons (or of none)."""
+
+    def __init__(self, stage: Stage) -> None:
+        self.stage = stage
+        self.site: Site | None = None
+        self.points: dict[str, PointSet] = {}
+        self.surfaces: dict[str, HorizonSurface] = {}
+        self.control: dict[str, list[tuple[str, int, int]]] = {}
+        self._shapes: dict[str, Shape] = {}
+        self._uncertainty: dict[str, Uncertainty | None] = {}
+        self._colours: dict[str, str] = {}
+
+    def show_site(self, site: Site) -> None:
+        """Show a site in place of the one before; surfaces of horizons that it does not have are removed."""
+        for name in [*self.points, *self.surfaces]:
+            if name not in site.horizons:
+                self.remove_surface(name)
+                self.stage.layers.remove(f"points:{name}")
+        self.site, self.points = site, dict(site.horizons)
+        level = self._level()
+        boreholes = [hole for hole in site.holes if hole.kind == "borehole"]
+        adits = [hole for hole in site.holes if hole.kind == "adit"]
+        if site.ground is not None:
+            ground = site.ground
+            self.stage.show(Layer("ground", "ground", opacity=0.3), lambda a, b: ground_item(ground, a, b))
+        if site.boundary is not None and len(site.boundary):
+            rim = site.boundary
+            self.stage.show(Layer("boundary", "boundary"), lambda a, b: boundary_item(rim, site.ground, level, a, b))
+        for key, holes in (("holes", boreholes), ("adits", adits)):
+            if holes:
+                self.stage.show(Layer(key, key, labels=True), partial(holes_item, holes))
+        if site.sections:
+            self.stage.show(
+                Layer("sections", "sections", labels=True),
+                lambda a, b: sections_item(site.sections, site.ground, level, a, b),
+            )
+        if (dips := site.orientations) is not None and len(dips):
+            width = float(np.ptp(self.everything(), axis=0).max())
+            self.stage.show(Layer("dips", "dips", labels=False), lambda a, b: dips_item(dips, width, a, b))
+        present = {
+            "ground": site.ground is not None,
+            "boundary": site.boundary is not None and len(site.boundary) > 0,
+            "holes": bool(boreholes),
+            "adits": bool(adits),
+            "sections": bool(site.sections),
+            "dips": dips is not None and len(dips) > 0,
+        }
+        for key, there in present.items():
+            if not there:
+                self.stage.layers.remove(key)
+        for name in site.horizons:
+            self._show_points(name)
+
+    def show_surface(
+        self, surface: HorizonSurface, uncertainty: Uncertainty | None = None, shape: Shape | None = None
+    ) -> None:
+        """Show a surface, or its new fit; ``shape`` if its triangles are made already."""
+        name, layers = surface.name, self.stage.layers
+        self.surfaces[name], self._uncertainty[name] = surface, uncertainty
+        self._shapes[name] = shape or shape_of(surface)
+        self.points.setdefault(name, surface.points)
+        colour = self.colour(name)
+        choices = ["plain", "elevation", "dip", "thickness"] + ["standard deviation"] * (uncertainty is not None)
+        self.stage.show(
+            Layer(f"surface:{name}", "surface", name, colour, choices=tuple(choices), isolines=False),
+            lambda layer, look: shape_item(self._shapes[name], self._values(name, layer.colour_by), layer, look),
+        )
+        for kind, sign in (("upper", BAND), ("lower", -BAND)):
+            if uncertainty is None:
+                layers.remove(f"{kind}:{name}")
+            else:
+                self._show_bound(name, kind, sign, uncertainty)
+        self._show_points(name)
+        for key, show in ((f"seams:{name}", self.show_seams), (f"control:{name}", self.show_control)):
+            if key in layers:
+                show(name)
+        for layer in layers:
+            if layer.colour_by == "thickness" and layer.horizon != name:
+                self.stage.rebuild(layer.key)
+
+    def _show_bound(self, name: str, kind: str, sign: float, uncertainty: Uncertainty) -> None:
+        def build(layer: Layer, look: Look) -> Item:
+            shape = self._shapes[name]
+            coarse = shape.coarse or shape
+            surface = self.surfaces[name]
+            way = sign * across(surface, uncertainty)
+            lifted = shape.lifted(sd_at(surface, uncertainty, shape.xyz), way)
+            few = coarse.lifted(sd_at(surface, uncertainty, coarse.xyz), way)
+            return shape_item(replace(lifted, coarse=few), None, layer, look)
+
+        layer = Layer(f"{kind}:{name}", kind, name, self.colour(name), visible=False, opacity=0.35)
+        self.stage.show(layer, build)
+
+    def remove_surface(self, name: str) -> None:
+        """Take away a surface with all that belongs to it; its points stay if they are of the site."""
+        for kind in ("surface", "upper", "lower", "seams", "control", "suggestions"):
+            self.stage.layers.remove(f"{kind}:{name}")
+        for known in (self.surfaces, self._shapes, self._uncertainty, self.control):
+            known.pop(name, None)
+        if self.site is not None and name in self.site.horizons:
+            self._show_points(name)
+        else:
+            self.points.pop(name, None)
+            self.stage.layers.remove(f"points:{name}")
+
+    def clear(self) -> None:
+        """Take everything away."""
+        self.site = None
+        for known in (self.points, self.surfaces, self._shapes, self._uncertainty, self.control, self._colours):
+            known.clear()
+        self.stage.layers.clear()
+
+    def show_seams(self, name: str) -> None:
+        """Show the seams of a surface that has been checked."""
+        surface = self.surfaces[name]
+        seams = surface.accuracy.seams if surface.accuracy is not None else ()
+        if not seams:
+            self.stage.layers.remove(f"seams:{name}")
+            return
+        runs = seam_lines(surface, seams)
+        layer = Layer(f"seams:{name}", "seams", name, choices=("angle", "gap"), colour_by="angle")
+        self.stage.show(layer, lambda a, b: seams_item(runs, seams, a, b))
+
+    def show_control(self, name: str) -> None:
+        """Show the control points of a surface."""
+        if not self.surfaces[name].patches:
+            self.stage.layers.remove(f"control:{name}")
+            return
+
+        def build(layer: Layer, look: Look) -> Item:
+            item, self.control[name] = control_item(self.surfaces[name], layer, look)
+            return item
+
+        self.stage.show(Layer(f"control:{name}", "control", name), build)
+
+    def show_suggestions(self, name: str, suggestions: tuple[Suggestion, ...]) -> None:
+        """Show where the next holes should stand."""
+        key = f"suggestions:{name}"
+        if suggestions:
+            top = float(self.everything()[:, 2].max())
+            layer = Layer(key, "suggestions", name, labels=True)
+            self.stage.show(layer, lambda a, b: suggestions_item(suggestions, top, a, b))
+        else:
+            self.stage.layers.remove(key)
+
+    def colour(self, name: str) -> str:
+        """Return the colour of a horizon: the next of SEVERAL when it is first seen."""
+        return self._colours.setdefault(name, SEVERAL[len(self._colours) % len(SEVERAL)])
+
+    def residuals(self, name: str) -> Floats | None:
+        """Return the residuals of a horizon's points, None where it has no checked surface of these points."""
+        surface = self.surfaces.get(name)
+        accuracy = surface.accuracy if surface is not None else None
+        if accuracy is None or len(accuracy.residuals) != len(self.points[name]):
+            return None
+        return accuracy.residuals
+
+    def everything(self) -> Floats:
+        """Return the corners of all that is known, (n, 3) map coordinates; empty if nothing is."""
+        found = [np.stack([p.xyz.min(axis=0), p.xyz.max(axis=0)]) for p in self.points.values() if len(p)]
+        found += [shape.xyz for shape in self._shapes.values()]
+        if self.site is not None:
+            found += [hole.xyz for hole in self.site.holes]
+            if (ground := self.site.ground) is not None:
+                ends = np.array([0, -1])
+                z = np.array([np.nanmin(ground.z), np.nanmax(ground.z)])
+                found.append(np.column_stack([ground.x[ends], ground.y[ends], z]))
+        return np.concatenate(found) if found else np.empty((0, 3))
+
+    def _level(self) -> float:
+        known = self.everything()
+        return float(known[:, 2].max()) if len(known) else 0.0
+
+    def _show_points(self, name: str) -> None:
+        points = self.points[name]
+        if not len(points):
+            self.stage.layers.remove(f"points:{name}")
+            return
+        surface = self.surfaces.get(name)
+        if surface is not None and len(surface.points) == len(points):
+            points = self.points[name] = surface.points
+        residuals = self.residuals(name)
+        settings = surface.settings if surface is not None else FitSettings()
+        choices = ("kind", *(("deviation",) if residuals is not None else ()), "elevation", "plain")
+        layer = Layer(f"points:{name}", "points", name, self.colour(name), choices=choices, colour_by="kind")
+        self.stage.show(layer, lambda a, b: points_item(points, residuals, settings, a, b))
+
+    def _values(self, name: str, by: str) -> tuple[Floats, Floats] | None:
+        """Return what a surface is coloured by, at the vertices of its fine and coarse triangles."""
+        shape = self._shapes[name]
+        fine, coarse = shape, shape.coarse or shape
+        if by == "elevation":
+            return fine.xyz[:, 2], coarse.xyz[:, 2]
+        if by == "dip":
+            return fine.dip, coarse.dip
+        uncertainty = self._uncertainty[name]
+        if by == "standard deviation" and uncertainty is not None:
+            surface = self.surfaces[name]
+            return sd_at(surface, uncertainty, fine.xyz), sd_at(surface, uncertainty, coarse.xyz)
+        if by == "thickness":
+            below = next_below(self.surfaces[name], coarse, list(self.surfaces.values()))
+            if below is not None:
+                rest = [s.xyz[:, 2] - below.elevation(s.xyz[:, 0], s.xyz[:, 1]) for s in (fine, coarse)]
+                return rest[0], rest[1]
+        return None

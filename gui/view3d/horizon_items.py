@@ -1,0 +1,161 @@
+"""What one horizon puts into the scene: points, surface, isolines, seams, control net, 90 % band, suggested holes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkFiltersCore import vtkContourFilter
+
+from geofit.accuracy import Seam
+from geofit.contours import interval_for
+from geofit.gui.view3d.actors import Part, coloured, dots, lines, poly, ramped, shaded, triangles
+from geofit.gui.view3d.colouring import PointColours, legible, points_by, ramp, rgb, seam_colours
+from geofit.gui.view3d.item import Item, Look, extent
+from geofit.gui.view3d.layers import Layer
+from geofit.gui.view3d.shape import Shape
+from geofit.offdata import Suggestion
+from geofit.points import PointSet
+from geofit.settings import FitSettings
+from geofit.surface import HorizonSurface
+
+__all__ = ["control_item", "points_item", "seams_item", "shape_item", "suggestions_item"]
+
+Floats = NDArray[np.float64]
+
+#: More points than BALLS are drawn flat and small, more than THIN thinned while the picture moves.
+BALLS, THIN = 20_000, 10_000
+SMALL = 2.0
+#: Every so many isolines one is thicker.
+MAJOR = 5
+
+
+def points_item(points: PointSet, residuals: Floats | None, settings: FitSettings, layer: Layer, look: Look) -> Item:
+    """Points of a horizon, coloured as the layer says."""
+    made = points_by(layer.colour_by, points, legible(layer.colour, look.dark), residuals, settings, look.dark)
+    many = len(points) > BALLS
+    parts = [p for size in np.unique(made.size) for p in _cloud(points.xyz, made, made.size == size, many, look)]
+    return Item(parts, extent(points.xyz), targets=points.xyz, legend=made.legend)
+
+
+def _cloud(xyz: Floats, made: PointColours, mask: NDArray[np.bool_], many: bool, look: Look) -> list[Part]:
+    size = float(made.size[mask][0])
+    chosen = np.flatnonzero(mask)
+    share = min(THIN / len(mask), 1.0)
+    if share == 1:
+        return [_dots(xyz, made, chosen, size, many, "both", look)]
+    few = np.random.default_rng(0).permutation(chosen)[: max(math.ceil(share * len(chosen)), 1)]
+    small = SMALL * size / float(made.size.min())
+    return [
+        _dots(xyz, made, chosen, small, True, "full", look),
+        _dots(xyz, made, few, 1.5 * small, True, "coarse", look),
+    ]
+
+
+def _dots(
+    xyz: Floats, made: PointColours, which: NDArray[np.int64], size: float, flat: bool, detail: str, look: Look
+) -> Part:
+    actor = dots(poly(xyz[which] - look.origin), "#000000", balls=not flat)
+    coloured(actor, made.colour[which])
+    return Part(actor, detail, size=size)
+
+
+def shape_item(
+    shape: Shape, values: tuple[Floats, Floats] | None, layer: Layer, look: Look, colour: str | None = None
+) -> Item:
+    """Return triangles coloured by a value at their corners (fine, coarse), or plain; isolines if wanted."""
+    colour = colour or legible(layer.colour, look.dark)
+    coarse = shape.coarse or shape
+    details = (("both", shape, 0),) if coarse is shape else (("full", shape, 0), ("coarse", coarse, 1))
+    made = ramp(layer.colour_by, values[0]) if values is not None else None
+    parts = []
+    for detail, one, k in details:
+        data = poly(one.xyz - look.origin, faces=one.triangles, normals=one.normals)
+        if detail == "coarse":
+            flat = np.tile(np.array(rgb(colour), np.uint8), (len(one.xyz), 1))
+            actor = shaded(data, made.of(values[k]) if made is not None and values is not None else flat, one.normals)
+        else:
+            actor = triangles(data, colour)
+            if made is not None and values is not None:
+                ramped(actor, values[k], made)
+        parts.append(Part(actor, detail))
+        if layer.isolines:
+            parts += _isolines(one, shape, detail, look)
+    return Item(parts, extent(shape.xyz), shape=shape, legend=made.legend if made else None)
+
+
+def _isolines(one: Shape, whole: Shape, detail: str, look: Look) -> list[Part]:
+    low, high = float(whole.xyz[:, 2].min()), float(whole.xyz[:, 2].max())
+    step = interval_for(low, high)
+    numbers = np.arange(math.ceil(low / step), math.floor(high / step) + 1)
+    data = poly(one.xyz - look.origin, faces=one.triangles)
+    data.GetPointData().SetScalars(numpy_to_vtk(np.ascontiguousarray(one.xyz[:, 2]), deep=True))
+    parts = []
+    for major in (False, True):
+        levels = step * numbers[(numbers % MAJOR == 0) == major]
+        if not len(levels):
+            continue
+        cut = vtkContourFilter()
+        cut.SetInputData(data)
+        cut.ComputeNormalsOff()
+        cut.ComputeScalarsOff()
+        for k, level in enumerate(levels.tolist()):
+            cut.SetValue(k, level)
+        cut.Update()
+        parts.append(Part(lines(cut.GetOutput(), "#1c2733"), detail, width=1.6 if major else 0.9, opacity=0.6))
+    return parts
+
+
+def seams_item(runs: Sequence[Sequence[Floats]], seams: Sequence[Seam], layer: Layer, look: Look) -> Item:
+    """Seams of a surface, each in the colour of its gap or angle."""
+    colours, legend = seam_colours(seams, layer.colour_by, look.dark)
+    parts, boxes = [], []
+    for colour in dict.fromkeys(colours):
+        mine = [run for these, c in zip(runs, colours, strict=True) if c == colour for run in these]
+        if mine:
+            ends = np.cumsum([0] + [len(run) for run in mine])
+            numbers = [np.arange(a, b) for a, b in pairwise(ends)]
+            every = np.concatenate(mine)
+            parts.append(Part(lines(poly(every - look.origin, runs=numbers), colour, 4.0), width=3.5))
+            boxes.append(every)
+    return Item(parts, extent(np.concatenate(boxes) if boxes else look.origin[None]), legend=legend)
+
+
+def control_item(surface: HorizonSurface, layer: Layer, look: Look) -> tuple[Item, list[tuple[str, int, int]]]:
+    """Control net of every patch, and the name, row and column of each of its points."""
+    colour = "#e0a63c" if look.dark else "#8a5a00"
+    points, runs, known, start = [], [], [], 0
+    for patch in surface.patches:
+        nu, nv = patch.control.shape[:2]
+        number = start + np.arange(nu * nv).reshape(nu, nv)
+        runs += [*number, *number.T]
+        points.append(patch.control.reshape(-1, 3) + surface.origin)
+        known += [(patch.name, i, j) for i in range(nu) for j in range(nv)]
+        start += nu * nv
+    xyz = np.concatenate(points)
+    parts = [
+        Part(lines(poly(xyz - look.origin, runs=runs), colour), "full", width=1.0, opacity=0.45),
+        Part(dots(poly(xyz - look.origin), colour, balls=len(xyz) <= BALLS), size=5.0),
+    ]
+    return Item(parts, extent(xyz), targets=xyz), known
+
+
+def suggestions_item(suggestions: Sequence[Suggestion], top: float, layer: Layer, look: Look) -> Item:
+    """Places for the next holes, as dashed lines from above the ground down to the surface, numbered."""
+    colour = "#7ed0a0" if look.dark else "#1b6e3c"
+    feet = np.array([[s.x, s.y, s.z] for s in suggestions])
+    heads = feet.copy()
+    heads[:, 2] = np.maximum(top, feet[:, 2])
+    share = np.linspace(0, 1, 30).reshape(15, 2)
+    dashes = feet[:, None, None] + share[None, :, :, None] * (heads - feet)[:, None, None]
+    xyz = dashes.reshape(-1, 3)
+    parts = [
+        Part(lines(poly(xyz - look.origin, runs=list(np.arange(len(xyz)).reshape(-1, 2))), colour), width=2.5),
+        Part(dots(poly(feet - look.origin), colour, balls=True), size=10.0),
+    ]
+    names = [f"{k} · ± {s.sd:.2f} m" for k, s in enumerate(suggestions, 1)] if layer.labels else []
+    return Item(parts, extent(np.concatenate([feet, heads])), places=heads, names=tuple(names))

@@ -1,0 +1,155 @@
+"""What is shown in the scene, and how: a list of layers that tells its listeners of changes. No Qt, no VTK."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+__all__ = ["Layer", "Layers", "Legend", "Swatch"]
+
+#: What happened ("added", "removed", "changed", "cleared") and to which layer.
+Listener = Callable[[str, str], None]
+
+
+@dataclass(frozen=True)
+class Swatch:
+    """One line of a legend: a colour, and a text that is told as it is (``plain``) or translated by the window."""
+
+    colour: str
+    text: str
+    plain: bool = True
+
+
+@dataclass(frozen=True)
+class Legend:
+    """What the colours of a layer mean: single colours, or a ramp from ``low`` to ``high`` in ``unit``.
+
+    ``title`` is a way of colouring (see Layer.colour_by). ``count`` is how many points each swatch stands for.
+    """
+
+    title: str
+    unit: str = ""
+    swatches: tuple[Swatch, ...] = ()
+    ramp: tuple[str, ...] = ()
+    low: float = 0.0
+    high: float = 0.0
+
+
+@dataclass(frozen=True)
+class Layer:
+    """One thing in the scene.
+
+    Parameters
+    ----------
+    key : str
+        Its name in the list: the kind, and the horizon after a colon.
+    kind : str
+        "ground", "boundary", "holes", "adits", "sections", "dips", "points", "surface", "seams", "control",
+        "upper", "lower" or "suggestions".
+    horizon : str
+        Name of the horizon; empty for what belongs to the whole site.
+    colour : str
+        Colour of the horizon, or of the layer where it is plain.
+    visible, opacity
+        Whether it is drawn; 0 (clear) to 1 (opaque).
+    choices : tuple of str
+        Ways of colouring it; ``colour_by`` is the one in use.
+    isolines, labels : bool or None
+        Whether lines of equal elevation, or names, are drawn; None where the layer has none.
+    legend : Legend or None
+        What the colours mean.
+    """
+
+    key: str
+    kind: str
+    horizon: str = ""
+    colour: str = ""
+    visible: bool = True
+    opacity: float = 1.0
+    choices: tuple[str, ...] = ("plain",)
+    colour_by: str = "plain"
+    isolines: bool | None = None
+    labels: bool | None = None
+    legend: Legend | None = None
+
+
+class Layers:
+    """The layers in the order of the list; ``subscribe`` to hear of changes."""
+
+    def __init__(self) -> None:
+        self._layers: dict[str, Layer] = {}
+        self._listeners: list[Listener] = []
+
+    def __iter__(self) -> Iterator[Layer]:
+        return iter(tuple(self._layers.values()))
+
+    def __len__(self) -> int:
+        return len(self._layers)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._layers
+
+    def __getitem__(self, key: str) -> Layer:
+        return self._layers[key]
+
+    def subscribe(self, listener: Listener) -> Callable[[], None]:
+        """Call ``listener(what, key)`` after every change; returns the function that ends it."""
+        self._listeners.append(listener)
+        return lambda: self._listeners.remove(listener)
+
+    def add(self, layer: Layer) -> Layer:
+        """Add a layer, or renew one of the same key, which keeps what a person has chosen for it."""
+        old = self._layers.get(layer.key)
+        if old is not None:
+            colour_by = old.colour_by if old.colour_by in layer.choices else layer.colour_by
+            isolines = layer.isolines if old.isolines is None else old.isolines
+            labels = layer.labels if old.labels is None else old.labels
+            layer = replace(
+                layer,
+                visible=old.visible,
+                opacity=old.opacity,
+                colour_by=colour_by,
+                isolines=isolines,
+                labels=labels,
+            )
+        self._layers[layer.key] = layer
+        self._tell("changed" if old is not None else "added", layer.key)
+        return layer
+
+    def remove(self, key: str) -> None:
+        """Take a layer out, if it is there."""
+        if self._layers.pop(key, None) is not None:
+            self._tell("removed", key)
+
+    def clear(self) -> None:
+        """Take all layers out."""
+        self._layers.clear()
+        self._tell("cleared", "")
+
+    def change(self, key: str, **changes: Any) -> None:
+        """Change fields of a layer; nobody is told where nothing changes.
+
+        Raises
+        ------
+        ValueError
+            If ``colour_by`` is not among the layer's choices, or the opacity not in 0 to 1.
+        """
+        old = self._layers[key]
+        new = replace(old, **changes)
+        if new.colour_by not in new.choices:
+            raise ValueError(f"{key} cannot be coloured by '{new.colour_by}'; choose one of {', '.join(new.choices)}.")
+        if not 0 <= new.opacity <= 1:
+            raise ValueError(f"The opacity of {key} is {new.opacity}; give a number from 0 to 1.")
+        if new != old:
+            self._layers[key] = new
+            self._tell("changed", key)
+
+    def only(self, key: str) -> None:
+        """Show one layer and hide the others."""
+        for layer in self:
+            self.change(layer.key, visible=layer.key == key)
+
+    def _tell(self, what: str, key: str) -> None:
+        for listener in tuple(self._listeners):
+            listener(what, key)

@@ -1,0 +1,71 @@
+"""Whether a 3D view can be drawn here: asked before VTK is, because VTK aborts the process where it cannot."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+
+from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QSurfaceFormat
+
+from geofit.errors import MissingDependencyError
+
+__all__ = ["NoOpenGLError", "require_opengl"]
+
+#: Platforms of Qt that have no OpenGL.
+FLAT = ("offscreen", "minimal", "vnc", "linuxfb")
+#: What VTK's shaders need.
+VERSION = (3, 2)
+
+
+class NoOpenGLError(MissingDependencyError):
+    """There is no OpenGL for a 3D view; the text says what is missing."""
+
+
+def require_opengl() -> None:
+    """Return if a 3D view can be drawn.
+
+    Raises
+    ------
+    NoOpenGLError
+        If there is no display, no OpenGL library, or OpenGL is older than 3.2.
+    """
+    platform = QGuiApplication.platformName()
+    if platform in FLAT:
+        raise NoOpenGLError(
+            f"The 3D view needs a display; Qt runs on its '{platform}' platform, which has no OpenGL. "
+            "Start the application on a desktop (or under Xvfb), without QT_QPA_PLATFORM set."
+        )
+    if sys.platform.startswith("linux"):
+        name = "libEGL.so.1" if platform.startswith("wayland") else "libGL.so.1"
+        try:
+            ctypes.CDLL(name)
+        except OSError:
+            raise NoOpenGLError(
+                f"The 3D view needs OpenGL; the library {name} is missing on this machine. "
+                "Install it (Debian and Ubuntu: apt-get install libgl1 libegl1) and start again."
+            ) from None
+    found = _version()
+    if found is None or found < VERSION:
+        have = "gives no OpenGL at all" if found is None else f"gives OpenGL {found[0]}.{found[1]}"
+        raise NoOpenGLError(
+            f"The 3D view needs OpenGL {VERSION[0]}.{VERSION[1]}; the graphics driver {have}. "
+            "Update the driver, or use Mesa's software renderer (LIBGL_ALWAYS_SOFTWARE=1 on Linux)."
+        )
+
+
+def _version() -> tuple[int, int] | None:
+    """Return the version of OpenGL that Qt can make a context for, None if it can make none."""
+    wanted = QSurfaceFormat()
+    wanted.setRenderableType(QSurfaceFormat.RenderableType.OpenGL)
+    wanted.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
+    wanted.setVersion(*VERSION)
+    context, surface = QOpenGLContext(), QOffscreenSurface()
+    context.setFormat(wanted)
+    surface.setFormat(wanted)
+    surface.create()
+    if not (context.create() and surface.isValid() and context.makeCurrent(surface)):
+        return None
+    version = context.format().majorVersion(), context.format().minorVersion()
+    context.doneCurrent()
+    surface.destroy()
+    return version

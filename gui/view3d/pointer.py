@@ -1,0 +1,147 @@
+"""What the pointer means in the scene: picking, measuring, the place under it, and the ring about what was chosen."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, QPointF, QTimer, Signal
+
+from geofit.gui.view3d.canvas import Canvas
+from geofit.gui.view3d.contents import Contents
+from geofit.gui.view3d.overlay import Ring
+from geofit.gui.view3d.picking import Hit, Sights, nearest_target, nearest_way
+from geofit.gui.view3d.stage import Stage
+from geofit.gui.view3d.tools import ClipBox, Measure
+from geofit.gui.view3d.words import word
+
+__all__ = ["Pointer"]
+
+Floats = NDArray[np.float64]
+
+#: The pointer's place is found at most so often, milliseconds.
+OFTEN = 60
+
+
+class Pointer(QObject):
+    """Listens to the canvas's mouse; ``changed`` tells that the ring or the measure is another one."""
+
+    point_picked = Signal(str, int)
+    control_picked = Signal(str, str, int, int)
+    hole_picked = Signal(str)
+    moved = Signal(float, float, float)
+    measured = Signal(str)
+    changed = Signal()
+
+    def __init__(self, canvas: Canvas, stage: Stage, contents: Contents, clip: ClipBox, parent: QObject) -> None:
+        super().__init__(parent)
+        self._canvas, self._stage, self._contents, self._clip = canvas, stage, contents, clip
+        self.measure, self.measuring = Measure(), False
+        self.ring: Ring | None = None
+        self._chosen: tuple[str, int] | None = None
+        self._sights, self._at = Sights(), QPointF()
+        self.timer = QTimer(self, interval=OFTEN, singleShot=True)
+        self.timer.timeout.connect(self._tell)
+        canvas.clicked.connect(self._click)
+        canvas.double_clicked.connect(self._turn_about)
+        canvas.hovered.connect(self._hover)
+        canvas.left.connect(self._leave)
+
+    def pick(self, column: float, row: float) -> Hit | None:
+        """Return what a click there means: a control point or a point first, then a hole."""
+        view, items = self._canvas.projector(), list(self._stage.items())
+        return nearest_target(items, view, column, row, self._clip.box) or nearest_way(items, view, column, row)
+
+    def place_at(self, column: float, row: float) -> Floats | None:
+        """Return the map coordinates of the surface under a pixel; None beside all."""
+        hit = self._sights.first(self._stage.items(), self._canvas.projector(), column, row, self._clip.box)
+        return None if hit is None else hit.xyz
+
+    def choose(self, horizon: str, index: int | None) -> None:
+        """Put a ring about a point; None takes it away."""
+        known = horizon in self._contents.points and index is not None and index < len(self._contents.points[horizon])
+        self._chosen = (horizon, int(index)) if known and index is not None else None
+        self.renew()
+
+    def surround(self, xyz: Floats, text: str) -> None:
+        """Put a ring about a place."""
+        self._chosen, self.ring = None, Ring(xyz, text)
+        self.changed.emit()
+
+    def renew(self) -> None:
+        """Write the figures of the chosen point anew: it may have another surface."""
+        self.ring = None
+        if self._chosen is not None:
+            horizon, index = self._chosen
+            points = self._contents.points.get(horizon)
+            if points is not None and index < len(points):
+                residuals = self._contents.residuals(horizon)
+                where = points.hole[index] or points.section[index]
+                text = f"{word(str(points.kind[index]))} {where}".strip() + f" · {points.xyz[index, 2]:.2f} m"
+                if residuals is not None:
+                    text += f" · d {residuals[index]:+.3f} m".replace("-", "−")
+                self.ring = Ring(points.xyz[index], text)
+        self.changed.emit()
+
+    def set_measuring(self, on: bool) -> None:
+        """Let clicks measure, or pick again."""
+        self.measuring = on
+        self.measure.places.clear()
+        self.changed.emit()
+
+    def measure_text(self) -> str:
+        """Return the measure in words; empty before its second place."""
+        return self.measure.text(
+            self.tr("{distance} m\nhorizontal {flat} m · Δz {rise} m\nazimuth {azimuth}° · dip {dip}°")
+        )
+
+    def clear(self) -> None:
+        """Forget ring and measure."""
+        self.measure.places.clear()
+        self._chosen = None
+        self.renew()
+
+    def _click(self, pos: QPointF) -> None:
+        hit = self.pick(pos.x(), pos.y())
+        if self.measuring:
+            self._take(hit.xyz if hit is not None else self.place_at(pos.x(), pos.y()))
+        elif hit is None:
+            return
+        elif hit.layer.kind == "points":
+            self.choose(hit.layer.horizon, hit.which)
+            self.point_picked.emit(hit.layer.horizon, hit.which)
+        elif hit.layer.kind == "control":
+            patch, i, j = self._contents.control[hit.layer.horizon][hit.which]
+            self.surround(hit.xyz, f"{patch} [{i}, {j}] · {hit.xyz[2]:.2f} m")
+            self.control_picked.emit(hit.layer.horizon, patch, i, j)
+        else:
+            self.surround(hit.xyz, str(hit.which))
+            self.hole_picked.emit(hit.which)
+
+    def _take(self, place: Floats | None) -> None:
+        if place is not None:
+            self.measure.add(place)
+            self.changed.emit()
+            if text := self.measure_text():
+                self.measured.emit(text)
+
+    def _turn_about(self, pos: QPointF) -> None:
+        place = self.place_at(pos.x(), pos.y())
+        if place is not None:
+            canvas = self._canvas
+            canvas.fly(replace(canvas.target, centre=(place - canvas.origin) * (1.0, 1.0, canvas.stretch)))
+
+    def _hover(self, pos: QPointF) -> None:
+        self._at = pos
+        if not self.timer.isActive():
+            self.timer.start()
+
+    def _leave(self) -> None:
+        self.timer.stop()
+        self.moved.emit(math.nan, math.nan, math.nan)
+
+    def _tell(self) -> None:
+        place = self.place_at(self._at.x(), self._at.y())
+        self.moved.emit(*((math.nan,) * 3 if place is None else place.tolist()))

@@ -1,0 +1,73 @@
+"""Between the map and the picture: where a place is drawn, and which line of sight a pixel is. No Qt, no VTK."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Projector"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Projector:
+    """The camera at one moment.
+
+    Parameters
+    ----------
+    matrix : (4, 4) array
+        From the scene's coordinates to the cube -1..1 (OpenGL's clip coordinates).
+    width, height : float
+        Size of the picture in logical pixels; y counts downwards.
+    origin : (3,) array
+        Map coordinates of the scene's zero, metres.
+    stretch : float
+        Vertical exaggeration.
+    """
+
+    matrix: Floats
+    width: float
+    height: float
+    origin: Floats
+    stretch: float
+
+    def screen(self, xyz: Floats) -> Floats:
+        """Return (n, 3) pixel columns, rows and depths (0 near, 1 far; nan behind the eye) of map coordinates."""
+        scene = (np.atleast_2d(np.asarray(xyz, float)) - self.origin) * (1.0, 1.0, self.stretch)
+        clip = scene @ self.matrix[:, :3].T + self.matrix[:, 3]
+        w = np.where(clip[:, 3] > 1e-9, clip[:, 3], np.nan)
+        ndc = clip[:, :3] / w[:, None]
+        return np.stack(
+            [(ndc[:, 0] + 1) / 2 * self.width, (1 - ndc[:, 1]) / 2 * self.height, (ndc[:, 2] + 1) / 2], axis=1
+        )
+
+    def ray(self, column: float, row: float) -> tuple[Floats, Floats]:
+        """Return two places in map coordinates on the line of sight through a pixel: near and far."""
+        x, y = 2 * column / self.width - 1, 1 - 2 * row / self.height
+        ends = np.array([[x, y, -1.0, 1.0], [x, y, 1.0, 1.0]]) @ np.linalg.inv(self.matrix).T
+        scene = ends[:, :3] / ends[:, 3:]
+        near, far = scene / (1.0, 1.0, self.stretch) + self.origin
+        return near, far
+
+    def on_level(self, column: float, row: float, z: float) -> Floats | None:
+        """Return where a line of sight meets the level ``z``, None if it runs along it or away from it."""
+        near, far = self.ray(column, row)
+        drop = far[2] - near[2]
+        if abs(drop) < 1e-9 * np.linalg.norm(far - near):
+            return None
+        share = (z - near[2]) / drop
+        return None if share < 0 else np.asarray(near + share * (far - near))
+
+    def along(self, column: float, row: float, start: Floats, way: Floats) -> float | None:
+        """Return how far along ``start + t * way`` the line of sight passes nearest, None if they are parallel."""
+        near, far = self.ray(column, row)
+        sight = (far - near) / np.linalg.norm(far - near)
+        between = start - near
+        cross = float(way @ sight)
+        lean = float(way @ way) - cross**2
+        if lean < 1e-9 * float(way @ way):
+            return None
+        return float((cross * (between @ sight) - between @ way) / lean)

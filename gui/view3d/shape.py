@@ -1,0 +1,182 @@
+"""The triangles of a horizon for drawing, with what they can be coloured by. Numbers only: it may run in a worker."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from geofit.accuracy import Seam
+from geofit.mesh import Mesh, MeshSurface, triangulate
+from geofit.offdata import Uncertainty
+from geofit.report.view import trimmed
+from geofit.site import Ground
+from geofit.surface import HorizonSurface, Patch
+
+__all__ = ["Shape", "across", "next_below", "sd_at", "seam_lines", "shape_of"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Chordal tolerance of the still picture as a share of the surface's width; triangles of the moving one, at most
+#: about: software draws some 20,000 in the time of a frame.
+FINE, FEW = 1 / 8_000, 1_000
+#: A 90 % band reaches so many standard deviations to either side.
+BAND = 1.6449
+#: Vertices at which two horizons are compared to find the one below.
+PROBES = 200
+#: The one below lies under at least this share of them: a short fault is not meant.
+COMMON = 0.3
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """Triangles in map coordinates with unit normals at the vertices (upwards), metres; ``coarse`` while moving."""
+
+    xyz: Floats
+    triangles: Ints
+    normals: Floats
+    coarse: Shape | None = None
+
+    @property
+    def dip(self) -> Floats:
+        """Angle below the horizontal at each vertex, degrees."""
+        return np.asarray(np.degrees(np.arccos(np.clip(np.abs(self.normals[:, 2]), 0.0, 1.0))))
+
+    def lifted(self, by: Floats, way: Floats) -> Shape:
+        """Return the vertices moved by (n,) metres along a unit vector (3,), without those that are nan."""
+        known = np.isfinite(by)
+        number = np.cumsum(known) - 1
+        keep = self.triangles[known[self.triangles].all(axis=1)]
+        return Shape(self.xyz[known] + by[known, None] * way, number[keep], self.normals[known])
+
+
+def shape_of(surface: HorizonSurface) -> Shape:
+    """Return the triangles of a surface, fine and coarse."""
+    fine = _shape(surface, triangulate(surface, FINE * _width(surface)))
+    return Shape(fine.xyz, fine.triangles, fine.normals, _thinned(fine))
+
+
+def _thinned(shape: Shape) -> Shape:
+    """Return about FEW triangles whose corners are among the shape's (Schroeder et al. 1992)."""
+    if len(shape.triangles) <= FEW:
+        return shape
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkFiltersCore import vtkDecimatePro
+
+    from geofit.gui.view3d.actors import poly
+
+    middle = shape.xyz.mean(axis=0)
+    data = poly(shape.xyz - middle, faces=shape.triangles)
+    few = vtkDecimatePro()
+    few.SetInputData(data)
+    few.SetTargetReduction(1 - FEW / len(shape.triangles))
+    few.PreserveTopologyOn()
+    few.BoundaryVertexDeletionOn()
+    few.Update()
+    made = few.GetOutput()
+    places = vtk_to_numpy(made.GetPoints().GetData()).astype(float)
+    triangles = vtk_to_numpy(made.GetPolys().GetConnectivityArray()).reshape(-1, 3).astype(np.int64)
+    known = cKDTree(shape.xyz - middle).query(places)[1]
+    return Shape(shape.xyz[known], triangles, shape.normals[known])
+
+
+def _width(surface: HorizonSurface) -> float:
+    if isinstance(surface, MeshSurface):
+        extent = np.ptp(surface.mesh.points, axis=0)
+    else:
+        extent = np.ptp(np.concatenate([patch.control.reshape(-1, 3) for patch in surface.patches]), axis=0)
+    return max(float(np.linalg.norm(extent)), 1e-3)
+
+
+def _shape(surface: HorizonSurface, mesh: Mesh) -> Shape:
+    normals = _facet_normals(mesh) if isinstance(surface, MeshSurface) else _patch_normals(surface.patches, mesh)
+    lost = ~np.isfinite(normals).all(axis=1)
+    normals[lost] = (0.0, 0.0, 1.0)
+    normals *= np.where(normals[:, 2:] < 0, -1.0, 1.0)
+    return Shape(mesh.xyz, mesh.triangles, normals)
+
+
+def _patch_normals(patches: Sequence[Patch], mesh: Mesh) -> Floats:
+    """Return normals of the surface itself, at one corner of each vertex."""
+    normals = np.full(mesh.points.shape, np.nan)
+    for k, patch in enumerate(patches):
+        mine = mesh.patch == k
+        number, first = np.unique(mesh.triangles[mine].ravel(), return_index=True)
+        u, v = mesh.uv[mine].reshape(-1, 2)[first].T
+        cross = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1))
+        length = np.linalg.norm(cross, axis=1, keepdims=True)
+        normals[number] = cross / np.where(length > 0, length, np.nan)
+    return normals
+
+
+def _facet_normals(mesh: Mesh) -> Floats:
+    a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
+    cross = np.cross(b - a, c - a)
+    total = np.zeros(mesh.points.shape)
+    for k in range(3):
+        np.add.at(total, mesh.triangles[:, k], cross)
+    length = np.linalg.norm(total, axis=1, keepdims=True)
+    return np.asarray(total / np.where(length > 0, length, np.nan))
+
+
+def sd_at(surface: HorizonSurface, uncertainty: Uncertainty, xyz: Floats) -> Floats:
+    """Return the standard deviation at places of a surface, bilinear between the grid's nodes, nan outside."""
+    grid = Ground(uncertainty.x, uncertainty.y, uncertainty.sd)
+    if uncertainty.frame == "map":
+        return grid.elevation(xyz[:, 0], xyz[:, 1])
+    if surface.model is None:
+        return np.full(len(xyz), np.nan)
+    local = surface.model.problem.chart.frame.to_local(xyz)
+    return grid.elevation(local[:, 0], local[:, 1])
+
+
+def across(surface: HorizonSurface, uncertainty: Uncertainty) -> Floats:
+    """Return the unit vector along which the standard deviation is measured: upwards, or across the best plane."""
+    if uncertainty.frame == "map" or surface.model is None:
+        return np.array([0.0, 0.0, 1.0])
+    return np.asarray(surface.model.problem.chart.frame.axes[2])
+
+
+def next_below(surface: HorizonSurface, shape: Shape, others: Sequence[HorizonSurface]) -> HorizonSurface | None:
+    """Return the horizon next below, by the median difference over common ground; None if there is none."""
+    some = shape.xyz[:: max(len(shape.xyz) // PROBES, 1)]
+    best, least = None, np.inf
+    for other in others:
+        if other is surface:
+            continue
+        apart = some[:, 2] - other.elevation(some[:, 0], some[:, 1])
+        apart = apart[np.isfinite(apart)]
+        if apart.size >= COMMON * len(some) and 0 < np.median(apart) < least:
+            best, least = other, float(np.median(apart))
+    return best
+
+
+def seam_lines(surface: HorizonSurface, seams: Sequence[Seam], samples: int = 60) -> list[list[Floats]]:
+    """Return, for each seam, its lines inside the study area, (k, 3) map coordinates."""
+    patches = {patch.name: patch for patch in surface.patches}
+    found: list[list[Floats]] = []
+    for seam in seams:
+        first, second = patches.get(seam.first), patches.get(seam.second)
+        if first is None or second is None:
+            found.append([])
+            continue
+        ways, others = _rim(first, samples), _rim(second, samples)
+        apart = [
+            (min(np.linalg.norm(a[[0, -1]] - o, axis=1).max() for b in others for o in (b[[0, -1]], b[[-1, 0]])), k)
+            for k, a in enumerate(ways)
+        ]
+        line = ways[min(apart)[1]] + surface.origin
+        inside = trimmed(surface, line[:, 0], line[:, 1]) > -1e-6
+        runs = np.split(np.arange(samples), np.flatnonzero(np.diff(inside)) + 1)
+        found.append([line[run] for run in runs if inside[run[0]] and len(run) > 1])
+    return found
+
+
+def _rim(patch: Patch, samples: int) -> list[Floats]:
+    u0, u1, v0, v1 = patch.domain
+    u, v = np.linspace(u0, u1, samples), np.linspace(v0, v1, samples)
+    return [patch.evaluate(u0, v), patch.evaluate(u1, v), patch.evaluate(u, v0), patch.evaluate(u, v1)]

@@ -1,0 +1,110 @@
+"""What an import made: horizons with their points, rows used and listed, and every problem with its remedy."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout, QWidget
+
+from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.words import spoken
+from geofit.importing import Import
+
+__all__ = ["ResultPage"]
+
+_ORDER = {"error": 0, "warning": 1, "note": 2}
+
+
+class ResultPage(QWidget):
+    """Shows an :class:`geofit.importing.Import`."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.balance = QLabel()
+        self.balance.setWordWrap(True)
+        self.horizons, self.files, self.issues = DataTable(), DataTable(), DataTable()
+        self.notes = QCheckBox(self.tr("Show &notes (guesses that were made)"))
+        self.notes.toggled.connect(self._filter)
+        self._severity = np.zeros(0, np.int64)
+        export = QPushButton(self.tr("&Export problems…"))
+        export.clicked.connect(self.issues.export_action.trigger)
+        above = QSplitter(Qt.Orientation.Horizontal)
+        above.addWidget(_titled(self.tr("Horizons"), self.horizons))
+        above.addWidget(_titled(self.tr("Files"), self.files))
+        below = QHBoxLayout()
+        below.addWidget(self.notes)
+        below.addStretch()
+        below.addWidget(export)
+        parts = QSplitter(Qt.Orientation.Vertical)
+        parts.addWidget(above)
+        problems = _titled(self.tr("Problems"), self.issues)
+        problems.layout().addLayout(below)  # type: ignore[union-attr]
+        parts.addWidget(problems)
+        parts.setStretchFactor(0, 2)
+        parts.setStretchFactor(1, 3)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.balance)
+        layout.addWidget(parts, 1)
+
+    def show_import(self, found: Import) -> None:
+        """Show what an import made."""
+        read, used, listed = (sum(getattr(count, key) for count in found.counts) for key in ("read", "used", "listed"))
+        text = self.tr("{read} rows read = {used} used + {listed} listed below.").format(
+            read=f"{read:,}", used=f"{used:,}", listed=f"{listed:,}"
+        )
+        if not found.site.horizons:
+            text += " " + self.tr("No horizon was found: go back, and add intervals, sections, traces or points.")
+        self.balance.setText(text)
+        names = list(found.site.horizons)
+        sizes = np.array([len(found.site.horizons[name]) for name in names], float)
+        self.horizons.show_columns(
+            (Column(self.tr("Horizon"), np.array(names, str)), Column(self.tr("Points"), sizes, 0))
+        )
+        counts = found.counts
+        self.files.show_columns(
+            (
+                Column(self.tr("File"), np.array([count.file for count in counts], str)),
+                *(
+                    Column(title, np.array([getattr(count, key) for count in counts], float), 0)
+                    for title, key in (
+                        (self.tr("Rows"), "read"),
+                        (self.tr("Used"), "used"),
+                        (self.tr("Listed"), "listed"),
+                    )
+                ),
+            )
+        )
+        issues = sorted(found.issues, key=lambda one: _ORDER[one.severity])
+        words = {"error": self.tr("not used"), "warning": self.tr("look"), "note": self.tr("note")}
+        self._severity = np.array([_ORDER[one.severity] for one in issues], np.int64)
+        self.issues.show_columns(
+            (
+                Column(self.tr("Kind"), np.array([words[one.severity] for one in issues], str), order=self._severity),
+                Column(self.tr("File"), np.array([one.file for one in issues], str)),
+                Column(self.tr("Row"), np.array([one.row or np.nan for one in issues], float), 0),
+                Column(self.tr("Column"), np.array([one.column for one in issues], str)),
+                Column(self.tr("Value"), np.array([one.value for one in issues], str)),
+                Column(self.tr("Reason"), np.array([spoken(one.reason) for one in issues], str)),
+                Column(self.tr("What to do"), np.array([spoken(one.remedy) for one in issues], str)),
+            )
+        )
+        quiet = int((self._severity == _ORDER["note"]).sum())
+        self.notes.setText(self.tr("Show &notes ({count} guesses that were made)").format(count=quiet))
+        self._filter()
+
+    def _filter(self) -> None:
+        self.issues.keep(None if self.notes.isChecked() else self._severity < _ORDER["note"])
+
+
+def _titled(title: str, table: DataTable) -> QWidget:
+    box = QWidget()
+    layout = QVBoxLayout(box)
+    layout.setContentsMargins(0, 0, 0, 0)
+    label = QLabel(title)
+    label.setBuddy(table)
+    table.setAccessibleName(title)
+    table.horizontalHeader().setStretchLastSection(True)
+    layout.addWidget(label)
+    layout.addWidget(table)
+    return box

@@ -1,0 +1,288 @@
+"""Long tasks beside the window: stages, progress, Cancel; results come back in the window's own thread.
+
+A task is a function that takes ``progress=`` (see :mod:`geofit.progress`). :func:`run` calls it in a thread.
+:func:`run_apart` calls it in a process of its own: OpenCASCADE holds the interpreter's lock for seconds, and a thread
+with it would stop the window; such a function, its arguments and its result must be picklable.
+"""
+
+from __future__ import annotations
+
+import itertools
+import logging
+import multiprocessing
+import threading
+import time
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+from typing import Any
+
+from PySide6.QtCore import QCoreApplication, QObject, QRunnable, Qt, QThreadPool, Signal
+from shiboken6 import isValid
+
+from geofit.errors import Cancelled, GeofitError
+
+__all__ = ["Task", "finish_all", "run", "run_apart", "tasks"]
+
+_LOG = logging.getLogger(__name__)
+
+#: Seconds between two reports of progress that reach the window.
+_PAUSE = 0.05
+#: Seconds between two looks at a process of its own.
+_LOOK = 0.05
+
+
+class _Line:
+    """What a task's thread knows of it: whether to stop, and where news go.
+
+    It is no Qt object: those die in the window's thread, at any time.
+    """
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        self.stop = threading.Event()
+        self._told = 0.0
+
+    def listen(self, stage: str, fraction: float, /) -> bool:
+        """Hear of progress in the task's thread, and pass it on, not too often."""
+        now = time.monotonic()
+        if now - self._told >= _PAUSE or fraction >= 1.0:
+            self._told = now
+            _bridge().heard.emit(self.number, stage, fraction)
+        return not self.stop.is_set()
+
+
+class Task(QObject):
+    """A task under way. Signals come in the thread that started it; after ``ended`` nothing more comes."""
+
+    progressed = Signal(str, float)
+    done = Signal(object)
+    failed = Signal(object)
+    cancelled = Signal()
+    ended = Signal()
+
+    def __init__(self, parent: QObject, title: str, line: _Line) -> None:
+        super().__init__(parent)
+        self.title = title
+        self._line = line
+        parent.destroyed.connect(line.stop.set)
+
+    @property
+    def stopping(self) -> bool:
+        """Whether somebody asked to stop."""
+        return self._line.stop.is_set()
+
+    def cancel(self) -> None:
+        """Ask the task to stop; it ends with ``cancelled`` at its next report of progress."""
+        self._line.stop.set()
+
+    def end(self, kind: str, value: object) -> None:
+        """Tell how the task ended."""
+        if kind == "done" and self.stopping:
+            kind = "cancelled"
+        if kind == "done":
+            self.done.emit(value)
+        elif kind == "failed":
+            self.failed.emit(value)
+        else:
+            self.cancelled.emit()
+        self.ended.emit()
+        # Not deleteLater(): the last reference to it goes here, and a deletion from the event loop has been seen to
+        # meet connections to Python functions half gone.
+        self.setParent(None)
+
+
+class _Job(QRunnable):
+    def __init__(self, line: _Line, title: str, function: Callable[..., Any], args: tuple[Any, ...]) -> None:
+        super().__init__()
+        self._line, self._title, self._function, self._args = line, title, function, args
+
+    def run(self) -> None:
+        """Run the function; whatever happens is told in the window's thread."""
+        try:
+            if self._line.stop.is_set():
+                raise Cancelled("Stopped before it began.")
+            result = self._function(*self._args, progress=self._line.listen)
+        except Cancelled as stop:
+            outcome: tuple[str, object] = ("cancelled", stop)
+        except GeofitError as error:
+            outcome = ("failed", error)
+        except Exception as error:  # the last frame of this thread: the window must hear of any failure
+            _LOG.exception("%s failed", self._title or getattr(self._function, "__name__", "task"))
+            outcome = ("failed", error)
+        else:
+            outcome = ("done", result)
+        _bridge().ended.emit(self._line.number, *outcome)
+
+
+class _Bridge(QObject):
+    """Carries news from the tasks' threads to the window's; it outlives them all."""
+
+    heard = Signal(int, str, float)
+    ended = Signal(int, str, object)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.heard.connect(self._pass_on, Qt.ConnectionType.QueuedConnection)
+        self.ended.connect(self._end, Qt.ConnectionType.QueuedConnection)
+
+    def _pass_on(self, number: int, stage: str, fraction: float) -> None:
+        task = _RUNNING.get(number)
+        if task is not None and isValid(task):
+            task.progressed.emit(stage, fraction)
+
+    def _end(self, number: int, kind: str, value: object) -> None:
+        task = _RUNNING.pop(number, None)
+        if task is not None and isValid(task):
+            task.end(kind, value)
+
+
+_NUMBERS = itertools.count()
+_RUNNING: dict[int, Task] = {}
+_HELPERS: list[_Helper] = []
+_POOL: QThreadPool | None = None
+_BRIDGE: _Bridge | None = None
+
+
+def run(
+    parent: QObject,
+    function: Callable[..., Any],
+    *args: Any,
+    on_done: Callable[[Any], object] | None = None,
+    on_failed: Callable[[Exception], object] | None = None,
+    on_progress: Callable[[str, float], object] | None = None,
+    on_cancelled: Callable[[], object] | None = None,
+    title: str = "",
+) -> Task:
+    """Call ``function(*args, progress=...)`` in a thread; the callbacks are called in this one.
+
+    If ``parent`` goes, the task is asked to stop and nothing is called any more.
+    """
+    _bridge()
+    line = _Line(next(_NUMBERS))
+    task = Task(parent, title, line)
+    for signal, callback in (
+        (task.done, on_done), (task.failed, on_failed), (task.progressed, on_progress), (task.cancelled, on_cancelled),
+    ):  # fmt: skip
+        if callback is not None:
+            signal.connect(callback)
+    _RUNNING[line.number] = task
+    _pool().start(_Job(line, title, function, args))
+    return task
+
+
+def run_apart(parent: QObject, function: Callable[..., Any], *args: Any, **listeners: Any) -> Task:
+    """As :func:`run`, in another process, which Cancel ends at once."""
+    return run(parent, _in_process, function, args, **listeners)
+
+
+def tasks() -> tuple[Task, ...]:
+    """Return the tasks under way."""
+    return tuple(_RUNNING.values())
+
+
+def finish_all(seconds: float = 30.0) -> bool:
+    """Stop all tasks and wait until threads and processes have ended; False if some did not in time."""
+    for task in tasks():
+        if isValid(task):
+            task.cancel()
+    ended = _POOL is None or _POOL.waitForDone(int(1000 * seconds))
+    while _HELPERS:
+        _HELPERS.pop().end()
+    QCoreApplication.sendPostedEvents()
+    return ended
+
+
+def _pool() -> QThreadPool:
+    global _POOL
+    if _POOL is None:
+        # Two, so that a long export does not hold up a fit.
+        _POOL = QThreadPool()
+        _POOL.setMaxThreadCount(2)
+        _POOL.setExpiryTimeout(2000)
+    return _POOL
+
+
+def _bridge() -> _Bridge:
+    """Return the bridge; :func:`run` makes it, in the window's thread."""
+    global _BRIDGE
+    if _BRIDGE is None:
+        _BRIDGE = _Bridge()
+    return _BRIDGE
+
+
+class _Helper:
+    """A process that runs one function after another; it has loaded OpenCASCADE when the second comes."""
+
+    def __init__(self) -> None:
+        # A fresh interpreter: a fork of a process with threads and a window would inherit locks nobody frees.
+        context = multiprocessing.get_context("spawn")
+        self.pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        self._process.start()
+        theirs.close()
+
+    def call(self, function: Callable[..., Any], args: tuple[Any, ...], progress: Callable[..., bool | None]) -> Any:
+        self.pipe.send((function, args))
+        name, fraction = "start", 0.0
+        while True:
+            if progress(name, fraction) is False:
+                raise Cancelled("Stopped by the caller.")
+            if not self.pipe.poll(_LOOK):
+                continue
+            try:
+                kind, value = self.pipe.recv()
+            except EOFError:
+                self._process.join(5)
+                raise GeofitError(
+                    f"The process that did the work ended by itself (exit code {self._process.exitcode}). Memory may "
+                    "have run out: close other programs and try again."
+                ) from None
+            if kind == "progress":
+                name, fraction = value
+            elif kind == "error":
+                raise _Told(value)
+            else:
+                return value
+
+    def end(self) -> None:
+        self.pipe.close()
+        self._process.terminate()
+        self._process.join()
+        self._process.close()
+
+
+class _Told(Exception):  # noqa: N818 - the error is what it carries
+    """An error that the function raised: the process itself is sound."""
+
+    def __init__(self, error: Exception) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
+def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: Callable[..., bool | None]) -> Any:
+    helper = _HELPERS.pop() if _HELPERS else _Helper()
+    try:
+        result = helper.call(function, args, progress)
+    except _Told as told:
+        _HELPERS.append(helper)
+        raise told.error from None
+    except BaseException:
+        helper.end()
+        raise
+    _HELPERS.append(helper)
+    return result
+
+
+def _serve(pipe: Connection) -> None:
+    def listen(stage: str, fraction: float, /) -> None:
+        pipe.send(("progress", (stage, fraction)))
+
+    while True:
+        try:
+            function, args = pipe.recv()
+        except EOFError:
+            return  # the application has ended
+        try:
+            pipe.send(("done", function(*args, progress=listen)))
+        except Exception as error:  # the last frame of this task: the window must hear of any failure
+            pipe.send(("error", error))

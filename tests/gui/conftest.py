@@ -1,0 +1,167 @@
+"""Real windows: a display of our own where there is none, settings in a temporary folder, nothing left behind."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import select
+import shutil
+import subprocess
+import sys
+import threading
+
+import pytest
+
+pytest.importorskip("PySide6", reason="the windows need PySide6: pip install 'geofit[gui]'")
+
+
+def _display() -> str | None:
+    """Return why no window can open here; where Xvfb is installed, start it and return None."""
+    if not sys.platform.startswith("linux") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        return None
+    program = shutil.which("Xvfb")
+    if program is None:
+        return "no display, and no Xvfb to make one (Debian and Ubuntu: apt-get install xvfb)"
+    reading, writing = os.pipe()
+    # Xvfb chooses a free number itself and writes it when it is ready.
+    server = subprocess.Popen(
+        [program, "-displayfd", str(writing), "-screen", "0", "1600x1000x24", "-nolisten", "tcp"],
+        pass_fds=[writing],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+    os.close(writing)
+    ready, _, _ = select.select([reading], [], [], 20)
+    number = os.read(reading, 16).decode().strip() if ready else ""
+    os.close(reading)
+    if not number:
+        server.kill()
+        server.wait()
+        return "no display, and Xvfb does not start"
+    os.environ["DISPLAY"] = f":{number}"
+    _SERVERS.append(server)
+    return None
+
+
+_SERVERS: list[subprocess.Popen[bytes]] = []
+_REASON = _display()
+
+
+def _end() -> None:
+    for server in _SERVERS:
+        server.terminate()
+        server.wait()
+
+
+# Not at the end of the tests: Qt aborts when its screen goes before it does. What is registered first is called last.
+atexit.register(_end)
+
+
+@pytest.fixture(scope="session")
+def qapp_args():
+    return ["geofit-test"]
+
+
+@pytest.fixture(autouse=True)
+def display():
+    if _REASON is not None:
+        pytest.skip(_REASON)
+
+
+@pytest.fixture(autouse=True)
+def own_settings(tmp_path, monkeypatch):
+    """Settings and journals of the application in a folder of the test."""
+    from PySide6.QtCore import QCoreApplication, QSettings, QStandardPaths
+
+    for name in ("XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_DATA_HOME"):
+        monkeypatch.setenv(name, str(tmp_path / name))
+    # Elsewhere the folders cannot be told by the environment.
+    QStandardPaths.setTestModeEnabled(not sys.platform.startswith("linux"))
+    QCoreApplication.setOrganizationName("geofit")
+    QCoreApplication.setApplicationName("geofit-test")
+    QSettings.setDefaultFormat(QSettings.Format.IniFormat)
+    QSettings.setPath(QSettings.Format.IniFormat, QSettings.Scope.UserScope, str(tmp_path / "settings"))
+
+
+@pytest.fixture(autouse=True)
+def nothing_left(request):
+    """No task and no thread of ours outlives its test, no window stays, no timer of a gone window runs."""
+    before = set(threading.enumerate())
+    yield
+    if _REASON is not None or "qtbot" not in request.fixturenames:
+        return
+    from PySide6.QtCore import QCoreApplication, QEvent
+    from PySide6.QtWidgets import QApplication
+
+    from geofit.gui import worker
+
+    assert worker.finish_all(20), "a task did not end"
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    QCoreApplication.processEvents()
+    shown = [widget for widget in QApplication.topLevelWidgets() if widget.isVisible()]
+    assert not shown, f"still shown: {shown}"
+    # Threads of the pool show in Python as dummies; they end by themselves when they idle.
+    left = [t for t in set(threading.enumerate()) - before if not isinstance(t, threading._DummyThread)]
+    assert not left, f"still running: {left}"
+
+
+class Driver:
+    """The whole application in a test: failures that a dialog would tell of are kept in ``failures``."""
+
+    def __init__(self, desktop, qtbot):
+        self.desktop, self.qtbot = desktop, qtbot
+        self.failures: list[Exception] = []
+
+    @property
+    def window(self):
+        return self.desktop.window
+
+    @property
+    def document(self):
+        return self.desktop.session.document
+
+    def idle(self, seconds=120):
+        """Wait until nothing runs and everything is shown."""
+        self.qtbot.waitUntil(lambda: not self.window.activity.busy, timeout=1000 * seconds)
+        self.qtbot.wait(50)
+        assert not self.failures, self.failures
+
+    def trigger(self, name):
+        """Choose an action of the menus."""
+        action = self.window.actions_[name]
+        assert action.isEnabled(), f"{name} is disabled"
+        action.trigger()
+
+
+@pytest.fixture
+def app(qtbot, monkeypatch, qapp):
+    """The application with its window shown, in English; closed at the end without asking."""
+    from PySide6.QtCore import QEvent
+
+    from geofit.gui.desktop import Desktop
+    from geofit.gui.main_window import MainWindow
+    from geofit.gui.preferences import Preferences
+
+    Preferences().language = "en"
+    desktop = Desktop()
+    driver = Driver(desktop, qtbot)
+    monkeypatch.setattr(MainWindow, "fail", lambda self, title, error: driver.failures.append(error))
+    desktop.window.show()
+    qtbot.waitExposed(desktop.window)
+    yield driver
+    window = desktop.window
+    window.leave_without_asking()
+    desktop.session.end()
+    window.deleteLater()
+    desktop.deleteLater()
+    qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+
+
+@pytest.fixture(scope="session")
+def sample(tmp_path_factory):
+    """The sample site's folder."""
+    from geofit.sample import write_site
+
+    folder = tmp_path_factory.mktemp("sample")
+    write_site(folder)
+    return folder

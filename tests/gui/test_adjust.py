@@ -1,0 +1,161 @@
+"""The adjust panel: a control point or a data point, what it moves, what holds it, and the effect."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from panel_samples import FAULT, failing, fitted
+from PySide6.QtCore import Qt
+
+from geofit.gui.panels.adjust import AdjustPanel
+from geofit.handwork import adjust, support
+
+
+@pytest.fixture
+def panel(qtbot):
+    panel = AdjustPanel()
+    qtbot.addWidget(panel)
+    panel.resize(260, 600)
+    panel.show()
+    return panel
+
+
+def click(qtbot, button):
+    qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+
+
+def inside(plane, box):
+    u0, u1, v0, v1 = box
+    return (plane[:, 0] > u0) & (plane[:, 0] < u1) & (plane[:, 1] > v0) & (plane[:, 1] < v1)
+
+
+def free_control(surface):
+    """A control point that acts on points, none of which is exact."""
+    plane = surface.model.problem.chart.plane
+    for patch in surface.patches[1:]:
+        for i in range(2, patch.control.shape[0]):
+            u0, u1, v0, v1 = support(surface, patch.name, i, 2)
+            # At its edges a control point hardly acts.
+            middle = inside(plane, ((2 * u0 + u1) / 3, (u0 + 2 * u1) / 3, (2 * v0 + v1) / 3, (v0 + 2 * v1) / 3))
+            if middle.any() and not (inside(plane, (u0, u1, v0, v1)) & surface.core).any():
+                return patch, i, 2
+    raise AssertionError("every control point is held")
+
+
+def test_without_a_surface_or_a_net_it_says_so(panel):
+    assert "press Fit" in panel.pages.text
+    panel.show_surface(fitted().with_(model=None))
+    assert "read from a file" in panel.pages.text
+
+
+def test_a_picked_control_point_shows_its_place(panel, qtbot):
+    patch, i, j = free_control(fitted())
+    with qtbot.assertNotEmitted(panel.control_chosen):
+        panel.show_surface(fitted())
+        panel.choose_control(patch.name, i, j)
+    x, y, z = patch.control[i, j] + fitted().origin
+    assert f"At ({x:.1f}, {y:.1f}, {z:.2f})" in panel.about_control.text()
+    assert panel.z.value() == pytest.approx(z, abs=1e-3)
+    assert "nothing outside" in panel.about_control.text()
+    assert not panel.apply_button.isEnabled()
+
+
+def test_move_and_elevation_follow_each_other(panel, qtbot):
+    panel.show_surface(fitted())
+    patch, i, j = free_control(fitted())
+    panel.choose_control(patch.name, i, j)
+    z = panel.z.value()
+    click(qtbot, panel.steps[3])
+    click(qtbot, panel.steps[1])
+    assert panel.dz.value() == pytest.approx(0.9)
+    assert panel.z.value() == pytest.approx(z + 0.9, abs=2e-3)
+    panel.z.setValue(z - 2)
+    assert panel.dz.value() == pytest.approx(-2, abs=2e-3)
+    with qtbot.waitSignal(panel.adjust_requested) as told:
+        click(qtbot, panel.apply_button)
+    assert told.args[:3] == [patch.name, i, j]
+    assert told.args[3] == pytest.approx(-2, abs=2e-3)
+
+
+def test_the_effect_is_asked_for_after_a_pause_and_shown(panel, qtbot):
+    surface = fitted()
+    panel.show_surface(surface)
+    patch, i, j = free_control(surface)
+    panel.choose_control(patch.name, i, j)
+    with qtbot.waitSignal(panel.adjust_wanted, timeout=2000) as told:
+        panel.dz.setValue(5.0)
+    changed = adjust(surface, *told.args)
+    panel.show_effect(surface.accuracy, changed.accuracy)
+    cells = [[label.text() for label in row] for row in panel.effect.cells]
+    assert cells[1][0] == "σ, m"
+    assert cells[1][1] != cells[1][2]
+    panel.show_effect(surface.accuracy, failing(surface).accuracy)
+    assert panel.effect.words.text() == "PASS → FAIL"
+
+
+def test_exact_points_hold_a_control_point_and_it_is_said(panel):
+    surface = fitted()
+    panel.show_surface(surface)
+    core = surface.patches[0]
+    panel.choose_control("core", core.control.shape[0] // 2, core.control.shape[1] // 2)
+    assert "met exactly" in panel.about_control.text()
+    assert not panel.dz.isEnabled()
+    assert not panel.apply_button.isEnabled()
+
+
+def test_what_the_panel_lets_through_the_fit_takes(panel, qtbot):
+    """The panel's word on held control points agrees with what an adjustment does."""
+    surface = fitted()
+    panel.show_surface(surface)
+    free = 0
+    for patch in surface.patches[:6]:
+        rows, columns = patch.control.shape[:2]
+        for i, j in ((rows // 2, columns // 2), (rows - 1, 1)):
+            panel.choose_control(patch.name, i, j)
+            if panel.dz.isEnabled():
+                free += 1
+                assert adjust(surface, patch.name, i, j, 0.1).accuracy is not None
+    assert free >= 3
+
+
+def test_boxes_choose_a_control_point(panel, qtbot):
+    panel.show_surface(fitted())
+    with qtbot.waitSignal(panel.control_chosen) as told:
+        panel.i.stepUp()
+    assert told.args == [fitted().patches[0].name, 1, 0]
+    assert panel.i.maximum() == fitted().patches[0].control.shape[0] - 1
+
+
+def test_a_data_point_is_pulled_by_a_share(panel, qtbot):
+    surface = fitted()
+    panel.show_surface(surface)
+    worst = surface.accuracy.worst[0]
+    panel.choose_point(worst)
+    assert surface.points.describe(worst) in panel.about_point.text()
+    assert f"{surface.accuracy.residuals[worst]:+.3f}" in panel.about_point.text()
+    with qtbot.waitSignal(panel.pull_wanted, timeout=2000):
+        panel.share.setValue(50)
+    with qtbot.waitSignal(panel.pull_requested) as told:
+        click(qtbot, panel.apply_button)
+    assert told.args == [worst, 0.5]
+    exact = int(np.flatnonzero(surface.core)[0])
+    panel.choose_point(exact)
+    assert "meets this point already" in panel.about_point.text()
+
+
+def test_a_new_surface_keeps_the_choice_and_drops_the_move(panel):
+    surface = fitted()
+    panel.show_surface(surface)
+    patch, i, j = free_control(surface)
+    panel.choose_control(patch.name, i, j)
+    panel.dz.setValue(0.5)
+    changed = adjust(surface, patch.name, i, j, 0.5)
+    panel.show_surface(changed)
+    assert (panel.patch.currentText(), panel.i.value(), panel.j.value(), panel.dz.value()) == (patch.name, i, j, 0.0)
+    assert panel.z.value() == pytest.approx(patch.control[i, j, 2] + surface.origin[2] + 0.5, abs=0.3)
+
+
+def test_a_steep_fault_can_be_chosen(panel):
+    panel.show_surface(fitted(FAULT))
+    assert panel.pages.text == ""
+    assert panel.minimumSizeHint().width() <= 260

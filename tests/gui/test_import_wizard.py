@@ -1,0 +1,206 @@
+"""The import wizard: guesses shown and overruled, nothing read while a role is missing, problems listed."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QComboBox
+
+from geofit.gui.wizard.draft import drafts_of, free_name
+from geofit.gui.wizard.import_wizard import ImportWizard
+from geofit.gui.wizard.memory import Memory
+from geofit.gui.wizard.table_page import BAD
+from geofit.io.site_file import read_site
+
+SAMPLE = Path(__file__).resolve().parents[2] / "sample_data"
+
+COLLAR = "孔号;坐标X;坐标Y;孔口高程;孔深\n" + "".join(
+    f"ZK{i};{500000 + 40 * i},5;{3100000 + i};{900 - i},25;60\n" for i in range(8)
+)
+LOG = "孔号,起始深度,终止深度,岩性\n" + "".join(f"ZK{i},0,{10 + i},Q\nZK{i},{10 + i},60,T2\n" for i in range(8))
+
+
+def opened(qtbot, folder, *files):
+    wizard = ImportWizard(files, folder)
+    qtbot.addWidget(wizard)
+    wizard.show()
+    rested(qtbot, wizard)
+    return wizard
+
+
+def rested(qtbot, wizard):
+    qtbot.waitUntil(lambda: wizard._task is None, timeout=30_000)
+
+
+def press(qtbot, wizard, button):
+    qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+    rested(qtbot, wizard)
+
+
+def row_of(wizard, name):
+    return next(k for k, draft in enumerate(wizard.drafts()) if draft.title == name)
+
+
+def roles_shown(wizard):
+    table = wizard.page.table
+    return [table.cellWidget(0, k).currentData() for k in range(table.columnCount())]
+
+
+def name_column(wizard, column, role):
+    box = wizard.page.table.cellWidget(0, column)
+    assert isinstance(box, QComboBox)
+    box.setCurrentIndex(box.findData(role))
+    box.activated.emit(box.currentIndex())
+
+
+def choose(box, value):
+    box.setCurrentIndex(box.findData(value))
+    box.activated.emit(box.currentIndex())
+
+
+def test_the_sample_site_s_files_become_a_site(qtbot, tmp_path):
+    for file in SAMPLE.iterdir():
+        if file.suffix in (".csv", ".asc"):
+            shutil.copy(file, tmp_path)
+    wizard = opened(qtbot, tmp_path, *sorted(tmp_path.iterdir()))
+    assert wizard.forward.isEnabled()
+    wizard.list.setCurrentRow(row_of(wizard, "collar.csv"))
+    assert roles_shown(wizard) == ["hole", "x", "y", "z", "depth"]
+    press(qtbot, wizard, wizard.forward)
+    assert "rows read = " in wizard.results.balance.text()
+    assert wizard.results.horizons.rows.total > 3
+    with qtbot.waitSignal(wizard.accepted):
+        press(qtbot, wizard, wizard.forward)
+    site = read_site(wizard.site_file)
+    assert len(site.holes) >= 60
+    read, used, listed = (sum(getattr(c, key) for c in site.counts) for key in ("read", "used", "listed"))
+    assert read == used + listed
+
+
+def test_chinese_headers_in_gb18030_with_decimal_commas_are_read(qtbot, tmp_path):
+    (tmp_path / "钻孔.csv").write_bytes(COLLAR.encode("gb18030"))
+    (tmp_path / "地层.csv").write_bytes(LOG.encode("gb18030"))
+    wizard = opened(qtbot, tmp_path, tmp_path / "钻孔.csv", tmp_path / "地层.csv")
+    draft = wizard.drafts()[0]
+    assert (draft.kind, draft.preview.sep, draft.preview.decimal) == ("collar", ";", ",")
+    assert draft.preview.encoding.startswith("gb")
+    press(qtbot, wizard, wizard.forward)
+    assert "base of Q" in wizard.results.horizons.rows.columns[0].values
+
+
+def test_nothing_is_read_while_a_required_role_is_missing(qtbot, tmp_path):
+    (tmp_path / "collar.csv").write_text("hole,east,north,elevation\nA,1,2,3\nB,4,5,6\nC,7,9,8\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "collar.csv")
+    choose(wizard.page.kind, "collar")
+    rested(qtbot, wizard)
+    name_column(wizard, 3, "")
+    assert not wizard.forward.isEnabled()
+    assert "Elevation" in wizard.page.message.text()
+    assert "collar.csv" in wizard.message.text()
+    name_column(wizard, 3, "z")
+    assert wizard.forward.isEnabled()
+
+
+def test_a_role_given_to_another_column_leaves_the_first(qtbot, tmp_path):
+    (tmp_path / "points.csv").write_text("x,y,z,w\n1,2,3,30\n4,5,6,60\n8,7,9,90\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    assert roles_shown(wizard) == ["x", "y", "z", ""]
+    name_column(wizard, 3, "z")
+    assert roles_shown(wizard) == ["x", "y", "", "z"]
+    press(qtbot, wizard, wizard.forward)
+    points = next(iter(read_site(wizard.site_file).horizons.values()))
+    assert points.xyz[:, 2].tolist() == [30, 60, 90]
+
+
+def test_cells_that_are_no_numbers_are_red_and_listed_with_their_row(qtbot, tmp_path):
+    (tmp_path / "points.csv").write_text("x,y,z\n1,2,3\n4,n/a,6\n8,7,9\n9,1,4\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    item = wizard.page.table.item(2, 1)
+    assert item.background().color().name() in BAD.values()
+    assert wizard.page.table.item(1, 1).background().style() == Qt.BrushStyle.NoBrush
+    press(qtbot, wizard, wizard.forward)
+    columns = wizard.results.issues.rows.columns
+    found = [k for k in range(wizard.results.issues.rows.total) if columns[4].text(k) == "n/a"]
+    assert [columns[2].text(k) for k in found] == ["3"]
+    assert "4 rows read = 3 used + 1 listed" in wizard.results.balance.text()
+
+
+def test_another_separator_is_read_again(qtbot, tmp_path):
+    (tmp_path / "points.csv").write_text("x y z\n1 2 3\n4 5 6\n7 9 9\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    choose(wizard.page.separator, ";")
+    rested(qtbot, wizard)
+    assert len(wizard.drafts()[0].preview.header) == 1
+    choose(wizard.page.separator, " ")
+    rested(qtbot, wizard)
+    assert wizard.drafts()[0].preview.header == ("x", "y", "z")
+
+
+def test_lengths_in_feet_become_metres(qtbot, tmp_path):
+    (tmp_path / "points.csv").write_text("x,y,z\n100,200,300\n400,500,600\n800,700,900\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    choose(wizard.page.unit, "ft")
+    rested(qtbot, wizard)
+    press(qtbot, wizard, wizard.forward)
+    points = next(iter(read_site(wizard.site_file).horizons.values()))
+    assert points.xyz[0] == pytest.approx([30.48, 60.96, 91.44])
+
+
+def test_a_table_is_left_out_and_said_so(qtbot, tmp_path):
+    (tmp_path / "points.csv").write_text("x,y,z\n1,2,3\n4,5,6\n8,7,9\n")
+    (tmp_path / "notes.csv").write_text("who,what\nme,nothing\nyou,less\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "points.csv", tmp_path / "notes.csv")
+    assert wizard.list.currentRow() == row_of(wizard, "notes.csv")
+    assert not wizard.forward.isEnabled()
+    choose(wizard.page.kind, "skip")
+    rested(qtbot, wizard)
+    press(qtbot, wizard, wizard.forward)
+    issues = wizard.results.issues.rows.columns
+    reasons = [issues[5].text(k) for k in range(wizard.results.issues.rows.total) if issues[1].text(k) == "notes.csv"]
+    assert reasons == ["The mapping leaves this table out"]
+
+
+def test_a_mapping_is_remembered_for_the_same_header(qtbot, tmp_path):
+    text = "A1,B1,C1,D1\n500001.5,3100002,30,1\n500404,3100005,60,2\n500807,3100307,90,3\n"
+    (tmp_path / "one.csv").write_text(text)
+    wizard = opened(qtbot, tmp_path, tmp_path / "one.csv")
+    choose(wizard.page.kind, "picks")
+    rested(qtbot, wizard)
+    for column, role in enumerate(("x", "y", "", "z")):
+        name_column(wizard, column, role)
+    press(qtbot, wizard, wizard.forward)
+    (tmp_path / "two.csv").write_text(text.replace("30,1", "31,9"))
+    again = opened(qtbot, tmp_path, tmp_path / "two.csv")
+    assert again.drafts()[0].remembered
+    assert roles_shown(again) == ["x", "y", "", "z"]
+    assert again.site_file.name == "site-2.toml"
+
+
+def test_a_missing_file_is_told_and_the_wizard_goes_on(qtbot, tmp_path):
+    wizard = opened(qtbot, tmp_path, tmp_path / "nothing.csv")
+    assert "nothing.csv" in wizard.message.text()
+    assert not wizard.forward.isEnabled()
+    (tmp_path / "points.csv").write_text("x,y,z\n1,2,3\n4,5,6\n8,7,9\n")
+    wizard.add_files([tmp_path / "points.csv"])
+    rested(qtbot, wizard)
+    assert wizard.forward.isEnabled()
+
+
+def test_a_broken_memory_counts_as_empty(tmp_path):
+    path = tmp_path / "mappings.json"
+    path.write_text("[{]")
+    assert Memory(path).recall() == ()
+    (tmp_path / "points.csv").write_text("x,y,z\n1,2,3\n4,5,6\n8,7,9\n")
+    drafts = drafts_of([tmp_path / "points.csv"], (), progress=lambda stage, share: None)
+    Memory(path).keep(drafts)
+    ((header, mapping),) = Memory(path).recall()
+    assert (header, mapping.kind) == (("x", "y", "z"), "picks")
+
+
+def test_no_site_file_is_written_over(tmp_path):
+    assert free_name(tmp_path).name == "site.toml"
+    (tmp_path / "site.toml").touch()
+    assert free_name(tmp_path).name == "site-2.toml"

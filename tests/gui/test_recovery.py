@@ -1,0 +1,173 @@
+"""kill -9 at any moment loses at most the command under way."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geofit.gui.document.commands import PullToPoint, RenameSite, SetSettings, SetSurface
+from geofit.gui.document.document import Document
+from geofit.gui.document.journal import Journal, unfinished
+from geofit.gui.document.making import make
+from geofit.settings import FitSettings
+
+CHILD = Path(__file__).with_name("cut_off.py")
+KILLS = 60
+
+
+def child_module():
+    spec = importlib.util.spec_from_file_location("cut_off", CHILD)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["cut_off"] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+cut_off = child_module()
+
+
+def states(seed: int, count: int):
+    """States after 0, 1, ... ``count`` steps of a session, as an uninterrupted one has them."""
+    player = cut_off.Player(None)
+    found = [player.document.state]
+    for step in cut_off.steps(seed):
+        if len(found) > count:
+            return found
+        if player.play(step):
+            found.append(player.document.state)
+    raise AssertionError
+
+
+@pytest.mark.skipif(not hasattr(__import__("os"), "fork"), reason="kill -9 is for Linux and macOS")
+def test_a_session_killed_at_any_moment_comes_back(tmp_path):
+    done = subprocess.run(
+        [sys.executable, str(CHILD), str(tmp_path), str(KILLS), "100"],
+        capture_output=True, text=True, check=False, timeout=120,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    killed = {int(pid): (int(seed), int(told)) for seed, told, pid in map(str.split, done.stdout.splitlines())}
+    assert len(killed) == KILLS
+    found = {int(one.path.name.split("-")[1]): one for one in unfinished(tmp_path)}
+    lengths = set()
+    for pid, (seed, told) in killed.items():
+        expected = states(seed, told + 1)
+        if pid not in found:
+            # Nothing unsaved: the state was the first one again.
+            assert expected[0] in expected[told:]
+            continue
+        session = found[pid]
+        assert session.final in expected[told:], f"session {seed}: {told} steps acknowledged"
+        assert session.base == expected[0]
+        lengths.add(told)
+    assert len(lengths) > KILLS // 4, "the sessions were not killed at different moments"
+    assert not list(tmp_path.glob("*.journal")) or all(one.path.is_file() for one in found.values())
+
+
+def test_a_journal_cut_after_any_byte_gives_a_prefix(tmp_path):
+    player = cut_off.Player(None)
+    journal = Journal(tmp_path, player.document.state, Path("site.toml"), None)
+    player.journal = journal
+    expected = [player.document.state]
+    for step in cut_off.steps(7):
+        if player.play(step):
+            expected.append(player.document.state)
+        if len(expected) > 12:
+            break
+    data = journal.path.read_bytes()
+    journal.end()
+    assert not journal.path.exists()
+    first = data.index(b"\n") + 1
+    last = 0
+    for cut in range(first, len(data) + 1, 7):
+        path = tmp_path / "session-1-0.journal"
+        path.write_bytes(data[:cut])
+        whole = data[:cut].count(b"\n") - 1
+        sessions = unfinished(tmp_path)
+        if expected[whole] == expected[0]:
+            assert not sessions
+        else:
+            assert sessions[0].final == expected[whole]
+        assert whole >= last
+        last = whole
+    assert last >= 10
+
+
+def test_a_damaged_line_ends_what_is_brought_back(tmp_path):
+    document = Document()
+    document.open(cut_off.tiny_site(), Path("site.toml"))
+    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    for name in "abc":
+        command = RenameSite(name)
+        command.redo(document)
+        journal.done(command)
+    data = journal.path.read_bytes()
+    journal.end()
+    place = data.rindex(b'"b"') + 1
+    (tmp_path / "session-1-0.journal").write_bytes(data[:place] + b"x" + data[place + 1 :])
+    (session,) = unfinished(tmp_path)
+    assert session.final.name == "a"
+
+
+def test_the_journal_of_a_living_session_is_left_alone(tmp_path):
+    document = Document()
+    document.open(cut_off.tiny_site(), Path("site.toml"))
+    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    command = RenameSite("here")
+    command.redo(document)
+    journal.done(command)
+    assert unfinished(tmp_path) == []
+    assert journal.path.is_file()
+    journal.end()
+
+
+def test_what_was_saved_is_not_offered(tmp_path):
+    document = Document()
+    document.open(cut_off.tiny_site(), Path("site.toml"))
+    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    command = RenameSite("saved")
+    command.redo(document)
+    journal.done(command)
+    journal.saved(Path("a.geofit"), document.state)
+    journal._stream.close()
+    assert unfinished(tmp_path) == []
+    assert not journal.path.exists()
+
+
+def test_surfaces_come_back_to_the_last_bit(tmp_path):
+    document = Document()
+    document.open(cut_off.tiny_site(), Path("site.toml"))
+    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+
+    def do(command):
+        command.redo(document)
+        journal.done(command)
+
+    do(SetSettings("W", FitSettings(core="none", epsilon=0.05)))
+    do(SetSurface(document.recipe("W")))
+    do(PullToPoint("W", 3, 0.5))
+    recipe = document.state.recipes["W"]
+    document.put(recipe, make(recipe, document.points_of(recipe), document.site.boundary))
+    journal._stream.close()  # as the end of the process does
+
+    (session,) = unfinished(tmp_path)
+    again = Document()
+    again.open(cut_off.tiny_site(), Path("site.toml"), session.base)
+    for command in session.commands:
+        command.redo(again)
+    assert again.state == document.state
+    (missing,) = again.missing()
+    surface = make(missing, again.points_of(missing), again.site.boundary)
+    for new, old in zip(surface.patches, document.surface("W").patches, strict=True):
+        assert np.array_equal(new.control, old.control)
+
+
+def test_states_of_two_sessions_differ():
+    # The test above compares states: it must be able to tell them apart.
+    found = states(3, 40)
+    assert sum(a != b for a, b in pairwise(found)) > 30

@@ -1,0 +1,191 @@
+"""The section panel: lines, what lies within the thickness, traces, and picking."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from panel_samples import FAULT, WITH_PERIPHERY, fitted, off_data, sample_site
+from PySide6.QtCore import QPoint, Qt
+
+from geofit.gui import worker
+from geofit.gui.panels.curtain import Curtain, extent
+from geofit.gui.panels.section import SectionPanel
+from geofit.gui.panels.section_ink import near_points
+from geofit.offdata import Uncertainty
+
+#: Triangles of the surfaces, made once for all tests.
+MESHES = {}
+LINE = np.array([[500800.0, 3101000.0], [501600.0, 3101100.0]])
+
+
+@pytest.fixture
+def panel(qtbot):
+    panel = SectionPanel()
+    qtbot.addWidget(panel)
+    panel.resize(800, 400)
+    panel._meshes = MESHES
+    panel.show()
+    yield panel
+    assert worker.finish_all()
+
+
+def show(panel, qtbot, surfaces=None, **more):
+    surfaces = {WITH_PERIPHERY: fitted()} if surfaces is None else surfaces
+    panel.show_section(sample_site(), surfaces, more.pop("line", LINE), more.pop("thickness", 80.0), **more)
+    wait(panel, qtbot)
+
+
+def wait(panel, qtbot):
+    qtbot.waitUntil(lambda: panel._task is None and not panel._pause.isActive(), timeout=20_000)
+    panel.canvas.draw()
+
+
+def lines(panel):
+    return {line.get_label(): line for line in panel.canvas.figure.axes[0].lines}
+
+
+def test_without_a_site_it_says_so(panel):
+    assert "No site open" in panel.pages.text
+
+
+def test_traces_lie_on_their_surfaces(panel, qtbot):
+    show(panel, qtbot, {WITH_PERIPHERY: fitted(), FAULT: fitted(FAULT)})
+    drawn = lines(panel)[WITH_PERIPHERY]
+    distance, z = np.asarray(drawn.get_xdata()), np.asarray(drawn.get_ydata())
+    way = (LINE[1] - LINE[0]) / np.linalg.norm(LINE[1] - LINE[0])
+    inner = slice(1, -1)
+    x, y = (LINE[0] + distance[inner, None] * way).T
+    assert np.abs(fitted().elevation(x, y) - z[inner]).max() < 1e-5
+    assert distance.max() == pytest.approx(np.linalg.norm(LINE[1] - LINE[0]), abs=1e-6)
+    assert FAULT in lines(panel)
+
+
+def test_before_a_fit_points_holes_and_ground_are_there(panel, qtbot):
+    show(panel, qtbot, {})
+    assert "press Fit" in panel.state.text()
+    axes = panel.canvas.figure.axes[0]
+    assert "ground" in lines(panel)
+    assert any(text.get_text().startswith("孔") for text in axes.texts)
+
+
+def test_points_within_the_thickness_are_drawn(panel, qtbot):
+    show(panel, qtbot, {}, thickness=60.0)
+    places, index = near_points(panel._data, WITH_PERIPHERY)
+    xy = sample_site().horizons[WITH_PERIPHERY].xyz[:, :2]
+    way = (LINE[1] - LINE[0]) / np.linalg.norm(LINE[1] - LINE[0])
+    off = np.abs((xy - LINE[0]) @ [way[1], -way[0]])
+    along = (xy - LINE[0]) @ way
+    wanted = np.flatnonzero((off <= 30) & (along >= 0) & (along <= np.linalg.norm(LINE[1] - LINE[0])))
+    assert index.tolist() == wanted.tolist()
+    assert np.allclose(places[:, 0], along[wanted])
+
+
+def test_showing_tells_nobody_and_editing_does(panel, qtbot):
+    with qtbot.assertNotEmitted(panel.line_changed):
+        show(panel, qtbot, {})
+    assert panel.azimuth.value() == pytest.approx(82.9, abs=0.05)
+    with qtbot.waitSignal(panel.line_changed, timeout=3000) as told:
+        panel.azimuth.setValue(30.0)
+    wait(panel, qtbot)
+    east, north = told.args[0][1] - told.args[0][0]
+    assert np.degrees(np.arctan2(east, north)) == pytest.approx(30.0)
+    with qtbot.waitSignal(panel.thickness_changed) as told:
+        panel.thickness.setValue(25.0)
+    assert told.args == [25.0]
+
+
+def test_a_section_of_the_site_is_chosen_by_name(panel, qtbot):
+    show(panel, qtbot, {})
+    panel.along.setFocus()
+    with qtbot.waitSignal(panel.line_changed, timeout=3000) as told:
+        qtbot.keyClick(panel.along, Qt.Key.Key_Down)
+    assert panel.along.currentText() == "C1"
+    assert np.allclose(told.args[0], sample_site().sections[0].line)
+
+
+def test_the_last_of_many_edits_is_cut(panel, qtbot):
+    show(panel, qtbot)
+    for value in (-100.0, -50.0, 50.0, 120.0):
+        panel.position.setValue(value)
+        panel._pause.stop()
+        panel._tell_line()
+    wait(panel, qtbot)
+    start, way = panel.line[0], panel.line[1] - panel.line[0]
+    drawn = lines(panel)[WITH_PERIPHERY]
+    share = np.asarray(drawn.get_xdata())[1:-1, None] / np.linalg.norm(way)
+    x, y = (start + share * way).T
+    assert np.abs(fitted().elevation(x, y) - np.asarray(drawn.get_ydata())[1:-1]).max() < 1e-5
+
+
+def test_the_band_is_ninety_per_cent_wide(panel, qtbot):
+    box = extent(sample_site(), {})
+    x, y = (np.linspace(box[0, k], box[1, k], 4) for k in (0, 1))
+    band = Uncertainty(x, y, np.full((4, 4), 2.0), 1.0, 2.0, 2.0, np.ones((4, 4)))
+    show(panel, qtbot, uncertainty={WITH_PERIPHERY: band})
+    axes = panel.canvas.figure.axes[0]
+    vertices = axes.collections[0].get_paths()[0].vertices
+    at = np.abs(vertices[:, 0] - 400) < 40
+    z = np.interp(vertices[at, 0], *np.array(lines(panel)[WITH_PERIPHERY].get_data()))
+    assert np.abs(np.abs(vertices[at, 1] - z) - 2 * 1.6449).max() < 0.05
+    assert off_data(3).uncertainty.frame == "map"
+
+
+def test_exaggeration_is_what_is_drawn(panel, qtbot):
+    show(panel, qtbot, {})
+    panel.factor.setCurrentIndex(panel.factor.findData(5.0))
+    panel.factor.activated.emit(panel.factor.currentIndex())
+    panel.canvas.draw()
+    axes = panel.canvas.figure.axes[0]
+    (x0, z0), (x1, z1) = axes.transData.transform([[0.0, 1500.0], [100.0, 1600.0]])
+    assert (z1 - z0) / (x1 - x0) == pytest.approx(5.0, rel=1e-3)
+    assert "× 5" in panel.state.text()
+
+
+def test_a_hidden_panel_cuts_when_it_is_shown(panel, qtbot):
+    panel.hide()
+    panel.show_section(sample_site(), {WITH_PERIPHERY: fitted()}, LINE, 80.0)
+    assert panel._task is None
+    panel.show()
+    assert panel._task is not None
+    wait(panel, qtbot)
+    assert WITH_PERIPHERY in lines(panel)
+
+
+def test_a_clicked_point_is_told(panel, qtbot):
+    show(panel, qtbot, {})
+    places, _ = near_points(panel._data, WITH_PERIPHERY)
+    x, y = panel.canvas.figure.axes[0].transData.transform(places[0])
+    ratio = panel.canvas.device_pixel_ratio
+    place = QPoint(round(x / ratio), round(panel.canvas.height() - y / ratio))
+    with qtbot.waitSignal(panel.point_chosen) as told:
+        qtbot.mouseClick(panel.canvas, Qt.MouseButton.LeftButton, pos=place)
+    name, found = told.args
+    xyz = sample_site().horizons[name].xyz[found]
+    along, _ = panel._data.curtain.project(xyz[None, :2])
+    assert np.hypot(*(panel.canvas.figure.axes[0].transData.transform([along[0], xyz[2]]) - [x, y])) < 8
+
+
+def test_curtains_turn_round_the_middle():
+    box = np.array([[0.0, 0.0], [200.0, 100.0]])
+    east = Curtain.straight(90.0, 0.0, box)
+    assert np.allclose(east.line, [[0, 50], [200, 50]])
+    right = Curtain.straight(90.0, 20.0, box)
+    assert np.allclose(right.line[:, 1], 30.0)
+    assert right.position(box) == pytest.approx(20.0)
+    assert Curtain.straight(237.0, -15.0, box).azimuth == pytest.approx(237.0)
+    assert Curtain.straight(237.0, -15.0, box).position(box) == pytest.approx(-15.0)
+
+
+def test_places_beside_a_bent_curtain():
+    bent = Curtain.along([[0.0, 0.0], [100.0, 0.0], [100.0, 50.0]])
+    along, beside = bent.project(np.array([[30.0, 4.0], [103.0, 20.0], [-5.0, -5.0]]))
+    assert along[:2].tolist() == [30.0, 120.0]
+    assert beside[:2].tolist() == [4.0, 3.0]
+    assert np.isnan(along[2])
+    assert np.isnan(beside[2])
+    assert bent.length == 150.0
+
+
+def test_it_fits_a_narrow_dock(panel, qtbot):
+    show(panel, qtbot, {})
+    assert panel.minimumSizeHint().width() <= 260

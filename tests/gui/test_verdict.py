@@ -1,0 +1,64 @@
+"""The badge tells pass, fail, stale and empty by word and by shape."""
+
+from __future__ import annotations
+
+import pytest
+from panel_samples import failing, fitted
+
+from geofit.gui.panels.verdict import VerdictBadge
+
+
+@pytest.fixture
+def badge(qtbot):
+    badge = VerdictBadge()
+    qtbot.addWidget(badge)
+    badge.resize(260, 110)
+    badge.show()
+    return badge
+
+
+def grey(badge):
+    """The badge as a black-and-white print has it."""
+    image = badge.grab().toImage().convertToFormat(badge.grab().toImage().Format.Format_Grayscale8)
+    return bytes(image.constBits())
+
+
+def test_empty(badge):
+    badge.show_accuracy(None, True)
+    assert "No surface yet" in badge.text
+    assert "Older" not in badge.text
+
+
+def test_the_figures_behind_the_verdict(badge):
+    a = fitted().accuracy
+    badge.show_accuracy(a)
+    assert badge.text.splitlines()[0] == "PASS"
+    assert "σ 0.0" in badge.text
+    assert "ε 0.5 m" in badge.text
+    assert f"of {a.n} points" in badge.text
+    assert f"{a.over['interior tolerance 0.1 m']} over 0.1 m" in badge.text
+    badge.show_accuracy(failing(fitted()).accuracy)
+    assert badge.text.splitlines()[0] == "FAIL"
+    assert "σ 0.610 m ≥ ε 0.5 m" in badge.text
+    assert badge.accessibleName().startswith("FAIL")
+
+
+def test_four_states_differ_without_colour(badge):
+    pictures = []
+    for accuracy, stale in (
+        (None, False),
+        (fitted().accuracy, False),
+        (failing(fitted()).accuracy, False),
+        (fitted().accuracy, True),
+    ):
+        badge.show_accuracy(accuracy, stale)
+        mark = badge._mark.grab().toImage()
+        pictures.append((bytes(mark.convertToFormat(mark.Format.Format_Grayscale8).constBits()), grey(badge)))
+    assert len({mark for mark, _ in pictures}) == 3
+    assert len({whole for _, whole in pictures}) == 4
+
+
+def test_stale_says_so(badge):
+    badge.show_accuracy(fitted().accuracy, True)
+    assert "press Fit" in badge.text
+    assert badge.minimumSizeHint().width() <= 260

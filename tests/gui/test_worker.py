@@ -1,0 +1,142 @@
+"""Tasks beside the window: results, failures and progress arrive in the window's thread; Cancel stops them."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+
+import pytest
+from PySide6.QtCore import QObject
+
+from geofit.errors import FitError
+from geofit.gui import worker
+from geofit.progress import tell
+
+
+def double(value, *, progress):
+    tell(progress, "half", 0.5)
+    tell(progress, "done", 1.0)
+    return 2 * value, threading.get_ident()
+
+
+def endless(*, progress):
+    while True:
+        tell(progress, "on", 0.3)
+        time.sleep(0.005)
+
+
+def failing(*, progress):
+    raise FitError("These points cannot be fitted.")
+
+
+def mistaken(*, progress):
+    return 1 / 0
+
+
+def process_number(*, progress):
+    tell(progress, "there", 0.7)
+    return os.getpid()
+
+
+def stuck(*, progress):
+    time.sleep(600)
+
+
+def dying(*, progress):
+    os._exit(3)
+
+
+@pytest.fixture
+def owner(qtbot):
+    owner = QObject()
+    yield owner
+    owner.deleteLater()
+
+
+def test_the_result_comes_in_the_windows_thread(owner, qtbot):
+    heard, where = [], []
+
+    def listen(stage, fraction):
+        heard.append((stage, fraction))
+        where.append(threading.get_ident())
+
+    results = []
+    task = worker.run(owner, double, 21, on_done=results.append, on_progress=listen)
+    with qtbot.waitSignal(task.ended):
+        pass
+    (value, thread), here = results[0], threading.get_ident()
+    assert value == 42
+    assert thread != here
+    assert heard[-1] == ("done", 1.0)
+    assert set(where) == {here}
+    assert worker.tasks() == ()
+
+
+def test_cancel_stops(owner, qtbot):
+    stopped, results = [], []
+    task = worker.run(owner, endless, on_done=results.append, on_cancelled=lambda: stopped.append(1))
+    with qtbot.waitSignal(task.progressed):
+        pass
+    with qtbot.waitSignal(task.ended):
+        task.cancel()
+    assert (stopped, results) == ([1], [])
+
+
+def test_failures_arrive_whole(owner, qtbot, caplog):
+    errors = []
+    for function in (failing, mistaken):
+        task = worker.run(owner, function, on_failed=errors.append)
+        with qtbot.waitSignal(task.ended):
+            pass
+    assert isinstance(errors[0], FitError)
+    assert isinstance(errors[1], ZeroDivisionError)
+    assert errors[1].__traceback__ is not None
+    assert "ZeroDivisionError" in caplog.text
+
+
+def test_a_process_of_its_own_gives_its_result(owner, qtbot):
+    results, errors = [], []
+    task = worker.run_apart(owner, process_number, on_done=results.append, on_failed=errors.append)
+    with qtbot.waitSignal(task.ended, timeout=60_000):
+        pass
+    assert not errors
+    assert results[0] != os.getpid()
+
+
+def test_cancel_ends_a_process_that_tells_nothing(owner, qtbot):
+    stopped = []
+    task = worker.run_apart(owner, stuck, on_cancelled=lambda: stopped.append(1))
+    with qtbot.waitSignal(task.progressed):
+        pass
+    with qtbot.waitSignal(task.ended, timeout=20_000):
+        task.cancel()
+    assert stopped == [1]
+
+
+def test_a_process_that_dies_says_so(owner, qtbot):
+    errors = []
+    task = worker.run_apart(owner, dying, on_failed=errors.append)
+    with qtbot.waitSignal(task.ended, timeout=60_000):
+        pass
+    assert "ended by itself (exit code 3)" in str(errors[0])
+
+
+def test_a_failure_keeps_its_kind_across_the_process(owner, qtbot):
+    errors = []
+    task = worker.run_apart(owner, failing, on_failed=errors.append)
+    with qtbot.waitSignal(task.ended, timeout=60_000):
+        pass
+    assert isinstance(errors[0], FitError)
+
+
+def test_the_owner_may_go_first(qtbot):
+    owner = QObject()
+    results = []
+    worker.run(owner, endless, on_done=results.append)
+    owner.deleteLater()
+    del owner
+    qtbot.wait(50)
+    assert worker.finish_all(10)
+    qtbot.waitUntil(lambda: worker.tasks() == ())
+    assert results == []
