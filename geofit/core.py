@@ -76,8 +76,8 @@ def fit_with_core(
     stage("field", 0.25)
     coarse = _coarse_space(data, core, inside, degree, min(COARSE, most))
     field = choose_field(data, coarse, settings)
-    least = max(settings.epsilon, RESOLVED * field.spread)
-    if settings.core == "auto" and not chart.parametric and field.noise > least:
+    chosen = settings.core == "auto" and settings.smoothing == "auto" and not chart.parametric
+    if chosen and field.noise > max(settings.epsilon, RESOLVED * field.spread):
         raise ExactnessError(
             said(
                 "its points bear each other out to about {noise:.3g} m only, more than epsilon {epsilon:g} m",

@@ -46,6 +46,8 @@ Stage = Callable[[str, float], None]
 EVEN = 0.6
 #: Shortest span that is still halved for a point outside its tolerance.
 FINEST = 0.05
+#: Noise beyond this many times the interior tolerance is told: the points are met at the cost of what is between.
+BENT = 3.0
 #: Control points of the space on which the field is chosen.
 COARSE = 1_600
 #: Control points to try where points are many, and how many of these points choose the field.
@@ -236,6 +238,25 @@ class Periphery:
         return new
 
     def _notes(self, excess: Floats) -> tuple[str, ...]:
+        return (*self._bent_notes(), *self._excess_notes(excess))
+
+    def _bent_notes(self) -> tuple[str, ...]:
+        """Say where meeting the points costs more between them than it gains at them."""
+        noise, tolerance = self.field.noise, self.settings.interior_tolerance
+        chased = not self.field.contradictory and self.settings.smoothing == "auto"
+        if not chased or noise <= BENT * tolerance:
+            return ()
+        note = said(
+            "the points scatter by about {noise:.2g} m about the smoothest surface that they support; meeting each "
+            "within {tolerance:g} m bends it between them, and an interior tolerance of about {wider:.2g} m would "
+            "predict new holes better",
+            noise=noise,
+            tolerance=tolerance,
+            wider=2 * noise,
+        )
+        return (note,)
+
+    def _excess_notes(self, excess: Floats) -> tuple[str, ...]:
         count = int((excess > 0).sum())
         if not count:
             return ()

@@ -35,6 +35,8 @@ _FIT = {
     "no more control points are allowed there": "该处不允许再增加控制点",
     "interior tolerance {tolerance:g} m not met at {count} points, worst {worst:.3f} m: {reason}": "{count} 个点未满足内部容差 "
     "{tolerance:g} m，最大 {worst:.3f} m：{reason}",
+    "the points scatter by about {noise:.2g} m about the smoothest surface that they support; meeting each within {tolerance:g} m bends it between them, and an interior tolerance of about {wider:.2g} m would predict new holes better": "各点围绕其所能支持的最光滑曲面的离散约为 {noise:.2g} m；要求逐点在 {tolerance:g} m 以内会使曲面在点间弯曲，内部容差取约 {wider:.2g} m 时对新钻孔的预测更好",
+    "its points bear each other out to about {noise:.3g} m only, more than epsilon {epsilon:g} m": "其各点仅能在约 {noise:.3g} m 内相互印证，超过控制误差 ε {epsilon:g} m",
     "the data contradict each other by about {noise:.2f} m, which is not chased": "数据相互矛盾约 {noise:.2f} m，不予追合",
     "the smoothing is given": "光滑系数为给定值",
     "{n} dense points would need more control points than data to be interpolated; all points are approximated (name a "
