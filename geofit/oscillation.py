@@ -37,6 +37,8 @@ FEWEST = 20
 PLACES, GAPS, MOST = 800, 3_000, 5_000
 #: A place whose points leave a wider angle open lies at the rim, where the trend is asked instead.
 OPEN = 5 * np.pi / 6
+#: A point whose others leave so wide an angle open is predicted from one side: on the outermost section, say.
+RIM = 0.98 * np.pi
 #: Cosine between normals below which a point belongs to another limb of a fold.
 SAME_LIMB = 0.3
 #: Nugget of the spline: points at one place do no harm.
@@ -162,7 +164,7 @@ def _left_out(
     order = np.argsort(~left, axis=1, kind="stable")[:, :NEAR]
     around = _Around.of(feet, normals, np.take_along_axis(others, order, axis=1), points, normals)
     error = np.abs(around.spline() - ((points - feet) * normals).sum(axis=1))
-    return error, (left.sum(axis=1) >= NEAR) & (around.open_angle() < np.pi)
+    return error, (left.sum(axis=1) >= NEAR) & (around.open_angle() < RIM)
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,6 +25,8 @@ AWAY = 2.0
 #: Fewest points of a trend; of more than the most a part tells it, and how far away a place is.
 FEWEST, MOST = 10, 20_000
 ROUNDS = 10
+#: Points whose extent across is below this share of that along lie in a line, and tell no slope across it.
+LINE = 1e-3
 #: Residuals beyond so many standard deviations (by the median) count less in the plane (Huber 1964).
 HUBER = 1.5
 NAMED = 20
@@ -46,7 +48,8 @@ def trend(surface: HorizonSurface, parts: Sequence[Lattice], honoured: Bools) ->
     -------
     Check or None
         Largest departure from the plane (m) against twice the largest that the points show, or epsilon. None
-        with fewer than ten points, for a fold (it has no plane), and where no place is away from the points.
+        with fewer than ten points or all in a line, for a fold (it has no plane), and where no place is away from
+        the points.
     """
     points = surface.points.xyz[honoured] - surface.origin
     if len(points) < FEWEST or surface.fit.get("frame") == "sections":
@@ -59,6 +62,9 @@ def trend(surface: HorizonSurface, parts: Sequence[Lattice], honoured: Bools) ->
         points = points[np.sort(np.random.default_rng(0).choice(len(points), MOST, replace=False))]
     local, there = points @ axes.T, where @ axes.T
     centre, size = local[:, :2].mean(axis=0), np.maximum(np.ptp(local[:, :2], axis=0), 1e-9)
+    along, across = np.linalg.svd(local[:, :2] - centre, compute_uv=False)
+    if across <= LINE * along:
+        return None
     spacing = float(np.sqrt(size.prod() / len(points)))
     away = np.asarray(cKDTree(local[:, :2]).query(there[:, :2])[0]) > AWAY * spacing
     if not away.any():

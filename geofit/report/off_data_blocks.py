@@ -94,7 +94,7 @@ def _scheme_row(scheme: LeftOutLine, t: Language) -> tuple[Cell, ...]:
     if scheme.inside is None:
         calibrated = Mark(None, t("not examined"))
     else:
-        good = low <= scheme.inside <= high
+        good = low <= round(scheme.inside, 2) <= high
         calibrated = Mark(good, t("holds") if good else t("outside 85–95 %"))
     return (
         tell(_SCHEMES.get(scheme.scheme, scheme.scheme), t),
