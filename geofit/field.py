@@ -29,7 +29,7 @@ from scipy.optimize import minimize_scalar
 from geofit.errors import FitError
 from geofit.tensor import Factor, TensorSpace
 
-__all__ = ["Field", "cell_weights", "choose", "energy_band", "plane_trend", "smooth"]
+__all__ = ["ENOUGH", "Field", "cell_weights", "choose", "energy_band", "plane_trend", "smooth"]
 
 Floats = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from geofit import bspline
 from geofit.assemble import multiply_knots
 from geofit.chart import Chart
-from geofit.field import Field, cell_weights, choose, energy_band, plane_trend, smooth
+from geofit.field import ENOUGH, Field, cell_weights, choose, energy_band, plane_trend, smooth
 from geofit.partition import Split
 from geofit.periphery import approximate, borrowed
 from geofit.points import PointSet
@@ -244,7 +244,7 @@ class Periphery:
         """Say where meeting the points costs more between them than it gains at them."""
         noise, tolerance = self.field.noise, self.settings.interior_tolerance
         chased = not self.field.contradictory and self.settings.smoothing == "auto"
-        if not chased or noise <= BENT * tolerance:
+        if not chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
             return ()
         note = said(
             "the points scatter by about {noise:.2g} m about the smoothest surface that they support; meeting each "
