@@ -1,4 +1,4 @@
-"""Fit the real sets as ``geofit fit`` does, score them on points left out, and write ``docs/real_data.md``.
+"""Fit and examine the real sets as ``geofit fit`` does, score them on points left out, write ``docs/real_data.md``.
 
 Run ``make real``, or ``python benchmarks/real.py [SET ...]`` for some sets (then only the table is printed).
 Needs ``GEOFIT_DATA`` or ``../shared/data``; without them it says so and exits with 2.
@@ -14,6 +14,7 @@ from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 
+from realdata.offdata import OFF_DATA, Off, field_alone, off_cells, off_data
 from realdata.page import ERRORS, FITS, Fitted, Row, error_cells, fit_cells, markdown
 from realdata.score import Errors, left_out_errors
 from realdata.sets import SETS, RealSet, data_folder
@@ -23,6 +24,7 @@ from geofit import FitSettings, GeofitError, fit_horizon
 from geofit.accuracy import Check
 from geofit.console import print_table
 from geofit.deliver import deliver
+from geofit.examine import examine
 from geofit.files import replacing
 from geofit.report.result import HorizonResult
 
@@ -30,7 +32,7 @@ ROOT = Path(__file__).resolve().parents[1]
 OUT, PAGE = ROOT / "real_out", ROOT / "docs" / "real_data.md"
 PROCESSES = 2
 
-Fits = dict[str, Fitted | str]
+Found = tuple[Fitted | str, Off | None]
 
 
 @cache
@@ -41,22 +43,30 @@ def real_set(key: str) -> RealSet:
     return SETS[key](folder)
 
 
-def deliver_set(key: str) -> Fits:
+def deliver_set(key: str) -> dict[str, Found]:
     """Fit all horizons of a set with the default settings and leave their files; figures, or why a horizon failed."""
-    delivery = deliver(real_set(key).site, OUT / key)
-    fits: Fits = dict(delivery.failures)
-    return fits | {result.name: fitted(result) for result in delivery.results}
+    real = real_set(key)
+    delivery = deliver(real.site, OUT / key)
+    found: dict[str, Found] = {name: (str(reason), None) for name, reason in delivery.failures.items()}
+    return found | {result.name: (fitted(result), off_of(result, FitSettings())) for result in delivery.results}
 
 
-def fit_at_scale(key: str, name: str) -> Fitted | str:
+def fit_at_scale(key: str, name: str) -> Found:
     """Fit one horizon with the tolerances of the set's own scale."""
     real = real_set(key)
     start = time.perf_counter()
     try:
         surface = fit_horizon(real.site.horizons[name], real.scale, real.site.boundary, name=name)
     except GeofitError as error:
-        return str(error)
-    return fitted(HorizonResult(surface, real.site, seconds={"fit": time.perf_counter() - start}))
+        return str(error), None
+    result = HorizonResult(surface, real.site, seconds={"fit": time.perf_counter() - start}, offdata=examine(surface))
+    return fitted(result), off_of(result, surface.settings)
+
+
+def off_of(result: HorizonResult, settings: FitSettings) -> Off | None:
+    """Take the figures off the data from a result, with the field alone where another method is nearer."""
+    off = off_data(result.surface, result.offdata)
+    return off and field_alone(off, result.surface.points, settings, result.site.boundary)
 
 
 def fitted(result: HorizonResult) -> Fitted:
@@ -79,7 +89,9 @@ def fitted(result: HorizonResult) -> Fitted:
 
 def _failing(check: Check) -> str:
     """Say by how much a check fails, where its words do not."""
-    return check.text if check.unit != "m" else f"{check.text}: {check.value:.3g} m (limit {check.limit:.3g} m)"
+    if check.unit != "m" or f"{check.value:.1f} m" in check.text:
+        return check.text
+    return f"{check.text}: {check.value:.3g} m (limit {check.limit:.3g} m)"
 
 
 def score_horizon(key: str, name: str) -> list[tuple[Errors, Trial | None]]:
@@ -112,10 +124,12 @@ def rows_of(keys: list[str]) -> list[Row]:
             key, name = pair
             real = real_set(key)
             found = [delivered[key].result()[name], *([scaled[pair].result()] if pair in scaled else [])]
-            for fit, settings, (errors, trial) in zip(found, tolerances(real), scores[pair].result(), strict=True):
+            for (fit, off), settings, (errors, trial) in zip(
+                found, tolerances(real), scores[pair].result(), strict=True
+            ):
                 figures, failure = (None, fit) if isinstance(fit, str) else (fit, "")
                 n = len(real.site.horizons[name])
-                rows.append(Row(f"{real.title}: {name}", n, settings, figures, errors, trial, failure))
+                rows.append(Row(f"{real.title}: {name}", n, settings, figures, errors, trial, failure, off))
     return rows
 
 
@@ -138,6 +152,8 @@ def main() -> int:
     rows = rows_of(keys)
     print_table(FITS, [fit_cells(row, exact_seconds=True) for row in rows])
     print_table(ERRORS, [error_cells(row) for row in rows])
+    settled = [(row.title, row.settings.interior_tolerance, row.off) for row in rows if row.off is not None]
+    print_table(OFF_DATA, [off_cells(*figures) for figures in settled])
     print(f"{len(rows)} lines in {time.perf_counter() - start:.0f} s; surfaces and reports are in {OUT}")
     if len(keys) == len(SETS):
         given = [(real_set(key).title, real_set(key).given) for key in keys]

@@ -171,10 +171,12 @@ def _section_chart(points: PointSet, reason: str) -> Chart:
     surface: Loft = loft(points)
     lines = len(surface.u)
     if lines < 2:
-        raise FitError(
-            f"frame='sections' needs at least two named sections with ordered points; {lines} were given. "
-            "Name them in the section column, or choose frame='map' or 'best-plane'."
+        text = said(
+            "frame='sections' needs at least two named sections with ordered points; {lines} were given. Name them in "
+            "the section column, or choose frame='map' or 'best-plane'.",
+            lines=lines,
         )
+        raise FitError(text)
     frame = replace(map_frame(points), kind="sections")
     local = frame.to_local(points.xyz)
     area = _box(surface.plane[surface.on_line])

@@ -41,22 +41,32 @@ def sigma(residuals: Floats) -> float:
     return float(np.sqrt(np.square(residuals).sum() / max(len(residuals) - 1, 1)))
 
 
-def check(surface: HorizonSurface, conflicts: Sequence[Conflict] = (), notes: Sequence[str] = ()) -> Accuracy:
+def check(
+    surface: HorizonSurface,
+    conflicts: Sequence[Conflict] = (),
+    notes: Sequence[str] = (),
+    *,
+    projection: Projection | None = None,
+) -> Accuracy:
     """Measure every original point against the surface, and look at the surface itself.
 
     Parameters
     ----------
     surface : HorizonSurface
-        The fit; its ``core`` marks the points that it must meet exactly.
+        The fit; its ``core`` marks the points that it must meet exactly. Without patches (triangles of a file) the
+        surface itself is not looked at.
     conflicts : sequence of Conflict
         Points that gave way before the fit. Their residuals count in sigma like all others.
     notes : sequence of str
         What the fit has to say.
+    projection : Projection, optional
+        The points' nearest places where they are known already, or are not those of whole patches.
     """
     points, settings = surface.points, surface.settings
-    projection = project(surface.patches, points.xyz - surface.origin)
+    if projection is None:
+        projection = project(surface.patches, points.xyz - surface.origin)
     d = projection.distance
-    names = np.array([patch.name for patch in surface.patches])
+    names = np.array([patch.name for patch in surface.patches] or [surface.name])
     patch = names[projection.patch] if len(d) else np.empty(0, dtype=names.dtype)
     found = seams(surface.patches)
     value = sigma(d)
@@ -117,9 +127,11 @@ def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool
     loose = ~exact
     if loose.any():
         worst = float(np.abs(d[loose]).max())
-        count, total = int((np.abs(d[loose]) > tolerance).sum()), int(loose.sum())
-        text = said("{count} of {total} approximated points beyond the interior tolerance", count=count, total=total)
-        checks.append(Check("interior tolerance", count == 0, worst, tolerance, "m", text))
+        figures = {"count": int((np.abs(d[loose]) > tolerance).sum()), "total": int(loose.sum())}
+        text = said("{count} of {total} points beyond the interior tolerance", **figures)
+        if surface.partition is not None:
+            text = said("{count} of {total} approximated points beyond the interior tolerance", **figures)
+        checks.append(Check("interior tolerance", figures["count"] == 0, worst, tolerance, "m", text))
     return checks
 
 
@@ -149,6 +161,8 @@ def _residual_checks(
 
 def _surface_checks(surface: HorizonSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:
     """Look at the surface itself, at and between its points."""
+    if not surface.patches:
+        return []
     parts = lattices(surface)
     asked = (oscillation(surface, parts, projection, honoured), trend(surface, parts, honoured))
     found = [one for one in asked if one is not None]

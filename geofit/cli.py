@@ -24,7 +24,7 @@ from geofit.console import (
     print_table,
     say,
 )
-from geofit.errors import InputError, SettingsError
+from geofit.errors import InputError
 
 if TYPE_CHECKING:
     from geofit.progress import Progress
@@ -174,6 +174,14 @@ def fit(
     conflict_distance: Annotated[
         float | None, typer.Option(help=f"Points nearer than this are one place, m. {_FROM_SITE} 0.01.")
     ] = None,
+    apart: Annotated[
+        bool,
+        typer.Option("--repair", help="Push horizons of the site's order apart where they cross; exact points stay."),
+    ] = False,
+    bands: Annotated[
+        bool,
+        typer.Option("--bands", help="Write NAME_upper90.step and NAME_lower90.step: 90 % of the rock between them."),
+    ] = False,
     as_json: _Json = False,
 ) -> int:
     """Fit horizons, check them, and write STEP, reports, tables and pictures."""
@@ -196,7 +204,7 @@ def fit(
     _settings(changes)  # a bad value is told before files are read
     with listening() as progress:
         site = _read(source, columns, boundary)
-        return _deliver(site, out, tuple(horizon or ()), changes, as_json, progress)
+        return _deliver(site, out, tuple(horizon or ()), changes, as_json, progress, apart=apart, bands=bands)
 
 
 @app.command()
@@ -431,31 +439,46 @@ def _deliver(
     as_json: bool,
     progress: Progress | None,
     language: Language | None = None,
+    *,
     pdf: bool = False,
+    apart: bool = False,
+    bands: bool = False,
 ) -> int:
+    from geofit.accuracy import plain
     from geofit.deliver import deliver
     from geofit.report.language import EN
     from geofit.report.result import horizon_data
 
     print_issues(site.issues, str(out / "import_issues.csv"))
     print_counts(site.counts)
-    delivery = deliver(site, out, horizons, changes, progress, language=language or EN, pdf=pdf)
+    delivery = deliver(
+        site, out, horizons, changes, progress, language=language or EN, pdf=pdf, apart=apart, bands=bands
+    )
     if as_json:
         print_json(
             {
                 "out": str(out),
                 "horizons": [horizon_data(result) for result in delivery.results],
+                "orders": [plain(order) for order in delivery.orders],
+                "cuts": [plain(cut) for cut in delivery.cuts],
+                "contradictions": [plain(one) for one in delivery.contradictions],
                 "failures": dict(delivery.failures),
             }
         )
     elif delivery.results:
         print_results(delivery.results)
+    for order in delivery.orders:
+        if order.check().passed is False:
+            say(f"Order: {order.check().text}")
+    for sentence in (*(one.text for one in delivery.contradictions), *(cut.text for cut in delivery.cuts)):
+        say(sentence)
     for warning in delivery.warnings:
         say(warning)
     for name, text in delivery.failures.items():
         say(f"geofit: {name}: {text}")
     if delivery.results:
-        say(f"Report: {out / 'report.html'}{', .pdf' if pdf else ''} and .json; surfaces and tables beside it")
+        pages = f"{out / 'report.html'}{', .pdf' if pdf else ''}"
+        say(f"Report: {pages} and .json; surfaces and tables beside it")
     return delivery.exit_code
 
 
@@ -527,7 +550,7 @@ def _smoothing(text: str | None) -> str | float | None:
     try:
         return float(text)
     except ValueError:
-        raise SettingsError(f"smoothing is '{text}'; give a number above 0 or the word auto.") from None
+        return text  # refused by the settings, which name what they take
 
 
 def _pick(kind: str, found: Mapping[str, Any], wanted: str | None, file: Path) -> tuple[str, Any]:

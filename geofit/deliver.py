@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from geofit.errors import Cancelled, GeofitError, InputError, SettingsError
 from geofit.files import file_stems, replacing
@@ -14,22 +14,40 @@ from geofit.progress import Progress, tell
 from geofit.report.language import EN, Language
 from geofit.report.result import HorizonResult
 from geofit.site import Site
+from geofit.words import said
 
 if TYPE_CHECKING:
+    from geofit.faults import FaultCut
+    from geofit.offdata import OffData
     from geofit.order import Order
+    from geofit.repair import Contradiction
     from geofit.report.accuracy_report import AccuracyReport
+    from geofit.report.pictures import Pictures
+    from geofit.sitefit import SiteFit
+    from geofit.surface import HorizonSurface
 
-__all__ = ["Delivery", "deliver"]
+__all__ = ["Delivery", "Form", "Reports", "deliver", "write_reports"]
+
+Form = Literal["html", "pdf", "json"]
+#: Share of the fits in a run's time.
+FITS = 0.3
 
 
 @dataclass(frozen=True, eq=False)
 class Delivery:
-    """What a run made: results in the order of the site; failures by horizon; warnings."""
+    """What a run made: results in the order of the site; failures by horizon; warnings.
+
+    A faulted horizon has a result for each block, and ``cuts`` between them; ``orders`` compares horizons of the site's
+    order, and ``contradictions`` are what a repair could not mend.
+    """
 
     out: Path
     results: tuple[HorizonResult, ...]
     failures: Mapping[str, str]
     warnings: tuple[str, ...]
+    orders: tuple[Order, ...] = ()
+    cuts: tuple[FaultCut, ...] = ()
+    contradictions: tuple[Contradiction, ...] = ()
 
     @property
     def exit_code(self) -> int:
@@ -49,11 +67,13 @@ def deliver(
     language: Language = EN,
     date: str = "",
     pdf: bool = False,
+    apart: bool = False,
+    bands: bool = False,
 ) -> Delivery:
     """Fit horizons of a site, examine them, and write everything that belongs to them.
 
-    Each horizon leaves ``.step``, ``.png``, ``.json`` and ``_residuals.csv``; the site ``report.html``,
-    ``report.json``, ``site.png``, ``import_issues.csv`` and, if asked for, ``report.pdf``.
+    Each horizon, of a faulted one each block, leaves ``.step``, ``.png``, ``.json`` and ``_residuals.csv``; the site
+    ``report.html``, ``report.json``, ``site.png``, ``import_issues.csv`` and, if asked for, ``report.pdf``.
 
     Parameters
     ----------
@@ -73,6 +93,10 @@ def deliver(
         Date of the report, ISO 8601; empty: SOURCE_DATE_EPOCH, else today.
     pdf : bool
         Whether the report is written as PDF, too: about a second a horizon.
+    apart : bool
+        Whether horizons of the site's order that cross are pushed apart (:func:`geofit.repair.repair`).
+    bands : bool
+        Whether ``_upper90.step`` and ``_lower90.step`` are written: the rock lies between them with 90 %.
 
     Raises
     ------
@@ -84,9 +108,10 @@ def deliver(
         If ``progress`` returned False; the files of the horizons that were ready stay.
     """
     from geofit.report.gather import accuracy_report
+    from geofit.report.pictures import draw_site
+    from geofit.sitefit import fit_site
 
     names = _chosen(site, horizons)
-    stems = file_stems(names)
     if pdf and language.code == "zh":
         from geofit.report.fonts import pdf_fonts
 
@@ -94,73 +119,165 @@ def deliver(
     # Also when there is nothing to list: a file of an earlier run would mislead.
     _make(out)
     _write_issues(site, out)
+    fits = fit_site(site, names, changes, _within(progress, 0.0, FITS), apart=apart)
+    stems = file_stems(fits.surfaces)
     results: list[HorizonResult] = []
     images: dict[str, bytes] = {}
-    failures: dict[str, str] = {}
-    warning = _font_warning(site, names)
-    for i, name in enumerate(names):
-        part = _Part(progress, name, i, len(names))
+    failures, warnings = dict(fits.failures), list(fits.warnings)
+    for i, (name, surface) in enumerate(fits.surfaces.items()):
+        share = (1.0 - FITS) / len(fits.surfaces)
+        part = _within(progress, FITS + i * share, FITS + (i + 1) * share, name)
         try:
-            result, pictures = _horizon(site, name, out / stems[name], changes or {}, part, language)
-            results.append(result)
-            images |= pictures
+            made = _written(surface, site, out / stems[name], part, language, fits.seconds[name], bands)
         except Cancelled:
             raise
         except GeofitError as error:
-            failures[name] = str(error)
-    warnings = [warning] if warning else []
+            failures[name] = error.args[0] if error.args else str(error)
+        else:
+            results.append(made.result)
+            images |= made.images
+            warnings += made.warnings
+    orders: tuple[Order, ...] = ()
     if results:
         tell(progress, "report", 1.0)
-        compared, unordered = _orders(results)
-        report = accuracy_report(results, compared, failures=failures, date=date)
-        missing = _write_report(report, results, images, out, language, warning, pdf)
-        warnings += [text for text in (unordered, missing) if text]
-    return Delivery(out, tuple(results), failures, tuple(warnings))
+        compared, unordered = _orders(site, fits)
+        orders = compared or ()
+        report = accuracy_report(
+            results, compared, cuts=fits.cuts, contradictions=fits.contradictions, failures=failures, date=date
+        )
+        font, whole = _font_warning(results), draw_site(results, language)
+        for data in whole.images.values():
+            with replacing(out / "site.png") as picture:
+                picture.write_bytes(data)
+        forms: tuple[Form, ...] = ("html", "json", "pdf") if pdf else ("html", "json")
+        _write_report(report, whole, images, out, language, font, forms)
+        warnings = [text for text in (font, *warnings, unordered, whole.missing) if text]
+    return Delivery(out, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions)
+
+
+@dataclass(frozen=True, eq=False)
+class Reports:
+    """What was written of a report, by form, and what is to be told about it."""
+
+    files: Mapping[Form, Path]
+    warnings: tuple[str, ...]
+
+
+def write_reports(
+    results: Sequence[HorizonResult],
+    out: Path,
+    progress: Progress | None = None,
+    *,
+    language: Language = EN,
+    forms: Sequence[Form] = ("html", "json"),
+    examined: bool = False,
+    date: str = "",
+) -> Reports:
+    """Write the accuracy report of surfaces that are there already; nothing else is written.
+
+    Parameters
+    ----------
+    results : sequence of HorizonResult
+        At least one; all of one site.
+    out : Path
+        Folder for the report; made if it is not there.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``; returning False stops.
+    language : Language
+        That of the report and its pictures.
+    forms : sequence of {"html", "pdf", "json"}
+        Which files are written.
+    examined : bool
+        Whether surfaces without ``offdata`` are examined off their data first.
+    date : str
+        ISO 8601; empty: SOURCE_DATE_EPOCH, else today.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be made.
+    MissingDependencyError
+        If a PDF is to be in Chinese and the machine has no font for it.
+    Cancelled
+        If ``progress`` returned False; then nothing is written.
+    """
+    from geofit.examine import examine
+    from geofit.report.gather import accuracy_report
+    from geofit.report.pictures import draw, draw_site
+
+    if "pdf" in forms and language.code == "zh":
+        from geofit.report.fonts import pdf_fonts
+
+        pdf_fonts(chinese=True)
+    _make(out)
+    images: dict[str, bytes] = {}
+    made = []
+    for i, result in enumerate(results):
+        low, high = 0.9 * i / len(results), 0.9 * (i + 1) / len(results)
+        part = _within(progress, low, high, result.name)
+        part("examination", 0.0)
+        if examined and result.offdata is None:
+            result = replace(result, offdata=examine(result.surface, _within(progress, low, 0.6 * high + 0.4 * low)))
+        part("pictures", 0.6)
+        images |= draw(result, language).images
+        made.append(result)
+    tell(progress, "report", 0.9)
+    orders, unordered = _orders_of(made)
+    report = accuracy_report(made, orders, date=date)
+    whole, font = draw_site(made, language), _font_warning(made)
+    tell(progress, "report", 0.95)
+    _write_report(report, whole, images, out, language, font, forms)
+    files = {form: out / f"report.{form}" for form in forms}
+    return Reports(files, tuple(text for text in (font, unordered, whole.missing) if text))
+
+
+def _orders_of(results: Sequence[HorizonResult]) -> tuple[tuple[Order, ...] | None, str]:
+    """Compare surfaces in the order of their site; None and the reason where that is not possible."""
+    from geofit.sitefit import SiteFit
+
+    surfaces = {result.name: result.surface for result in results}
+    return _orders(results[0].site, SiteFit(surfaces, {name: name for name in surfaces}))
+
+
+def _within(progress: Progress | None, low: float, high: float, name: str = "") -> Progress:
+    """Return a listener for a part that takes the whole run from one share to another."""
+
+    def listen(stage: str, fraction: float, /) -> None:
+        tell(progress, f"{name}: {stage}" if name else stage, low + (high - low) * fraction)
+
+    return listen
 
 
 @dataclass(frozen=True)
-class _Part:
-    """The share of one horizon in the whole run's progress."""
+class _Made:
+    """One surface with its files: result, pictures by name, and what is to be told."""
 
-    progress: Progress | None
-    name: str
-    index: int
-    count: int
-
-    def within(self, low: float, high: float) -> Progress:
-        """Return a listener for a stage that takes the run from one share of the horizon to another."""
-
-        def listen(stage: str, fraction: float, /) -> None:
-            share = low + (high - low) * fraction
-            tell(self.progress, f"{self.name}: {stage}", (self.index + share) / self.count)
-
-        return listen
+    result: HorizonResult
+    images: Mapping[str, bytes]
+    warnings: tuple[str, ...]
 
 
-def _horizon(
-    site: Site, name: str, stem: Path, changes: Mapping[str, Any], part: _Part, language: Language
-) -> tuple[HorizonResult, Mapping[str, bytes]]:
+def _written(
+    surface: HorizonSurface, site: Site, stem: Path, progress: Progress, language: Language, fit: float, bands: bool
+) -> _Made:
+    """Examine a surface, and write what belongs to it."""
     from geofit.examine import examine
     from geofit.io.step import write_step
-    from geofit.pipeline import fit_horizon
     from geofit.report.pictures import draw, write_picture
     from geofit.report.result import write_json
     from geofit.report.tables import write_residuals
-    from geofit.settings import FitSettings
     from geofit.storage import equal_accuracy
 
-    settings = replace(site.settings.get(name, FitSettings()), **changes)
-    clock = _Clock()
-    surface = fit_horizon(site.horizons[name], settings, site.boundary, part.within(0.0, 0.3), name=name)
-    clock.stop("fit")
-    offdata = examine(surface, part.within(0.3, 0.6))
+    clock = _Clock(fit)
+    offdata = examine(surface, _within(progress, 0.0, 0.45))
     clock.stop("examination")
-    part.within(0.6, 0.6)("STEP and read-back", 0.0)
+    progress("STEP and read-back", 0.45)
     path = stem.with_name(stem.name + ".step")
-    back = write_step({name: surface}, path)[name]
+    back = write_step({surface.name: surface}, path)[surface.name]
+    warnings = _write_bands(surface, offdata, stem) if bands else ()
     clock.stop("STEP and read-back")
-    part.within(0.75, 0.75)("pictures", 0.0)
-    storage = equal_accuracy(surface, settings.interior_tolerance)
+    progress("pictures", 0.7)
+    storage = equal_accuracy(surface, surface.settings.interior_tolerance)
     result = HorizonResult(surface, site, back, storage, path.stat().st_size, offdata=offdata)
     pictures = draw(result, language)
     write_picture(result, pictures, stem.with_name(stem.name + ".png"), language)
@@ -168,14 +285,26 @@ def _horizon(
     result = replace(result, seconds=clock.seconds)
     write_residuals(result, stem.with_name(stem.name + "_residuals.csv"))
     write_json(result, stem.with_name(stem.name + ".json"))
-    return result, pictures.images
+    return _Made(result, pictures.images, warnings)
+
+
+def _write_bands(surface: HorizonSurface, offdata: OffData, stem: Path) -> tuple[str, ...]:
+    """Write the surfaces between which the rock lies with 90 %; return why there are none."""
+    from geofit.io.step import write_step
+    from geofit.spread import band
+
+    if offdata.uncertainty is None:
+        return (said("{name}: no 90 % surfaces, its standard deviation is not known", name=surface.name),)
+    for side, one in zip(("upper", "lower"), band(surface, offdata), strict=True):
+        write_step({one.name: one}, stem.with_name(f"{stem.name}_{side}90.step"))
+    return ()
 
 
 class _Clock:
     """Seconds since the last stop, by name."""
 
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
+    def __init__(self, fit: float) -> None:
+        self.seconds: dict[str, float] = {"fit": round(fit, 3)}
         self._since = time.perf_counter()
 
     def stop(self, name: str) -> None:
@@ -184,49 +313,41 @@ class _Clock:
         self._since = now
 
 
-def _orders(results: Sequence[HorizonResult]) -> tuple[tuple[Order, ...] | None, str]:
+def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, str]:
     """Compare the horizons of the site's order that were fitted; None and the reason where that is not possible."""
-    from geofit.order import orders
+    from geofit.sitefit import compare
 
-    site = results[0].site
-    surfaces = {result.name: result.surface for result in results}
-    sequence = [name for name in site.order if name in surfaces]
-    if site.order and len(sequence) < 2:
+    if site.order and len([name for name in site.order if name in fits.horizon.values()]) < 2:
         return None, ""
     try:
-        return orders(surfaces, sequence, site.ground), ""
+        return compare(site, fits), ""
     except SettingsError as error:
-        return None, f"The order of the horizons was not examined: {error}"
+        return None, said("The order of the horizons was not examined: {reason}", reason=error.args[0])
 
 
 def _write_report(
     report: AccuracyReport,
-    results: Sequence[HorizonResult],
+    whole: Pictures,
     images: Mapping[str, bytes],
     out: Path,
     language: Language,
     warning: str,
-    pdf: bool,
-) -> str:
-    """Write the report in its forms; return why there are no pictures in space, or an empty text."""
+    forms: Sequence[Form],
+) -> None:
+    """Write the report in its forms; ``whole`` shows the site, ``images`` its horizons."""
     from geofit.report.accuracy_report import write_json
     from geofit.report.chapters import document
     from geofit.report.html import write_html
-    from geofit.report.pictures import draw_site
+    from geofit.report.pdf import write_pdf
 
-    whole = draw_site(results, language)
     pages = document(report, language, missing_picture=whole.missing, warning=warning)
     pictures = {**images, **whole.images}
-    for data in whole.images.values():
-        with replacing(out / "site.png") as part:
-            part.write_bytes(data)
-    write_json(report, out / "report.json")
-    write_html(pages, pictures, out / "report.html")
-    if pdf:
-        from geofit.report.pdf import write_pdf
-
+    if "json" in forms:
+        write_json(report, out / "report.json")
+    if "html" in forms:
+        write_html(pages, pictures, out / "report.html")
+    if "pdf" in forms:
         write_pdf(pages, pictures, out / "report.pdf")
-    return whole.missing
 
 
 def _write_issues(site: Site, out: Path) -> None:
@@ -235,11 +356,11 @@ def _write_issues(site: Site, out: Path) -> None:
     write_issues(site.issues, out / "import_issues.csv")
 
 
-def _font_warning(site: Site, names: Iterable[str]) -> str:
+def _font_warning(results: Sequence[HorizonResult]) -> str:
     from geofit.report.fonts import missing_font
 
-    kinds = {str(kind) for name in names for kind in set(site.horizons[name].kind.tolist())}
-    return missing_font([site.name, *names, *kinds]) or ""
+    kinds = {str(kind) for result in results for kind in set(result.surface.points.kind.tolist())}
+    return missing_font([results[0].site.name, *(result.name for result in results), *kinds]) or ""
 
 
 def _chosen(site: Site, horizons: Sequence[str]) -> list[str]:

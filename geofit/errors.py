@@ -12,10 +12,16 @@
     ├── MissingDependencyError   an optional package is not installed; the text holds the install line
     └── Cancelled                the caller's progress function asked to stop
 
-Each message says what was given, what is needed, and what to do.
+Each message says what was given, what is needed, and what to do. A message by :func:`geofit.words.said` can be told in
+Chinese: ``str(error)`` returns it as it was given.
 """
 
 from __future__ import annotations
+
+from functools import partial, reduce
+from typing import Any
+
+from geofit.words import Said, said
 
 __all__ = [
     "Cancelled",
@@ -32,6 +38,9 @@ __all__ = [
 
 class GeofitError(Exception):
     """Base of every error raised by geofit on purpose."""
+
+    def __str__(self) -> str:
+        return self.args[0] if len(self.args) == 1 and isinstance(self.args[0], str) else super().__str__()
 
 
 class InputError(GeofitError):
@@ -65,18 +74,21 @@ class InputError(GeofitError):
     ) -> None:
         self.reason, self.remedy = reason, remedy
         self.file, self.row, self.column, self.value = file, row, column, value
-        place = ", ".join(
-            text
-            for text in (
-                file or "",
-                f"row {row}" if row is not None else "",
-                f"column '{column}'" if column is not None else "",
-                f"value '{value}'" if value is not None else "",
-            )
-            if text
-        )
-        sentence = f"{reason.rstrip('.')}." + (f" {remedy}" if remedy else "")
-        super().__init__(f"{place}: {sentence}" if place else sentence)
+        place: list[str] = [file] if file else []
+        place += [said("row {row}", row=row)] if row is not None else []
+        place += [said("column '{column}'", column=column)] if column is not None else []
+        place += [said("value '{value}'", value=value)] if value is not None else []
+        what = reason if isinstance(reason, Said) else reason.rstrip(".")
+        sentence = said("{reason}. {remedy}", reason=what, remedy=remedy) if remedy else said("{reason}.", reason=what)
+        if place:
+            where = reduce(lambda a, b: said("{first}, {second}", first=a, second=b), place)
+            sentence = said("{place}: {sentence}", place=where, sentence=sentence)
+        super().__init__(sentence)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Return what another process makes the same error from."""
+        again = partial(type(self), file=self.file, row=self.row, column=self.column, value=self.value)
+        return again, (self.reason, self.remedy)
 
 
 class PointsError(GeofitError, ValueError):

@@ -34,13 +34,15 @@ class Nearest:
     """Nearest places of a surface to n points.
 
     ``distance`` (n,) metres, signed: positive on the upper side; ``foot`` (n, 3) metres; ``part`` (n,) index of
-    the triangle or patch; ``beyond`` (n,): the foot is on the rim and the point beside the surface.
+    the triangle or patch; ``beyond`` (n,): the foot is on the rim and the point beside the surface; ``uv`` (n, 2)
+    the foot's parameters on a patch, None on triangles.
     """
 
     distance: Floats
     foot: Floats
     part: Ints
     beyond: Bools
+    uv: Floats | None = None
 
 
 def nearest(mesh: Mesh, xyz: ArrayLike) -> Nearest:

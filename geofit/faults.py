@@ -180,11 +180,16 @@ def fit_blocks(
         title = f"{name} ({chr(ord('A') + k)})" if len(signs) > 1 else name
         part = points[np.flatnonzero(block == k)]
         if len(part) < FEWEST:
-            raise FitError(
-                f"The block '{title}' holds {len(part)} point{'s' * (len(part) != 1)} of {name} "
-                f"({', '.join(part.describe(i) for i in range(len(part)))}); at least {FEWEST} are needed to lay a "
-                "surface. Give more points there, or leave the fault out."
+            text = said(
+                "Too few points in the block '{block}' of {horizon}: {count} ({points}); at least {least} are needed "
+                "to lay a surface. Give more points there, or leave the fault out.",
+                block=title,
+                horizon=name,
+                count=len(part),
+                points="; ".join(part.describe(i) for i in range(len(part))),
+                least=FEWEST,
             )
+            raise FitError(text)
         if len(part) < FEW:
             notes.append(said("{block} rests on {count} points only", block=title, count=len(part)))
         tell(progress, f"block {title}", 0.5 + 0.5 * k / len(signs))
@@ -327,10 +332,13 @@ def _cut(area: Polygon, height: Height, faults: Sequence[_Fault], signs: Sides, 
         side = fault.side(np.column_stack([inner, height(*inner.T)]))
         mine = [piece for piece, one in zip(pieces, side, strict=True) if one == sign]
         if not mine:
-            raise FitError(
-                f"The block '{title}' has points on a side of {fault.name} where its surface has no area. "
-                "Look at the points beside the fault: one on the wrong side makes a block of its own."
+            text = said(
+                "The block '{block}' has points on a side of {fault} where its surface has no area. Look at the points "
+                "beside the fault: one on the wrong side makes a block of its own.",
+                block=title,
+                fault=fault.name,
             )
+            raise FitError(text)
         part = max(mine, key=shapely.area)
     return part
 

@@ -28,6 +28,7 @@ from scipy.optimize import minimize_scalar
 
 from geofit.errors import FitError
 from geofit.tensor import Factor, TensorSpace
+from geofit.words import said
 
 __all__ = ["ENOUGH", "Field", "cell_weights", "choose", "energy_band", "plane_trend", "smooth"]
 
@@ -145,10 +146,13 @@ def choose(
         found.append((likelihood(log), log, likelihood))
     value, log, likelihood = min(found, key=lambda one: one[0])
     if value >= _UNSOLVABLE:
-        raise FitError(
-            f"No smoothing makes the system of {len(plane)} points and {space.size} control points solvable: the "
-            "points lie on too few places. Give more points, or a larger conflict_distance."
+        text = said(
+            "No smoothing makes the system of {points} points and {size} control points solvable: the points lie on "
+            "too few places. Give more points, or a larger conflict_distance.",
+            points=len(plane),
+            size=space.size,
         )
+        raise FitError(text)
     noise = likelihood.noise(log)
     spread = float(np.std(z, axis=0).max())
     contradictory = len(plane) >= ENOUGH and noise > CONTRADICTION * max(spread, _FINEST)

@@ -7,23 +7,21 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.accuracy import Accuracy, Check, Group
-from geofit.check import check, sigma
+from geofit.accuracy import Accuracy, Check
+from geofit.check import check
+from geofit.distance import Projection
 from geofit.facets import Nearest
 from geofit.facets import nearest as nearest_triangle
 from geofit.loops import TrimmedSurface
 from geofit.loops import nearest as nearest_place
 from geofit.mesh import MeshSurface
 from geofit.points import PointSet
-from geofit.residual_tests import residual_checks
 from geofit.settings import FitSettings
 from geofit.shape import RANGE_SHARE
 from geofit.surface import HorizonSurface
 from geofit.words import said
 
 __all__ = ["check_given"]
-
-Floats = NDArray[np.float64]
 
 #: So many points beside the surface are named.
 NAMED = 20
@@ -39,58 +37,19 @@ def check_given(surface: HorizonSurface, points: PointSet, settings: FitSettings
     xyz = points.xyz - surface.origin
     if isinstance(surface, MeshSurface):
         found = nearest_triangle(surface.mesh, xyz)
-        accuracy = _accuracy(judged, found, np.full(len(points), name), _mesh_checks(surface, points))
+        accuracy = check(judged, projection=_projection(found, np.zeros(len(points), np.int64)))
+        accuracy = replace(accuracy, checks=(*accuracy.checks, *_mesh_checks(surface, points)))
         text = said("A triangle mesh: seams, control points and the tangent plane do not apply.")
         return judged.with_(accuracy=_with_beyond(accuracy, points, found, (text,)))
     found = nearest_place(surface.patches, xyz, surface.loops if isinstance(surface, TrimmedSurface) else ())
-    of_patches = check(judged)
-    names = np.array([patch.name for patch in surface.patches])[found.part]
-    accuracy = replace(_accuracy(judged, found, names, of_patches.checks), seams=of_patches.seams)
-    return judged.with_(accuracy=_with_beyond(accuracy, points, found, of_patches.notes))
+    accuracy = check(judged, projection=_projection(found, found.part))
+    return judged.with_(accuracy=_with_beyond(accuracy, points, found, accuracy.notes))
 
 
-def _accuracy(surface: HorizonSurface, found: Nearest, part: NDArray[np.str_], checks: tuple[Check, ...]) -> Accuracy:
-    """Return the figures of eq. 3 for distances that are measured already."""
-    d, points, settings = found.distance, surface.points, surface.settings
-    magnitude, value = np.abs(d), sigma(d)
-    # What was asked of distances to whole patches is asked again of those that hold.
-    again = [
-        _tolerance(d, settings),
-        *residual_checks(points.xyz - surface.origin, d, part, settings.interior_tolerance),
-    ]
-    measured = {check.name: check for check in (again if len(d) else ())}
-    limits = {"interior tolerance": settings.interior_tolerance, "epsilon": settings.epsilon}
-    return Accuracy(
-        n=len(d),
-        sigma=value,
-        epsilon=settings.epsilon,
-        passed=value < settings.epsilon,
-        max_abs=float(magnitude.max(initial=0.0)),
-        mean=float(d.mean()) if len(d) else 0.0,
-        residuals=d,
-        patch=part,
-        by_patch=_groups(d, part),
-        by_kind=_groups(d, points.kind),
-        by_hole=_groups(d, points.hole),
-        by_section=_groups(d, points.section),
-        over={f"{what} {limit:g} m": int((magnitude > limit).sum()) for what, limit in limits.items()},
-        worst=tuple(int(i) for i in np.argsort(-magnitude, kind="stable")[:20]),
-        checks=(*measured.values(), *(check for check in checks if check.name not in measured)),
-    )
-
-
-def _tolerance(d: Floats, settings: FitSettings) -> Check:
-    count, worst = int((np.abs(d) > settings.interior_tolerance).sum()), float(np.abs(d).max(initial=0.0))
-    text = said("{count} of {total} points beyond the interior tolerance", count=count, total=len(d))
-    return Check("interior tolerance", count == 0, worst, settings.interior_tolerance, "m", text)
-
-
-def _groups(d: Floats, labels: NDArray[np.str_]) -> dict[str, Group]:
-    parts = {label: d[labels == label] for label in dict.fromkeys(labels.tolist()) if label}
-    return {
-        label: Group(len(part), sigma(part), float(np.abs(part).max()), float(part.mean()))
-        for label, part in parts.items()
-    }
+def _projection(found: Nearest, patch: NDArray[np.int64]) -> Projection:
+    """Return nearest places as the check takes them; triangles have no parameters."""
+    uv = np.full((len(patch), 2), np.nan) if found.uv is None else found.uv
+    return Projection(found.distance, found.foot, patch, uv[:, 0], uv[:, 1], np.ones(len(patch), bool))
 
 
 def _with_beyond(accuracy: Accuracy, points: PointSet, found: Nearest, notes: tuple[str, ...]) -> Accuracy:

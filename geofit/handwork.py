@@ -67,7 +67,7 @@ def adjust(surface: HorizonSurface, patch: str, i: int, j: int, dz: float) -> Ho
             f"({_names(surface, held)}). Move one that lies farther from them, or exclude them first."
         )
     if model.net.lines is not None and model.net.frozen[index]:
-        raise FitError("The core is straight between its section curves: its control points follow the sections.")
+        raise FitError(said("The core is straight between its section curves: its control points follow the sections."))
     coefficients = model.net.coefficients.copy()
     coefficients[(index, 2) if coefficients.ndim == 2 else index] += dz / share
     return _changed(
@@ -109,9 +109,9 @@ def pull_to(surface: HorizonSurface, point: int | ArrayLike, share: float = 1.0)
     acting = np.zeros(net.space.size, bool)
     acting[row.indices] = True
     if net.lines is not None and net.frozen[acting].any():
-        raise FitError("The core is straight between its section curves: pull at a point of the periphery.")
+        raise FitError(said("The core is straight between its section curves: pull at a point of the periphery."))
     if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):
-        raise FitError("Control points with weights other than 1 act here. Set their weights to 1 first.")
+        raise FitError(said("Control points with weights other than 1 act here. Set their weights to 1 first."))
     misfit = share * (value - row @ net.coefficients)
     exact = np.flatnonzero(surface.core)
     if isinstance(point, (int, np.integer)):
@@ -146,16 +146,21 @@ def weigh(surface: HorizonSurface, patch: str, i: int, j: int, weight: float) ->
     """
     model = _model(surface)
     if not 0.01 <= weight <= 100:
-        raise FitError(f"The weight is {weight:g}; between 0.01 and 100 is needed (1 is neutral).")
+        raise FitError(said("The weight is {weight:g}; between 0.01 and 100 is needed (1 is neutral).", weight=weight))
     part = _part(model, patch)
     index, _ = _coefficient(model, part, i, j)
     whole = model.net.space.knots_u, model.net.space.knots_v
     for k, count, knots, ends in zip((i, j), _shape(part), (part.knots_u, part.knots_v), whole, strict=True):
         if (k < TANGENT_ROWS and knots[0] != ends[0]) or (k >= count - TANGENT_ROWS and knots[-1] != ends[-1]):
-            raise FitError(
-                f"Control point ({i}, {j}) of patch '{patch}' holds the tangent plane of a seam; its weight stays 1. "
-                f"Choose one at least {TANGENT_ROWS} rows away from the seam."
+            text = said(
+                "Control point ({i}, {j}) of patch '{patch}' holds the tangent plane of a seam; its weight stays 1. "
+                "Choose one at least {rows} rows away from the seam.",
+                i=i,
+                j=j,
+                patch=patch,
+                rows=TANGENT_ROWS,
             )
+            raise FitError(text)
     held = _acting(model, index)
     if held.any():
         raise ExactnessError(
@@ -192,15 +197,17 @@ def support(surface: HorizonSurface, patch: str, i: int, j: int) -> tuple[float,
 
 def _model(surface: HorizonSurface) -> Model:
     if surface.model is None:
-        raise FitError(
-            f"'{surface.name}' was read from a file: its patches have no common control net. Fit it again, then adjust."
+        text = said(
+            "'{name}' was read from a file: its patches have no common control net. Fit it again, then adjust.",
+            name=surface.name,
         )
+        raise FitError(text)
     return surface.model
 
 
 def _finite(value: float, name: str) -> None:
     if not np.isfinite(value):
-        raise FitError(f"{name} is {value}; a finite number is needed.")
+        raise FitError(said("{name} is {value}; a finite number is needed.", name=name, value=value))
 
 
 def _part(model: Model, patch: str) -> Part:
@@ -209,7 +216,13 @@ def _part(model: Model, patch: str) -> Part:
     for part in parts:
         if part.name == patch:
             return part
-    raise FitError(f"There is no patch '{patch}'. The patches are: {', '.join(part.name for part in parts)}.")
+    raise FitError(
+        said(
+            "There is no patch '{patch}'. The patches are: {names}.",
+            patch=patch,
+            names=", ".join(part.name for part in parts),
+        )
+    )
 
 
 def _shape(part: Part) -> tuple[int, int]:
@@ -276,7 +289,12 @@ def _target(surface: HorizonSurface, model: Model, point: int | ArrayLike) -> tu
     local = chart.frame.to_local(xyz[None])
     u0, u1, v0, v1 = chart.area
     if not (u0 <= local[0, 0] <= u1 and v0 <= local[0, 1] <= v1):
-        raise FitError(f"The point {name} lies beside the surface '{surface.name}'. Choose a place above or below it.")
+        text = said(
+            "The point {point} lies beside the surface '{name}'. Choose a place above or below it.",
+            point=name,
+            name=surface.name,
+        )
+        raise FitError(text)
     return local[:, :2], local[:, 2], name
 
 

@@ -15,6 +15,7 @@ from geofit.io.boreholes import load_boreholes
 from geofit.io.columns import SCHEMAS
 from geofit.io.contacts import load_contacts
 from geofit.io.grid import load_ground
+from geofit.io.guess import taken_as
 from geofit.io.import_plan import Part, Plan, campaigns, look_at, settle
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
@@ -22,6 +23,7 @@ from geofit.io.site_file import load_site
 from geofit.io.toml_text import toml_value
 from geofit.progress import Progress, tell
 from geofit.site import Ground, ImportIssue, Site, TableCount
+from geofit.words import said
 
 __all__ = ["Import", "import_files"]
 
@@ -123,21 +125,16 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
     for part in (part for parts in plan.parts.values() for part in parts):
         preview, name = part.preview, part.source.name
         others = ", ".join(f"{kind} {merit:.2f}" for kind, merit in list(preview.kinds.items())[1:4])
-        reason = f"Taken as {preview.kind}, confidence {preview.confidence:.2f}" + (
-            f"; else {others}" if others else ""
-        )
-        notes.append(ImportIssue(name, 0, "", "", "note", reason, "State another kind in the mapping file."))
+        reason = said("Taken as {kind}, confidence {confidence:.2f}", kind=preview.kind, confidence=preview.confidence)
+        if others:
+            reason = said("{text}; else {others}", text=reason, others=others)
+        notes.append(ImportIssue(name, 0, "", "", "note", reason, said("State another kind in the mapping file.")))
         for guess in preview.roles:
             if guess.stated:
                 continue
-            reason = (
-                f"Column '{guess.column}' is taken as {guess.role}, {guess.reason}, confidence {guess.confidence:.2f}"
-            )
-            if guess.others:
-                reason += "; also possible: " + ", ".join(f"'{name}'" for name in guess.others)
-            remedy = "Name another column in the mapping file."
+            remedy = said("Name another column in the mapping file.")
             severity: Literal["note", "warning"] = "warning" if guess.reason.startswith("by its values") else "note"
-            notes.append(ImportIssue(name, 0, guess.column, "", severity, reason, remedy))
+            notes.append(ImportIssue(name, 0, guess.column, "", severity, taken_as(guess), remedy))
     return notes
 
 

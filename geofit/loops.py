@@ -80,7 +80,8 @@ def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Near
     target = np.asarray(xyz, float).reshape(-1, 3)
     found = project(patches, target)
     distance, foot, part = found.distance.copy(), found.foot.copy(), found.patch.copy()
-    beyond = _beside(patches, target, foot, part, np.stack([found.u, found.v], axis=1))
+    uv = np.stack([found.u, found.v], axis=1)
+    beyond = _beside(patches, target, foot, part, uv)
     if any(loops):
         inside = np.ones(len(target), bool)
         for k in range(len(patches)):
@@ -91,11 +92,14 @@ def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Near
             rim = _rim_feet(patches, loops, target[again])
             face = _inner_feet(patches, loops, target[again])
             on_rim = rim.distance <= face.distance
+            assert rim.uv is not None
+            assert face.uv is not None
+            uv[again] = np.where(on_rim[:, None], rim.uv, face.uv)
             foot[again] = np.where(on_rim[:, None], rim.foot, face.foot)
             part[again] = np.where(on_rim, rim.part, face.part)
             distance[again] = np.copysign(np.minimum(rim.distance, face.distance), distance[again])
             beyond[again] = on_rim
-    return Nearest(distance, foot, part, beyond)
+    return Nearest(distance, foot, part, beyond, uv)
 
 
 def _beside(patches: Sequence[Patch], target: Floats, foot: Floats, part: Ints, uv: Floats) -> Bools:
@@ -174,7 +178,8 @@ def _rim_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Nearest
     t = _golden(far, len(piece))
     distance = far(t)
     best = np.lexsort((distance, point))[::count]
-    return Nearest(distance[best], at(t)[best], part[piece[best]], np.ones(len(target), bool))
+    uv = (start[piece] + t[:, None] * way[piece])[best]
+    return Nearest(distance[best], at(t)[best], part[piece[best]], np.ones(len(target), bool), uv)
 
 
 def _golden(value: Any, count: int) -> Floats:
@@ -208,7 +213,8 @@ def _inner_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Neare
         own = np.flatnonzero(part == k)
         distance[own[~_inside(patch, loops[k], u[own], v[own])]] = np.inf
     best = np.lexsort((distance, point))[::count]
-    return Nearest(distance[best], foot[best], part[best], np.zeros(len(target), bool))
+    uv = np.stack([u, v], axis=1)[best]
+    return Nearest(distance[best], foot[best], part[best], np.zeros(len(target), bool), uv)
 
 
 def _lattice(patches: Sequence[Patch], loops: Loops) -> tuple[Cells, cKDTree, Place]:

@@ -119,12 +119,17 @@ def require_sequence(surfaces: Mapping[str, HorizonSurface], sequence: Sequence[
     """Raise SettingsError unless each name of a sequence has a surface and stands once."""
     missing = [name for name in sequence if name not in surfaces]
     if missing:
-        raise SettingsError(
-            f"The order names '{missing[0]}', which has no surface; there are {', '.join(surfaces) or 'none'}. "
-            "Fit it, or take it out of the order."
+        text = said(
+            "The order names '{name}', which has no surface; there are {names}. Fit it, or take it out of the order.",
+            name=missing[0],
+            names=", ".join(surfaces) or said("none"),
         )
+        raise SettingsError(text)
     if len(set(sequence)) < len(sequence):
-        raise SettingsError(f"The order names a horizon twice: {', '.join(sequence)}. Name each once, top to bottom.")
+        text = said(
+            "The order names a horizon twice: {names}. Name each once, top to bottom.", names=", ".join(sequence)
+        )
+        raise SettingsError(text)
 
 
 def _compare(upper: Relief, lower: Relief, ground: Ground | None) -> Order:

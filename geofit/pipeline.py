@@ -182,19 +182,29 @@ def _with_note(surface: HorizonSurface, note: str) -> HorizonSurface:
 
 def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     if len(points) < 3:
-        raise PointsError(
-            f"{len(points)} point{'s' * (len(points) != 1)} given; at least 3 are needed to lay a surface. "
-            "Check the horizon's name and the filters of the import."
+        given = (
+            said("{count} point given", count=1)
+            if len(points) == 1
+            else said("{count} points given", count=len(points))
         )
+        text = said(
+            "{given}; at least 3 are needed to lay a surface. Check the horizon's name and the filters of the import.",
+            given=given,
+        )
+        raise PointsError(text)
     if np.ptp(points.xyz[:, :2], axis=0).max() == 0 and np.ptp(points.xyz[:, 2]) == 0:
-        raise PointsError(f"All {len(points)} points stand at one place; at least 3 places are needed.")
+        raise PointsError(
+            said("All {count} points stand at one place; at least 3 places are needed.", count=len(points))
+        )
     if boundary is None:
         return None
     corners = np.asarray(boundary, float)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
-        raise PointsError(
-            f"The boundary has shape {corners.shape}; at least three finite (easting, northing) corners are needed."
+        text = said(
+            "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.",
+            shape=corners.shape,
         )
+        raise PointsError(text)
     return corners
 
 
@@ -210,16 +220,20 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> 
     elif settings.core == "auto":
         found = split_auto(plane, chart.area)
     elif chart.frame.kind != "map":
-        raise FitError(
-            f"core is a polygon of map coordinates, but the surface is fitted in the frame '{chart.frame.kind}'. "
-            "Choose core='auto', 'all' or 'none', or frame='map'."
+        text = said(
+            "core is a polygon of map coordinates, but the surface is fitted in the frame '{frame}'. Choose "
+            "core='auto', 'all' or 'none', or frame='map'.",
+            frame=chart.frame.kind,
         )
+        raise FitError(text)
     else:
         corners = chart.frame.plan(np.array(settings.core))
         low = np.maximum(corners.min(axis=0), (chart.area[0], chart.area[2]))
         high = np.minimum(corners.max(axis=0), (chart.area[1], chart.area[3]))
         if (high <= low).any():
-            raise FitError("The core's polygon lies outside the study area. Check its coordinates and their order.")
+            raise FitError(
+                said("The core's polygon lies outside the study area. Check its coordinates and their order.")
+            )
         rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = split_rectangle(plane, rectangle, chart.area, said("the core's polygon as drawn"))
     inside = np.zeros(len(kept), bool)

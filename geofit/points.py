@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.errors import PointsError
+from geofit.words import said
 
 __all__ = ["KINDS", "PointSet"]
 
@@ -129,13 +130,12 @@ class PointSet:
 
     def describe(self, index: int) -> str:
         """Name one point as a person would look it up: hole or section, file and row."""
-        where = self.hole[index] or self.section[index]
-        parts = [f"{self.kind[index]} {where}".strip()]
-        if self.file[index]:
-            parts.append(f"{self.file[index]} row {self.row[index]}")
-        elif self.row[index]:
-            parts.append(f"row {self.row[index]}")
-        return ", ".join(parts)
+        name, kind = str(self.hole[index] or self.section[index]), str(self.kind[index])
+        what = said("{kind} {name}", kind=kind, name=name) if name else said("{kind}", kind=kind)
+        file, row = str(self.file[index]), int(self.row[index])
+        if file:
+            return said("{point}, {file} row {row}", point=what, file=file, row=row)
+        return said("{point}, row {row}", point=what, row=row) if row else what
 
 
 def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:

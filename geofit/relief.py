@@ -11,6 +11,7 @@ from geofit.cells import tabulate
 from geofit.elevation import RIM, Plan, plan_map
 from geofit.errors import SettingsError
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 if TYPE_CHECKING:
     from shapely import Geometry
@@ -44,10 +45,12 @@ class Relief:
         mappings = [plan_map(patch) for patch in surface.patches]
         self._mappings: list[Plan] = [one for one in mappings if one is not None]
         if not mappings or len(self._mappings) < len(mappings):
-            raise SettingsError(
-                f"'{surface.name}' is no height field over the map, so nothing can be said to lie above or below it. "
-                "Name fitted horizons only; leave out faults, overturned folds and triangles read from files."
+            text = said(
+                "'{name}' is no height field over the map, so nothing can be said to lie above or below it. Name "
+                "fitted horizons only; leave out faults, overturned folds and triangles read from files.",
+                name=surface.name,
             )
+            raise SettingsError(text)
         self._inverse = [np.linalg.inv(mapping.matrix) for mapping in self._mappings]
         self._patches = surface.patches
         self._cells = tabulate(surface.patches)

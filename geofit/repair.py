@@ -109,7 +109,7 @@ def repair(surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str], mini
     """
     require_sequence(surfaces, sequence)
     if not (minimum >= 0 and np.isfinite(minimum)):
-        raise SettingsError(f"The least thickness is {minimum}; give metres, 0 or more.")
+        raise SettingsError(said("The least thickness is {value}; give metres, 0 or more.", value=minimum))
     stack = _Stack([_Layer(surfaces[name]) for name in sequence], minimum)
     with threadpool_limits(limits=1):
         stack.push_apart()
@@ -126,10 +126,12 @@ class _Layer:
 
     def __init__(self, surface: HorizonSurface) -> None:
         if surface.model is None or surface.model.problem.chart.frame.kind != "map":
-            raise SettingsError(
-                f"'{surface.name}' has no control net over the map: it was read from a file, or is no height field. "
-                "Fit it again, or take it out of the order."
+            text = said(
+                "'{name}' has no control net over the map: it was read from a file, or is no height field. Fit it "
+                "again, or take it out of the order.",
+                name=surface.name,
             )
+            raise SettingsError(text)
         self.surface, self.model = surface, surface.model
         problem, net = self.model.problem, self.model.net
         held = problem.kept & problem.chart.placed

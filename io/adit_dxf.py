@@ -14,6 +14,7 @@ from geofit.io.polyline import along, chainage
 from geofit.io.source import Source
 from geofit.points import PointSet
 from geofit.site import Hole
+from geofit.words import said
 
 __all__ = ["draw_adits", "drawn_contacts"]
 
@@ -40,12 +41,13 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
         xyz = np.array(entity.vertices, dtype=np.float64).reshape(-1, 3)
         trouble = _no_path(entity, xyz, region)
         if trouble:
-            _list(journal, source, entity, trouble, "Draw the adit as an open 3D polyline on a layer with its name.")
+            remedy = said("Draw the adit as an open 3D polyline on a layer with its name.")
+            _list(journal, source, entity, trouble, remedy)
             listed += entity.size
             continue
         keep = np.append(True, (np.diff(xyz, axis=0) != 0).any(axis=1))
         for k in np.flatnonzero(~keep).tolist():
-            reason = "The corner repeats the one before"
+            reason = said("The corner repeats the one before")
             journal.add("note", source.name, reason, row=entity.first + k, column=entity.layer)
         listed += int((~keep).sum())
         same = sum(adit.name == entity.layer or adit.name.startswith(f"{entity.layer} ") for adit in adits)
@@ -59,16 +61,16 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
 
 def _no_path(entity: Entity, xyz: Floats, region: Region | None) -> str:
     if entity.type == "POINT" or (trouble := problem(entity)):
-        return f"A {entity.type} is no path" if entity.type == "POINT" else trouble
+        return said("A {entity} is no path", entity=entity.type) if entity.type == "POINT" else trouble
     if np.isnan(xyz[:, 2]).any():
-        return "The polyline has no elevation"
+        return said("The polyline has no elevation")
     if not (np.diff(xyz, axis=0) != 0).any():
-        return "The polyline has one place only"
+        return said("The polyline has one place only")
     if region is not None:
         west, east, south, north = region
         x, y = xyz[:, :2].mean(axis=0)
         if not (west <= x <= east and south <= y <= north):
-            return "The polyline lies far outside the study area"
+            return said("The polyline lies far outside the study area")
     return ""
 
 
@@ -86,14 +88,24 @@ def drawn_contacts(
     for entity in chosen:
         horizon = horizons.match(entity.words) if entity.words else None
         if horizon is None or entity.words in (entity.layer, *(adit.name for adit in adits)):
-            what = f"'{entity.words}' is no horizon" if entity.words else f"A {entity.type} names no horizon"
-            _list(journal, source, entity, what, "Write the horizon as text beside the adit.", "note")
+            what = (
+                said("'{words}' is no horizon", words=entity.words)
+                if entity.words
+                else said("A {entity} names no horizon", entity=entity.type)
+            )
+            _list(journal, source, entity, what, said("Write the horizon as text beside the adit."), "note")
             listed += entity.size
             continue
         adit, place, apart = _nearest(adits, np.array(entity.vertices[0][:2]))
         if not apart <= BESIDE:
-            reason = f"The contact '{entity.words}' stands {apart:.1f} m from the nearest adit, {adit.name}"
-            _list(journal, source, entity, reason, f"Place it within {BESIDE:g} m of the adit's axis.")
+            reason = said(
+                "The contact '{words}' stands {apart:.1f} m from the nearest adit, {adit}",
+                words=entity.words,
+                apart=apart,
+                adit=adit.name,
+            )
+            remedy = said("Place it within {reach:g} m of the adit's axis.", reach=BESIDE)
+            _list(journal, source, entity, reason, remedy)
             listed += 1
             continue
         found.append((horizon, adit.name, place, entity.first))

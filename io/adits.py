@@ -15,6 +15,7 @@ from geofit.io.rows import read_rows
 from geofit.io.source import Source
 from geofit.points import PointSet
 from geofit.site import Hole
+from geofit.words import said
 
 __all__ = ["load_adit_contacts", "load_adits"]
 
@@ -56,7 +57,7 @@ def load_adit_contacts(
             rows.reject(
                 i,
                 "chainage",
-                f"The chainage is not on adit {name[i]}, which is {length:.2f} m long",
+                said("The chainage is not on adit {adit}, which is {length:.2f} m long", adit=name[i], length=length),
                 "Correct the chainage, or complete the adit's path.",
             )
             continue

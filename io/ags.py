@@ -15,6 +15,7 @@ from geofit.io.journal import Journal
 from geofit.io.sniff import decode, is_number
 from geofit.io.source import Source
 from geofit.io.tables import Table
+from geofit.words import said
 
 __all__ = ["group_names", "read_group"]
 
@@ -51,7 +52,12 @@ def read_group(source: Source, journal: Journal) -> Table:
             "Name one of them.",
             file=source.name,
         )
-    journal.add("note", source.name, f"Read as AGS {edition}, {encoding}", "State encoding where this is wrong.")
+    journal.add(
+        "note",
+        source.name,
+        said("Read as AGS {edition}, {encoding}", edition=edition, encoding=encoding),
+        "State encoding where this is wrong.",
+    )
     for line, value, reason in group.odd:
         journal.add("error", source.name, reason, "Correct the line.", row=line, value=value[:120])
     return table_of(
@@ -108,7 +114,8 @@ def _line_of_4(group: _Group, number: int, first: str, cells: list[str]) -> None
         case "DATA" if group.header:
             group.rows.append((number, cells[1:]))
         case _:
-            reason = "The row stands above the headings of its group" if first == "DATA" else "This is no AGS 4 line"
+            headless, strange = said("The row stands above the headings of its group"), said("This is no AGS 4 line")
+            reason = headless if first == "DATA" else strange
             group.odd.append((number, ",".join(cells), reason))
 
 
@@ -120,7 +127,7 @@ def _line_of_3(group: _Group, number: int, first: str, cells: list[str], source:
     elif first == "<CONT>" and group.rows:
         _continue(group, number, cells, source, journal)
     elif first.startswith("<") or not group.header:
-        group.odd.append((number, ",".join(cells), "The line continues or heads nothing"))
+        group.odd.append((number, ",".join(cells), said("The line continues or heads nothing")))
     else:
         group.rows.append((number, cells))
 
@@ -137,7 +144,10 @@ def _continue(group: _Group, number: int, cells: list[str], source: Source, jour
                 journal.add(
                     "warning",
                     source.name,
-                    f"The <CONT> line gives another number than the row above, '{row[j]}', which is kept",
+                    said(
+                        "The <CONT> line gives another number than the row above, '{number}', which is kept",
+                        number=row[j],
+                    ),
                     "Correct one of the two.",
                     row=number,
                     column=group.header[j] if j < len(group.header) else "",

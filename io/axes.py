@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.io.rows import Rows
+from geofit.words import said
 
 __all__ = ["Region", "check_axes", "place_in", "region_of"]
 
@@ -72,7 +73,12 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         rows.warn(
             i,
             "x",
-            f"{off.size} rows lie far outside the study area, the first at x = {x[i]:.15g}, y = {y[i]:.15g}",
+            said(
+                "{count} rows lie far outside the study area, the first at x = {x:.15g}, y = {y:.15g}",
+                count=off.size,
+                x=x[i],
+                y=y[i],
+            ),
             "Check the coordinates and the boundary.",
         )
 

@@ -20,6 +20,7 @@ from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source, as_source
 from geofit.io.surveys import Stations, read_stations
 from geofit.site import Ground, Hole, ImportIssue, TableCount
+from geofit.words import said
 
 __all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreholes"]
 
@@ -179,18 +180,22 @@ def _read_collars(
     for i in np.flatnonzero(rows.ok).tolist():
         if name[i] in first:
             k = first[name[i]]
-            where = "at the same place" if (x[i], y[i], z[i]) == (x[k], y[k], z[k]) else "at another place"
+            same = (x[i], y[i], z[i]) == (x[k], y[k], z[k])
+            where = said("at the same place") if same else said("at another place")
             rows.reject(
                 i,
                 "hole",
-                f"The hole is listed in row {rows.line[k]} already, {where}",
+                said("The hole is listed in row {row} already, {where}", row=rows.line[k], where=where),
                 "Keep one of the rows.",
             )
             continue
         first[name[i]] = i
         k = places.setdefault((x[i], y[i], z[i]), i)
         if k != i:
-            rows.warn(i, "hole", f"The collar lies exactly where hole {name[k]} (row {rows.line[k]}) starts")
+            reason = said(
+                "The collar lies exactly where hole {hole} (row {row}) starts", hole=name[k], row=rows.line[k]
+            )
+            rows.warn(i, "hole", reason)
     attitudes = _collar_stations(rows, name, dip, declination)
     rows.close()
     if not first:
@@ -206,7 +211,7 @@ def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
         if np.isnan(z[i]):
             rows.reject(i, "z", "The collar has no elevation and lies off the ground's grid", "Give its elevation.")
         else:
-            reason = f"The collar has no elevation; the ground's, {z[i]:.2f} m, is taken"
+            reason = said("The collar has no elevation; the ground's, {z:.2f} m, is taken", z=z[i])
             rows.warn(i, "z", reason, "Give its elevation.", severity="note")
 
 
@@ -225,15 +230,19 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
     sound = np.isfinite(top) & np.isfinite(base) & np.isfinite(mouth)
     falls = (top > base) & (top <= mouth + 1.0) & sound
     if all(any(word in name for word in ("elev", "高程", "标高")) for name in named):
-        reason = "by their names"
+        reason = said("by their names")
     elif sound.sum() >= 3 and falls.sum() > 0.6 * sound.sum() and np.ptp(mouth[sound]) > 0:
-        reason = f"because {falls.sum()} of {sound.sum()} intervals descend from the collar's elevation"
+        reason = said(
+            "because {count} of {total} intervals descend from the collar's elevation",
+            count=falls.sum(),
+            total=sound.sum(),
+        )
     else:
         return False
     rows.journal.add(
         "warning",
         rows.file,
-        f"The limits are taken as elevations, {reason}",
+        said("The limits are taken as elevations, {reason}", reason=reason),
         'State measure = "depth" where they are depths.',
         column=rows.table.header[rows.columns["from"]],
     )
@@ -253,7 +262,8 @@ def _to_depths(rows: Rows, name: list[str], paths: Mapping[str, WellPath], limit
         mouth = float(path.xyz[0, 2])
         depth[members] = path.depth_of(np.where((z > mouth) & (z < mouth + 0.05), mouth, z))
     for i in np.flatnonzero(np.isnan(depth) & rows.ok).tolist():
-        rows.reject(i, role, f"The hole has no elevation {limits[i]:g} m below its collar", "Correct the elevation.")
+        reason = said("The hole has no elevation {z:g} m below its collar", z=limits[i])
+        rows.reject(i, role, reason, "Correct the elevation.")
     return depth
 
 
@@ -270,24 +280,25 @@ def _read_log(
         top = _to_depths(rows, name.tolist(), paths, top, "from")
         base = _to_depths(rows, name.tolist(), paths, base, "to")
     for mask, role, reason, remedy in (
-        (top < 0, "from", "The interval starts above the collar", "Depths count from the collar, downwards."),
-        (base < top, "to", "The interval is reversed: it ends above its start", "Exchange from and to."),
-        (base == top, "to", "The interval has no length", "Correct from or to."),
         (
-            top > end - DEPTH_TOLERANCE,
+            top < 0,
             "from",
-            "The interval starts at or beyond the hole's end",
-            "Correct the depth.",
+            said("The interval starts above the collar"),
+            said("Depths count from the collar, downwards."),
         ),
+        (base < top, "to", said("The interval is reversed: it ends above its start"), said("Exchange from and to.")),
+        (base == top, "to", said("The interval has no length"), said("Correct from or to.")),
     ):
         for i in np.flatnonzero(mask & rows.ok).tolist():
-            limit = f" at {end[i]:g} m" if "hole's end" in reason else ""
-            rows.reject(i, role, reason + limit, remedy)
+            rows.reject(i, role, reason, remedy)
+    for i in np.flatnonzero((top > end - DEPTH_TOLERANCE) & rows.ok).tolist():
+        reason = said("The interval starts at or beyond the hole's end at {end:g} m", end=end[i])
+        rows.reject(i, "from", reason, "Correct the depth.")
     for i in np.flatnonzero((base > end + DEPTH_TOLERANCE) & rows.ok).tolist():
         rows.warn(
             i,
             "to",
-            f"The interval ends {base[i] - end[i]:.2f} m beyond the hole's end; it is cut there",
+            said("The interval ends {length:.2f} m beyond the hole's end; it is cut there", length=base[i] - end[i]),
             "Correct the depth of the interval or of the hole.",
         )
         base[i] = end[i]
@@ -296,13 +307,19 @@ def _read_log(
     for i, k in pairwise(order.tolist()):
         if name[i] == name[k] and top[k] < base[i] - DEPTH_TOLERANCE:
             if (top[i], base[i], code[i]) == (top[k], base[k], code[k]):
-                rows.reject(k, "from", f"The interval repeats row {rows.line[i]}", "Remove one of the two.")
+                rows.reject(
+                    k, "from", said("The interval repeats row {row}", row=rows.line[i]), "Remove one of the two."
+                )
                 continue
             rows.warn(
                 k,
                 "from",
-                f"The interval overlaps that of row {rows.line[i]} by "
-                f"{min(base[i], base[k]) - top[k]:.2f} m; limits inside the other one are no contacts",
+                said(
+                    "The interval overlaps that of row {row} by {length:.2f} m; limits inside the other one are no "
+                    "contacts",
+                    row=rows.line[i],
+                    length=min(base[i], base[k]) - top[k],
+                ),
                 "Correct from or to.",
             )
     rows.close()

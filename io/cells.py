@@ -10,6 +10,7 @@ from geofit.errors import InputError
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, unique_names
+from geofit.words import said
 
 __all__ = ["number_text", "table_of"]
 
@@ -51,7 +52,7 @@ def table_of(
             journal.add(
                 "error",
                 source.name,
-                f"The row has {len(cells)} cells, the header {width}",
+                said("The row has {count} cells, the header {width}", count=len(cells), width=width),
                 "Complete the header or shorten the row.",
                 row=line,
                 value=" ".join(cells)[:120],

@@ -14,6 +14,7 @@ from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
 from geofit.io.journal import Journal
 from geofit.points import PointSet
 from geofit.site import ImportIssue
+from geofit.words import said
 
 __all__ = ["Contacts", "Limit", "load_contacts", "take_contacts"]
 
@@ -82,12 +83,20 @@ def _contacts_of(boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit
         else:
             unseen.append(hole)
     if unseen:
-        why = "starts at the collar" if limit == "top" else "is open at the hole's end"
+        why = said("starts at the collar") if limit == "top" else said("is open at the hole's end")
         journal.add(
             "note",
             log.file,
-            f"{limit} of {code}: {len(found)} contacts; no sure contact (the code {why}, or its limit is "
-            f"contradicted) in {len(unseen)} holes: {', '.join(unseen)}",
+            said(
+                "{limit} of {code}: {count} contacts; no sure contact (the code {why}, or its limit is contradicted) "
+                "in {unseen} holes: {holes}",
+                limit=limit,
+                code=code,
+                count=len(found),
+                why=why,
+                unseen=len(unseen),
+                holes=", ".join(unseen),
+            ),
             value=code,
         )
     if not found:
@@ -117,19 +126,32 @@ def _limit_in_hole(
     hole, row = str(log.hole[group[0]]), int(row)
 
     def warn(reason: str, remedy: str) -> None:
-        journal.add("warning", log.file, f"Hole {hole}: {reason}", remedy, row=row, value=code)
+        journal.add(
+            "warning", log.file, said("Hole {hole}: {reason}", hole=hole, reason=reason), remedy, row=row, value=code
+        )
 
     if len(runs) > 1:
-        which = "uppermost top" if limit == "top" else "lowest base"
+        which = said("uppermost top") if limit == "top" else said("lowest base")
         warn(
-            f"{code} occurs {len(runs)} times; the {which} at {depth:g} m is taken",
+            said(
+                "{code} occurs {count} times; the {which} at {depth:g} m is taken",
+                code=code,
+                count=len(runs),
+                which=which,
+                depth=depth,
+            ),
             "Give the repeats codes of their own.",
         )
     tolerance = DEPTH_TOLERANCE
     other = group[log.code[group] != code]
     if ((log.top[other] < depth - tolerance) & (log.base[other] > depth + tolerance)).any():
         warn(
-            f"the {limit} of {code} at {depth:g} m lies inside another interval and is not used",
+            said(
+                "the {limit} of {code} at {depth:g} m lies inside another interval and is not used",
+                limit=limit,
+                code=code,
+                depth=depth,
+            ),
             "Mend the overlap.",
         )
         return depth, 0
@@ -146,7 +168,14 @@ def _limit_in_hole(
     if gap > tolerance:
         side = "above" if limit == "top" else "below"
         warn(
-            f"nothing is logged for {gap:.2f} m {side} the {limit} of {code} at {depth:g} m",
+            said(
+                "nothing is logged for {gap:.2f} m {side} the {limit} of {code} at {depth:g} m",
+                gap=gap,
+                side=side,
+                limit=limit,
+                code=code,
+                depth=depth,
+            ),
             "Complete the log.",
         )
     return depth, row

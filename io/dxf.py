@@ -13,6 +13,7 @@ from geofit.errors import InputError
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.units import metres_of
+from geofit.words import said
 
 __all__ = ["LINES", "Entity", "count_points", "on_layers", "open_drawing", "problem"]
 
@@ -90,8 +91,8 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
         journal.add(
             "warning",
             source.name,
-            f"The drawing says that its unit is {name}; it is read as metres",
-            f"State scale = {per_metre:g} (a section), or unit (a map), where that is so.",
+            said("The drawing says that its unit is {unit}; it is read as metres", unit=name),
+            said("State scale = {scale:g} (a section), or unit (a map), where that is so.", scale=per_metre),
         )
     return entities
 
@@ -162,7 +163,12 @@ def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> t
         else:
             aside[entity.layer] = aside.get(entity.layer, 0) + entity.size
     for layer, size in aside.items():
-        reason = f"Layer '{layer}' is not among the layers '{source.table}'; its {size} points are not used"
+        reason = said(
+            "Layer '{layer}' is not among the layers '{pattern}'; its {count} points are not used",
+            layer=layer,
+            pattern=source.table,
+            count=size,
+        )
         journal.add("note", source.name, reason, column=layer)
     return kept, sum(aside.values())
 
@@ -170,10 +176,10 @@ def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> t
 def problem(entity: Entity, *, closed: bool = False) -> str:
     """Return why an entity is no line of points, empty if it is one; ``closed`` allows closed polylines."""
     if entity.type not in LINES or not entity.vertices:
-        return f"A {entity.type} is no LWPOLYLINE, POLYLINE, LINE or POINT"
+        return said("A {entity} is no LWPOLYLINE, POLYLINE, LINE or POINT", entity=entity.type)
     xyz = np.array(entity.vertices)
     if not np.isfinite(xyz[:, :2]).all() or np.isinf(xyz[:, 2]).any():
-        return "A coordinate is no finite number"
+        return said("A coordinate is no finite number")
     if entity.closed and not closed:
-        return "The polyline is closed, a horizon line is open"
+        return said("The polyline is closed, a horizon line is open")
     return ""

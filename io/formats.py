@@ -9,6 +9,7 @@ from geofit.errors import InputError
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, read_table
+from geofit.words import said
 
 __all__ = ["TABLE_FORMATS", "USUAL_TABLES", "read_any_table", "table_names"]
 
@@ -99,7 +100,12 @@ def _choose(source: Source, form: str, kind: str, journal: Journal) -> Source:
         return source if not names[0] else replace(source, table=names[0], name=source.name)
     for usual in USUAL_TABLES.get(form, {}).get(kind, ()):
         if usual in names:
-            journal.add("note", source.name, f"The {kind} is taken from {usual}", "State table where this is wrong.")
+            journal.add(
+                "note",
+                source.name,
+                said("The {kind} is taken from {table}", kind=kind, table=usual),
+                "State table where this is wrong.",
+            )
             return replace(source, table=usual)
     raise InputError(
         f"The file holds {len(names)} tables: {', '.join(names[:40]) or 'none'}",

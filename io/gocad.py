@@ -8,6 +8,7 @@ from geofit.io.journal import Journal
 from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.tables import Table
+from geofit.words import said
 
 __all__ = ["read_vertices"]
 
@@ -53,7 +54,7 @@ def read_vertices(source: Source, journal: Journal) -> Table:
                 continue
             x, y, z = words[2:5]
             rows.append((number, [name, x, y, _turned(z) if down else z]))
-    journal.add("note", source.name, f"Read as GOCAD, {encoding}")
+    journal.add("note", source.name, said("Read as GOCAD, {encoding}", encoding=encoding))
     return table_of(source, journal, ["horizon", "x", "y", "z"], rows, units=units, malformed=malformed)
 
 

@@ -13,6 +13,7 @@ from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
 from geofit.points import PointSet
 from geofit.site import Ground
+from geofit.words import said
 
 __all__ = ["grid_unit", "load_grid", "load_ground", "read_ground"]
 
@@ -83,7 +84,11 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
     known = np.isfinite(xyz[:, 2])
     missing = int((~known).sum())
     if missing:
-        journal.add("note", source.name, f"{missing} of {known.size} nodes have no data and make no points")
+        journal.add(
+            "note",
+            source.name,
+            said("{count} of {total} nodes have no data and make no points", count=missing, total=known.size),
+        )
     journal.count(source.name, known.size, missing)
     return {name: PointSet(xyz[known], kind="grid", row=np.flatnonzero(known) + 1, file=source.name)}
 
@@ -126,7 +131,9 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     if blank.all():
         raise InputError("No cell of the grid has an elevation", "Check nodata_value.", file=source.name)
     if blank.any():
-        journal.add("note", source.name, f"{int(blank.sum())} of {z.size} cells have no data")
+        journal.add(
+            "note", source.name, said("{count} of {total} cells have no data", count=int(blank.sum()), total=z.size)
+        )
     journal.count(source.name, len(body), 0)
     x, y = np.arange(columns, dtype=np.float64), np.arange(rows, dtype=np.float64)
     scale = grid_unit(source)

@@ -15,8 +15,9 @@ from geofit.io.guess_values import by_values
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, parse_numbers
+from geofit.words import said
 
-__all__ = ["RoleGuess", "find_columns", "guess_roles", "sample_of"]
+__all__ = ["RoleGuess", "find_columns", "guess_roles", "sample_of", "taken_as"]
 
 #: Roles whose cells are words; all others hold numbers.
 WORDS = frozenset({"hole", "code", "horizon", "section", "adit", "kind"})
@@ -156,7 +157,13 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
     guesses = guess_roles(table, schema, source)
     if guesses and all(guess.reason == "by its place" for guess in guesses.values()):
         order = ", ".join(schema.required)
-        journal.add("warning", table.name, f"No header: the columns are taken as {order}", "Add a header.", row=1)
+        journal.add(
+            "warning",
+            table.name,
+            said("No header: the columns are taken as {order}", order=order),
+            "Add a header.",
+            row=1,
+        )
         return {role: guess.index for role, guess in guesses.items()}
     columns: dict[str, int] = {}
     for role, guess in guesses.items():
@@ -164,13 +171,11 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
             continue
         columns[role] = guess.index
         if not guess.stated:
-            others = ", ".join(f"'{name}'" for name in guess.others)
             journal.add(
                 "warning" if guess.reason.startswith("by its values") else "note",
                 table.name,
-                f"Column '{guess.column}' is taken as {role}, {guess.reason}, confidence {guess.confidence:.2f}"
-                + (f"; also possible: {others}" if others else ""),
-                f"State columns = {{ {role} = ... }} where this is wrong.",
+                taken_as(guess),
+                said("State columns = {{ {role} = ... }} where this is wrong.", role=role),
                 column=guess.column,
             )
     if schema.name == "picks":
@@ -181,6 +186,21 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
     if missing:
         raise _missing(table, schema, missing)
     return columns
+
+
+def taken_as(guess: RoleGuess) -> str:
+    """Say which column was taken as what, why, how surely, and which other ones it could be."""
+    text = said(
+        "Column '{column}' is taken as {role}, {reason}, confidence {confidence:.2f}",
+        column=guess.column,
+        role=guess.role,
+        reason=guess.reason,
+        confidence=guess.confidence,
+    )
+    if not guess.others:
+        return text
+    others = ", ".join(f"'{name}'" for name in guess.others)
+    return said("{text}; also possible: {others}", text=text, others=others)
 
 
 def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> dict[str, int]:
@@ -197,8 +217,11 @@ def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> d
     journal.add(
         "warning",
         table.name,
-        f"'{table.header[found['x']]}' and '{table.header[found['y']]}' are taken as longitude and latitude "
-        "(EPSG:4326) and projected",
+        said(
+            "'{x}' and '{y}' are taken as longitude and latitude (EPSG:4326) and projected",
+            x=table.header[found["x"]],
+            y=table.header[found["y"]],
+        ),
         "State crs and columns where this is wrong.",
     )
     return found
@@ -219,7 +242,10 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
         journal.add(
             "warning",
             table.name,
-            f"'{table.header[columns['z']]}' is the same for all horizons of one place: it may be the hole's own",
+            said(
+                "'{column}' is the same for all horizons of one place: it may be the hole's own",
+                column=table.header[columns["z"]],
+            ),
             "State columns = { z = ... } with the elevation of the horizon.",
             column=table.header[columns["z"]],
         )

@@ -14,6 +14,7 @@ from geofit.io.journal import Journal
 from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.tables import Table
+from geofit.words import said
 
 __all__ = ["TABLES", "read_log"]
 
@@ -63,7 +64,7 @@ def read_log(source: Source, journal: Journal) -> Table:
     journal.add(
         "note",
         source.name,
-        f"{len(depth)} samples; each is an interval that reaches to the next sample",
+        said("{count} samples; each is an interval that reaches to the next sample", count=len(depth)),
         "Give an interval table where the log has one.",
     )
     return table_of(source, journal, header, rows, units=["", unit, unit, *(str(c.unit) for c in curves)])

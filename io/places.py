@@ -6,6 +6,7 @@ import numpy as np
 
 from geofit.io.journal import Journal
 from geofit.points import PointSet
+from geofit.words import said
 
 __all__ = ["list_places"]
 
@@ -19,7 +20,7 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
         journal.add(
             "warning",
             str(points.file[0]),
-            f"Horizon {horizon} has one point only",
+            said("Horizon {horizon} has one point only", horizon=horizon),
             "Three or more are needed for a surface.",
             row=int(points.row[0]),
             value=horizon,
@@ -30,19 +31,24 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
     for k in np.flatnonzero(same).tolist():
         i, j = int(order[k]), int(order[k + 1])
         rise = float(points.xyz[j, 2] - points.xyz[i, 2])
-        before = f"{points.describe(i)}"
+        before = points.describe(i)
         if abs(rise) <= nearness:
             journal.add(
                 "note",
                 str(points.file[j]),
-                f"Horizon {horizon}: the point repeats {before}",
+                said("Horizon {horizon}: the point repeats {before}", horizon=horizon, before=before),
                 row=int(points.row[j]),
             )
         else:
             journal.add(
                 "warning",
                 str(points.file[j]),
-                f"Horizon {horizon}: two elevations at one place, {rise:+.3f} m against {before}",
+                said(
+                    "Horizon {horizon}: two elevations at one place, {rise:+.3f} m against {before}",
+                    horizon=horizon,
+                    rise=rise,
+                    before=before,
+                ),
                 "Correct one of them, or state accuracies: the fit keeps the more accurate one.",
                 row=int(points.row[j]),
                 column="z",

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.io.rows import Rows
+from geofit.words import said
 
 __all__ = ["along", "chainage", "named_lines"]
 
@@ -36,7 +37,7 @@ def named_lines(rows: Rows, role: str, places: Floats, what: str) -> dict[str, F
             rows.reject(int(corners[k + 1]), "x", "The corner repeats the one before", "Remove one of the two.")
         corners = corners[rows.ok[corners]]
         if len(corners) < 2:
-            reason = f"{what} {name} has one corner only"
+            reason = said("{what} {name} has one corner only", what=what, name=name)
             rows.reject(int(corners[0]), role, reason, "Two or more corners are needed.")
         else:
             lines[name] = places[corners]

@@ -13,6 +13,7 @@ from geofit.io.grid import grid_unit
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.site import Ground
+from geofit.words import said
 
 __all__ = ["read_raster"]
 
@@ -54,9 +55,15 @@ def read_raster(source: Source, journal: Journal) -> Ground:
     if np.isnan(z).all():
         raise InputError("No cell of the raster has an elevation", "Check its no-data value.", file=source.name)
     if np.isnan(z).any():
-        journal.add("note", source.name, f"{int(np.isnan(z).sum())} of {z.size} cells have no data")
+        journal.add(
+            "note",
+            source.name,
+            said("{count} of {total} cells have no data", count=int(np.isnan(z).sum()), total=z.size),
+        )
     if bands > 1:
-        journal.add("warning", source.name, f"The raster has {bands} bands; the first is the elevation")
+        journal.add(
+            "warning", source.name, said("The raster has {count} bands; the first is the elevation", count=bands)
+        )
     rows, columns = z.shape
     journal.count(source.name, rows, 0)
     scale = grid_unit(source)
@@ -68,7 +75,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
 def _check_crs(source: Source, crs: object, journal: Journal) -> None:
     if crs is None:
         return
-    journal.add("note", source.name, f"The coordinate system of the raster is {str(crs)[:120]}")
+    journal.add("note", source.name, said("The coordinate system of the raster is {crs}", crs=str(crs)[:120]))
     if getattr(crs, "is_geographic", False):
         raise InputError(
             f"The raster is in longitude and latitude ({str(crs)[:60]}); metres are needed",

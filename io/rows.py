@@ -19,6 +19,7 @@ from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
 from geofit.io.units import length_factors
+from geofit.words import said
 
 __all__ = ["NO_DATA", "Rows", "read_rows"]
 
@@ -53,8 +54,9 @@ class Rows:
         cells = self.table.columns[self.columns[role]]
         cleaned = {cell: unicodedata.normalize("NFKC", cell).strip() for cell in set(cells)}
         if required and "" in cleaned.values():
+            empty = said("The {role} is empty", role=role)
             for i in [i for i, cell in enumerate(cells) if not cleaned[cell]]:
-                self.reject(i, role, f"The {role} is empty", "Complete the cell.")
+                self.reject(i, role, empty, "Complete the cell.")
         return [cleaned[cell] for cell in cells]
 
     def numbers(self, role: str, *, required: bool = True, no_data: bool = False) -> Floats:
@@ -66,20 +68,18 @@ class Rows:
             return np.full(len(self), np.nan)
         cells = self.table.columns[self.columns[role]]
         values, bad = parse_numbers(cells, self.table.decimal)
+        # One sentence for all rows: a column of words may have a million of them.
+        empty, wrong = said("The {role} is empty", role=role), said("The {role} is no finite number", role=role)
+        remedy = said("Give a number with the decimal mark '{mark}' and no unit.", mark=self.table.decimal)
         for i in bad.tolist():
-            cell = cells[i].strip()
-            if cell:
-                self.reject(
-                    i,
-                    role,
-                    f"The {role} is no finite number",
-                    f"Give a number with the decimal mark '{self.table.decimal}' and no unit.",
-                )
+            if cells[i].strip():
+                self.reject(i, role, wrong, remedy)
             elif required:
-                self.reject(i, role, f"The {role} is empty", "Complete the cell.")
+                self.reject(i, role, empty, "Complete the cell.")
         if no_data:
+            unknown = said("The {role} is a mark for 'no data'", role=role)
             for i in np.flatnonzero(np.isin(values, NO_DATA)).tolist():
-                self.reject(i, role, f"The {role} is a mark for 'no data'", "Complete the cell or remove the row.")
+                self.reject(i, role, unknown, "Complete the cell or remove the row.")
         return values * self.factors[role] if role in self.factors else values
 
     def places(self) -> tuple[Floats, Floats]:
@@ -97,7 +97,8 @@ class Rows:
         east, north = project(x, y, crs, target, self.file)
         lost = np.isnan(east) & np.isfinite(x) & np.isfinite(y)
         for i in np.flatnonzero(lost & self.ok).tolist():
-            self.reject(i, "x", f"The place cannot be projected from {crs} to {target}", "Correct the coordinates.")
+            reason = said("The place cannot be projected from {crs} to {target}", crs=crs, target=target)
+            self.reject(i, "x", reason, "Correct the coordinates.")
         return east, north
 
     def reject(self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "error") -> None:
@@ -119,8 +120,17 @@ class Rows:
                 continue
             if name not in hints:
                 near = get_close_matches(name, present, 1) if len(hints) < 20 else []
-                hints[name] = f"Did you mean '{near[0]}'?" if near else f"Add it to the {where}."
-            self.reject(i, role, f"The {role} '{name}' is not in the {where}", hints[name])
+                hints[name] = (
+                    said("Did you mean '{name}'?", name=near[0])
+                    if near
+                    else said("Add it to the {where}.", where=where)
+                )
+            self.reject(
+                i,
+                role,
+                said("The {role} '{name}' is not in the {where}", role=role, name=name, where=where),
+                hints[name],
+            )
 
     def close(self) -> None:
         """Count the rows: those of the file that are not used are listed."""

@@ -12,6 +12,7 @@ from geofit.io.dxf import on_layers, open_drawing, problem
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.source import Source
+from geofit.words import said
 
 __all__ = ["Drawn", "read_drawing"]
 
@@ -59,11 +60,17 @@ def read_drawing(
         layer = entity.layer
         horizon, trouble = horizons.match(layer.strip()), problem(entity, closed=closed)
         if horizon is None or trouble:
-            reason = trouble if horizon is not None else f"Layer '{layer}' is no horizon of the site"
+            stranger = said("Layer '{layer}' is no horizon of the site", layer=layer)
+            reason = trouble if horizon is not None else stranger
             journal.add(
                 "error" if horizon is not None else "note",
                 source.name,
-                f"{reason}; {entity.type} with {entity.size} points is not used",
+                said(
+                    "{reason}; {entity} with {count} points is not used",
+                    reason=reason,
+                    entity=entity.type,
+                    count=entity.size,
+                ),
                 "Draw the horizon as a polyline on the layer with its name.",
                 row=entity.first,
                 column=layer,

@@ -19,6 +19,7 @@ from geofit.io.section_dxf import read_drawing
 from geofit.io.source import Source
 from geofit.points import PointSet
 from geofit.site import Section
+from geofit.words import said
 
 __all__ = ["Drawing", "lift", "load_level", "load_lines", "load_section", "load_sections"]
 
@@ -92,7 +93,7 @@ def load_sections(
             line = _own_line(rows, own, ends)
         if line is None:
             for i in own.tolist():
-                rows.reject(i, "section", f"Section {each} has no line in plan", _NO_LINE)
+                rows.reject(i, "section", said("Section {section} has no line in plan", section=each), _NO_LINE)
             continue
         section, own = Section(each, line), own[rows.ok[own]]
         for i in own[_off_line(section, distance[own])].tolist():
@@ -107,7 +108,9 @@ def load_sections(
     return sections, horizons.split(rows, horizon, xyz, kind="section", section=name)
 
 
-_NO_LINE = "Add its corners to [[section_lines]] (section, x, y), or columns x0, y0, x1, y1 with the ends of its line."
+_NO_LINE = said(
+    "Add its corners to [[section_lines]] (section, x, y), or columns x0, y0, x1, y1 with the ends of its line."
+)
 
 
 def _ends(rows: Rows, region: Region | None) -> Floats:
@@ -129,7 +132,7 @@ def _own_line(rows: Rows, own: NDArray[np.intp], ends: Floats) -> Floats | None:
     if not stated.size or np.array_equal(ends[stated[0], :2], ends[stated[0], 2:]):
         return None
     for i in stated[(ends[stated] != ends[stated[0]]).any(axis=1)].tolist():
-        reason = f"The row states another section line than row {rows.line[stated[0]]}"
+        reason = said("The row states another section line than row {row}", row=rows.line[stated[0]])
         rows.reject(i, "x0", reason, "A section has one line; give bent ones in [[section_lines]].")
     return np.asarray(ends[stated[0]].reshape(2, 2))
 
@@ -218,6 +221,11 @@ def _off_line(section: Section, distance: Floats) -> NDArray[np.bool_]:
 def _off_line_text(section: Section, distance: float) -> tuple[str, str]:
     length = chainage(section.line)[-1]
     return (
-        f"The distance {distance:.2f} m is not on the line of section {section.name} ({length:.2f} m long)",
-        "Correct the distance, the line, or the drawing's scale and origin.",
+        said(
+            "The distance {distance:.2f} m is not on the line of section {section} ({length:.2f} m long)",
+            distance=distance,
+            section=section.name,
+            length=length,
+        ),
+        said("Correct the distance, the line, or the drawing's scale and origin."),
     )

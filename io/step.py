@@ -13,7 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -27,14 +27,18 @@ from geofit.occ import faces_of, placement
 from geofit.stitch import shell
 from geofit.surface import HorizonSurface, Patch
 
-__all__ = ["read_shapes", "read_step", "store_step", "write_step"]
+__all__ = ["UNITS", "Unit", "read_shapes", "read_step", "store_step", "write_step"]
+
+Unit = Literal["m", "mm"]
+#: Length units of a file, and OpenCASCADE's words for them. No feet: the writer gives 13 digits, and a placement in
+#: map coordinates that is no whole number of the unit would lose more than the core may miss its points by.
+UNITS: dict[Unit, str] = {"m": "M", "mm": "MM"}
 
 #: Fixed, so that the same surfaces give the same bytes.
 TIMESTAMP = "2000-01-01T00:00:00"
 
 PARAMETERS = {
     "write.step.schema": "AP242DIS",
-    "write.step.unit": "M",
     "xstep.cascade.unit": "M",
     "write.stepcaf.subshapes.name": 1,
     "read.stepcaf.subshapes.name": 1,
@@ -43,8 +47,10 @@ PARAMETERS = {
 }
 
 
-def write_step(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> dict[str, ReadBack]:
-    """Write horizons as one STEP AP242 assembly in metres, read it back with OpenCASCADE and check it.
+def write_step(
+    surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str], *, unit: Unit = "m"
+) -> dict[str, ReadBack]:
+    """Write horizons as one STEP AP242 assembly, read it back with OpenCASCADE and check it.
 
     Each horizon is a named, coloured product, each face has its patch's name. The file is written under a
     temporary name and renamed when it is complete; the same surfaces give the same bytes.
@@ -55,28 +61,32 @@ def write_step(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]
         Horizons by the name that the file shall give them.
     path : path
         The file, usually ``*.step``.
+    unit : {"m", "mm"}
+        In which the file gives lengths. It says so, and CAD systems convert: the surfaces are the same.
 
     Returns
     -------
     dict of str to ReadBack
-        What the reader found in the file, a horizon.
+        What the reader found in the file, a horizon; in metres, whatever the file's unit.
 
     Raises
     ------
     StitchError
         If patches do not make one valid shell.
     InputError
-        If there is nothing to write, or the file cannot be written.
+        If there is nothing to write, the unit is unknown, or the file cannot be written.
     """
     target = Path(path)
-    shells = store_step(surfaces, target)
+    shells = store_step(surfaces, target, unit=unit)
     return {
         name: read_back(surface, shape, surface_of(shape, whole=True), shells[name], target)
         for (name, surface), shape in zip(surfaces.items(), read_shapes(target), strict=True)
     }
 
 
-def store_step(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> dict[str, Any]:
+def store_step(
+    surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str], *, unit: Unit = "m"
+) -> dict[str, Any]:
     """Write the same file without reading it back, for a project of one's own; return the shells by horizon.
 
     Errors as :func:`write_step`.
@@ -84,8 +94,10 @@ def store_step(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]
     target = Path(path)
     if not surfaces:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(target))
+    if unit not in UNITS:
+        raise InputError(f"A STEP file in '{unit}' is unknown", f"Choose {' or '.join(UNITS)}.", file=str(target))
     shells = {name: shell(surface) for name, surface in surfaces.items()}
-    with _parameters():
+    with _parameters(unit):
         filled = document()
         _fill(filled, surfaces, shells)
         _save(filled, [_patch_names(shells[name], s.patches) for name, s in surfaces.items()], target)
@@ -140,14 +152,14 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
 
 
 @contextmanager
-def _parameters() -> Iterator[None]:
+def _parameters(unit: Unit = "m") -> Iterator[None]:
     """Set OpenCASCADE's global STEP parameters, and put them back."""
     from OCP.Interface import Interface_Static
     from OCP.STEPControl import STEPControl_Controller
 
     STEPControl_Controller.Init_s()
     before: dict[str, Any] = {}
-    for name, value in PARAMETERS.items():
+    for name, value in {**PARAMETERS, "write.step.unit": UNITS[unit]}.items():
         if isinstance(value, str):
             before[name] = Interface_Static.CVal_s(name)
             Interface_Static.SetCVal_s(name, value)

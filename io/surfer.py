@@ -12,6 +12,7 @@ from geofit.io.grid import grid_unit
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.site import Ground
+from geofit.words import said
 
 __all__ = ["read_surfer"]
 
@@ -57,7 +58,11 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
     if np.isnan(z).all():
         raise InputError("No cell of the grid has an elevation", "Export the grid again.", file=source.name)
     if np.isnan(z).any():
-        journal.add("note", source.name, f"{int(np.isnan(z).sum())} of {z.size} cells have no data")
+        journal.add(
+            "note",
+            source.name,
+            said("{count} of {total} cells have no data", count=int(np.isnan(z).sum()), total=z.size),
+        )
     journal.count(source.name, rows, 0)
     scale = grid_unit(source)
     x, y = np.linspace(west, east, columns), np.linspace(south, north, rows)

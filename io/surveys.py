@@ -15,6 +15,7 @@ from geofit.io.desurvey import minimum_curvature
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
+from geofit.words import said
 
 __all__ = ["Stations", "read_stations"]
 
@@ -111,14 +112,14 @@ def read_stations(
             rows.warn(
                 i,
                 "depth",
-                f"Hole {hole} has no station at depth 0; it is straight down to its first station",
+                said("Hole {hole} has no station at depth 0; it is straight down to its first station", hole=hole),
                 "Add the attitude at the collar.",
             )
         if len(stations[hole].depth) == 1:
             rows.warn(
                 i,
                 "depth",
-                f"Hole {hole} has one station only; it is straight",
+                said("Hole {hole} has one station only; it is straight", hole=hole),
                 "Add stations where there are some.",
             )
     for hole in holes:
@@ -126,7 +127,7 @@ def read_stations(
             journal.add(
                 "warning",
                 rows.file,
-                f"Hole {hole} has no survey; it is vertical",
+                said("Hole {hole} has no survey; it is vertical", hole=hole),
                 "Add its stations where it is inclined.",
                 value=hole,
             )
@@ -150,8 +151,13 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
         rows.journal.add(
             "warning",
             rows.file,
-            f"The sign of the dips is not stated: {negative} are negative, {positive} positive; "
-            f"taken as {down} by majority",
+            said(
+                "The sign of the dips is not stated: {negative} are negative, {positive} positive; taken as {down} by "
+                "majority",
+                negative=negative,
+                positive=positive,
+                down=down,
+            ),
             'State dip = "down-positive" or dip = "down-negative".',
             column=rows.table.header[rows.columns["dip"]],
         )
@@ -168,7 +174,7 @@ def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats,
             rows.reject(
                 i,
                 "depth",
-                f"The station repeats the depth of row {rows.line[kept[-1]]}",
+                said("The station repeats the depth of row {row}", row=rows.line[kept[-1]]),
                 "Keep one of the rows.",
             )
             continue
@@ -180,7 +186,7 @@ def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats,
                 rows.reject(
                     i,
                     "dip",
-                    f"The hole turns by {turn:.0f} degrees since row {rows.line[kept[-1]]}",
+                    said("The hole turns by {turn:.0f} degrees since row {row}", turn=turn, row=rows.line[kept[-1]]),
                     "Check the sign of the dip and the azimuth.",
                 )
                 continue

@@ -12,6 +12,7 @@ from geofit.errors import InputError
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, split_line
 from geofit.io.source import Source
+from geofit.words import said
 
 __all__ = ["Table", "parse_numbers", "read_table", "unique_names"]
 
@@ -95,8 +96,13 @@ def read_table(source: Source, journal: Journal) -> Table:
     journal.add(
         "note",
         source.name,
-        f"Read as {encoding}, cells separated by {_SEPARATOR_NAMES.get(sep, repr(sep))}, decimal mark "
-        f"'{decimal}', {'with' if named else 'without'} a header",
+        said(
+            "Read as {encoding}, cells separated by {separator}, decimal mark '{decimal}', {header}",
+            encoding=encoding,
+            separator=_SEPARATOR_NAMES.get(sep, repr(sep)),
+            decimal=decimal,
+            header=said("with a header") if named else said("without a header"),
+        ),
         "State encoding, sep or decimal where this is wrong.",
     )
     return Table(
@@ -120,7 +126,9 @@ def _skip_comments(lines: list[str], name: str, journal: Journal) -> int:
         start += 1
     skipped = sum(bool(line.strip()) for line in lines[:start])
     if skipped:
-        journal.add("note", name, f"{skipped} comment lines at the head are not read", row=1, value=lines[0])
+        journal.add(
+            "note", name, said("{count} comment lines at the head are not read", count=skipped), row=1, value=lines[0]
+        )
     return start
 
 
@@ -169,7 +177,7 @@ def _columns(
             journal.add(
                 "error",
                 name,
-                f"The row has {len(cells)} cells, the header {width}",
+                said("The row has {count} cells, the header {width}", count=len(cells), width=width),
                 "Quote cells that hold the separator, or use another separator than the decimal mark.",
                 row=number,
                 value=line[:120],
@@ -177,7 +185,7 @@ def _columns(
         else:
             odd.append((number, (cells + [""] * width)[:width]))
     if blank:
-        journal.add("note", name, f"{blank} lines without any cell filled are no rows")
+        journal.add("note", name, said("{count} lines without any cell filled are no rows", count=blank))
     cells = sep.join(regular).split(sep) if regular else []
     columns = [cells[j::width] + [row[j] for _, row in odd] for j in range(width)]
     numbers += [number for number, _ in odd]

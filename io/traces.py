@@ -14,10 +14,11 @@ from geofit.io.section_dxf import read_drawing
 from geofit.io.source import Source
 from geofit.points import PointSet
 from geofit.site import Ground
+from geofit.words import said
 
 __all__ = ["load_traces"]
 
-OFF_GRID = ("The point lies off the ground's grid", "Extend the grid or add its elevation.")
+OFF_GRID = (said("The point lies off the ground's grid"), said("Extend the grid or add its elevation."))
 
 
 def load_traces(
@@ -71,7 +72,9 @@ def _from_dxf(
     if blank.size and ground is None:
         raise _undraped(blank.size, source, int(drawn.number[blank[0]]))
     if blank.size and ground is not None:
-        journal.add("note", source.name, f"{blank.size} points at elevation 0 are draped on the ground")
+        journal.add(
+            "note", source.name, said("{count} points at elevation 0 are draped on the ground", count=blank.size)
+        )
         xyz[blank, 2] = ground.elevation(xyz[blank, 0], xyz[blank, 1])
     for i in np.flatnonzero(np.isnan(xyz[:, 2])).tolist():
         used[i] = False

@@ -9,6 +9,7 @@ from geofit.io.columns import plain_name
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table
+from geofit.words import said
 
 __all__ = ["LENGTHS", "METRES", "length_factors", "metres_of"]
 
@@ -61,7 +62,13 @@ def length_factors(table: Table, columns: Mapping[str, int], source: Source, jou
         journal.add(
             "warning",
             table.name,
-            f"The {role} is marked as {name}; it is converted to metres (1 {unit} = {METRES[unit]:.10g} m)",
+            said(
+                "The {role} is marked as {mark}; it is converted to metres (1 {unit} = {metres:.10g} m)",
+                role=role,
+                mark=name,
+                unit=unit,
+                metres=METRES[unit],
+            ),
             'State unit = "m" where it is metres already.',
             column=table.header[j],
         )

@@ -13,6 +13,7 @@ from geofit.io.extra import need
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table
+from geofit.words import said
 
 __all__ = ["RING", "layer_names", "read_features"]
 
@@ -56,7 +57,7 @@ def read_features(source: Source, journal: Journal) -> Table:
         raise _damaged(source, error) from None
     crs = str(meta.get("crs") or "")
     if crs:
-        journal.add("note", source.name, f"The coordinate system of the layer is {crs[:120]}")
+        journal.add("note", source.name, said("The coordinate system of the layer is {crs}", crs=crs[:120]))
     if crs and not source.crs and not source.target:
         _refuse_degrees(source, crs)
     attributes = [str(name) for name in meta["fields"]]

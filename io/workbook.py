@@ -17,6 +17,7 @@ from geofit.io.journal import Journal
 from geofit.io.sniff import is_header, is_units_row
 from geofit.io.source import Source
 from geofit.io.tables import Table
+from geofit.words import said
 
 __all__ = ["read_sheet", "sheet_names"]
 
@@ -60,7 +61,15 @@ def read_sheet(source: Source, journal: Journal) -> Table:
         line, units = body[0]
         body = body[1:]
         journal.add("note", source.name, "This row holds the units", row=line)
-    journal.add("note", source.name, f"Read from sheet '{name}', {'with' if named else 'without'} a header")
+    journal.add(
+        "note",
+        source.name,
+        said(
+            "Read from sheet '{sheet}', {header}",
+            sheet=name,
+            header=said("with a header") if named else said("without a header"),
+        ),
+    )
     return table_of(source, journal, header, body, units=units, named=named)
 
 

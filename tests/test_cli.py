@@ -191,8 +191,8 @@ def test_bad_input_ends_with_2_and_one_clear_line(content, words, tmp_path, monk
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--epsilon", "-1"], ["epsilon is -1", "above 0"]),
-        (["--smoothing", "much"], ["smoothing is 'much'", "auto"]),
+        (["--epsilon", "-1"], ["(epsilon) is -1", "above 0"]),
+        (["--smoothing", "much"], ["(smoothing) is 'much'", "auto"]),
         (["--horizon", "T9"], ["no horizon 'T9'", "T3/T2"]),
         (["--boundary", "nowhere.csv"], ["nowhere.csv", "no such file"]),
         (["--seam", "loose"], ["loose", "tangent"]),

@@ -160,7 +160,7 @@ def test_a_fault_beside_the_points_does_not_cut_and_a_note_says_so(points):
 def test_a_block_of_too_few_points_is_refused_with_its_rows(points):
     x = np.sort(points.xyz[:, 0])
     line = np.array([[x[1] + 1e-3, NORTHING], [x[1] + 1e-3, NORTHING + 1000]])
-    with pytest.raises(FitError, match=r"holds 2 points of T2 \(.*holes.csv row"):
+    with pytest.raises(FitError, match=r"of T2: 2 \(.*holes.csv row"):
         fit_blocks(points, [line], None, BOUNDARY, name="T2")
     line[:, 0] = (x[4] + x[5]) / 2
     assert any("rests on" in note for note in fit_blocks(points, [line], None, BOUNDARY).notes)

@@ -15,6 +15,8 @@ from geofit.report.language import EN, ZH, language, sentence, tell
 from geofit.words import said
 
 ROOT = Path(__file__).resolve().parents[1]
+#: Methods by which readers list rows: severity and file, or row and role, then reason and remedy.
+LISTING = ("add", "reject", "warn")
 
 
 def literals() -> dict[str, str]:
@@ -23,7 +25,18 @@ def literals() -> dict[str, str]:
     for folder in ("geofit", "io"):
         for path in sorted((ROOT / folder).rglob("*.py")):
             for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-                if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Name) or not node.args:
+                if not isinstance(node, ast.Call) or not node.args:
+                    continue
+                if (
+                    folder == "io"
+                    and "export" not in path.parts
+                    and isinstance(node.func, ast.Attribute)
+                    and node.func.attr in LISTING
+                ):
+                    # What readers list: reasons and remedies, each a literal or by said(); other words are names.
+                    where = f"{path.relative_to(ROOT).as_posix()}:{node.lineno}"
+                    found |= dict.fromkeys((text for one in node.args[2:] for text in _texts(one)), where)
+                if not isinstance(node.func, ast.Name):
                     continue
                 name, first = node.func.id, node.args[0]
                 where = f"{path.relative_to(ROOT).as_posix()}:{node.lineno}"
@@ -74,6 +87,19 @@ def test_a_sentence_of_the_core_is_told_with_its_values():
         "{reason}, but all points are approximated: {error}", reason=said("the dense points fill the area"), error="x"
     )
     assert tell(inner, ZH) == "密集点布满全区，但全部点采用逼近：x"
+
+
+def test_what_the_readers_list_is_told_in_chinese(tmp_path):
+    from geofit.io.picks import read_points
+
+    (tmp_path / "p.csv").write_text(
+        "x,y,z,surface,hole\n1,2,3,T1,B1\n1,2,4,T1,B2\n5,6,abc,T1,B3\n7,8,,T1,B4\n", encoding="utf-8"
+    )
+    found = {issue.row: issue for issue in read_points(tmp_path / "p.csv").issues if issue.severity != "note"}
+    assert found[4].reason == "The z is no finite number"
+    assert tell(found[4].reason, ZH) == "z不是有限数"
+    assert tell(found[5].reason, ZH) + tell(found[5].remedy, ZH) == "z为空请补全该单元格。"
+    assert tell(found[3].reason, ZH) == "层面 T1：同一位置有两个高程，与 点 B1，p.csv 第 2 行 相差 +1.000 m"
 
 
 def test_words_alone_are_told_and_names_are_left():

@@ -25,8 +25,7 @@ FLOORS = (
     (
         "aboveground", "check", "clip", "contours", "cut", "dips", "facets", "given", "isolines", "lattice", "loops",
         "mesh", "occ", "oscillation", "overlap", "relief", "residual_tests", "sampling", "seams", "selfcross", "shape",
-        "storage", "trend",
-        "trim", "zero_lines",
+        "storage", "surroundings", "trend", "trim", "zero_lines",
     ),
     ("order",),
     (
@@ -38,6 +37,7 @@ FLOORS = (
     ("pipeline",),
     ("examine", "refits"),
     ("faults", "handwork", "repair"),
+    ("sitefit",),
     ("io", "sample"),
     ("report",),
     ("deliver", "exporting", "importing"),
@@ -251,8 +251,35 @@ def test_the_readme_example_runs_as_written(tmp_path):
     assert (tmp_path / "T2-T1.step").stat().st_size > 10_000
 
 
+def test_the_readme_tour_of_examination_and_changes_by_hand_runs_as_written(tmp_path):
+    page = (ROOT / "README.md").read_text(encoding="utf-8")
+    tour = re.findall(r"```python\n(.*?)```", page, re.S)[1]
+    shutil.copytree(ROOT / "sample_data", tmp_path / "sample_data")
+    printed = python(tour, tmp_path)
+    assert "T3-T2 lies above T2-T1 everywhere" in printed
+    assert "'kriging'" in printed
+    assert "by hand: pulled by 100%" in printed
+    assert "has weight 3" in printed
+
+
+def test_every_check_is_explained():
+    page = (ROOT / "docs" / "checks.md").read_text(encoding="utf-8")
+    names = {
+        call.args[0].value
+        for path, tree in sources().items()
+        if not path.startswith("gui/")
+        for call in ast.walk(tree)
+        if isinstance(call, ast.Call) and getattr(call.func, "id", "") == "Check" and call.args
+        if isinstance(call.args[0], ast.Constant)
+    }
+    assert len(names) > 15
+    assert not [
+        name for name in names if f"| {name} |" not in page and f"{name}," not in page and f", {name} |" not in page
+    ]
+
+
 def test_the_readme_links_to_files_that_exist():
-    for page in ("README.md", "docs/architecture.md"):
+    for page in ("README.md", "docs/architecture.md", "docs/checks.md"):
         text = (ROOT / page).read_text(encoding="utf-8")
         for target in re.findall(r"\]\(([^)#:]+)\)", text):
             assert ((ROOT / page).parent / target).exists(), f"{page} links to {target}"

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import dataclasses
+import pickle
 
 import numpy as np
 import pytest
@@ -9,7 +10,10 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
 from geofit import FitSettings
-from geofit.errors import GeofitError, SettingsError
+from geofit.errors import GeofitError, InputError, SettingsError
+from geofit.report.language import ZH, tell
+from geofit.settings import LABELS
+from geofit.words import said
 
 LENGTHS = ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance")
 
@@ -26,7 +30,7 @@ def test_a_length_must_be_a_finite_number_above_zero(name, value):
     with pytest.raises(SettingsError) as caught:
         FitSettings(**{name: value})
     text = str(caught.value)
-    assert text.startswith(f"{name} is {value!r}")
+    assert f"({name}) is {value!r}; " in text
     assert "a finite number above 0 is needed" in text
     assert "metres" in text
 
@@ -44,28 +48,28 @@ def test_a_length_must_be_a_finite_number_above_zero(name, value):
 def test_an_unknown_word_is_quoted_beside_the_known_ones(name, value, choices):
     with pytest.raises(SettingsError) as caught:
         FitSettings(**{name: value})
-    assert f"{name} is {value!r}" in str(caught.value)
+    assert f"({name}) is {value!r}; " in str(caught.value)
     for choice in choices:
         assert choice in str(caught.value)
 
 
 @pytest.mark.parametrize("value", [0, -1.0, np.nan, "much", None, False])
 def test_smoothing_is_auto_or_a_positive_number(value):
-    with pytest.raises(SettingsError, match=r"smoothing is .*'auto'"):
+    with pytest.raises(SettingsError, match=r"smoothing\) is .*'auto'"):
         FitSettings(smoothing=value)
     assert FitSettings(smoothing=0.25).smoothing == 0.25
 
 
 @pytest.mark.parametrize("value", [-1, 2.5, "20", None])
 def test_iterations_are_a_whole_number(value):
-    with pytest.raises(SettingsError, match=r"max_iterations is .*; a whole number >= 0 is needed"):
+    with pytest.raises(SettingsError, match=r"max_iterations\) is .*; a whole number >= 0 is needed"):
         FitSettings(max_iterations=value)
     assert FitSettings(max_iterations=0).max_iterations == 0
 
 
 @pytest.mark.parametrize("value", [15, 0, -4, 100.0, True, "many"])
 def test_the_cap_of_control_points_is_a_whole_number_of_at_least_16(value):
-    with pytest.raises(SettingsError, match=r"max_control_points is .*; a whole number of at least 16 is needed"):
+    with pytest.raises(SettingsError, match=r"max_control_points\) is .*; a whole number of at least 16 is needed"):
         FitSettings(max_control_points=value)
     assert FitSettings(max_control_points=16).max_control_points == 16
 
@@ -74,7 +78,7 @@ def test_the_cap_of_control_points_is_a_whole_number_of_at_least_16(value):
     "core", [[[0, 0], [1, 1]], [0, 0, 1], [[0, 0, 0]] * 4, [[0, 0], [1, np.nan], [1, 1]], [["a", "b"]] * 3, 7]
 )
 def test_a_core_polygon_needs_three_finite_corners(core):
-    with pytest.raises(SettingsError, match=r"core has shape .*at least three"):
+    with pytest.raises(SettingsError, match=r"core\) has shape .*at least three"):
         FitSettings(core=core)
 
 
@@ -92,10 +96,29 @@ def test_settings_are_frozen_and_keyword_only():
         settings.epsilon = 1.0
     with pytest.raises(TypeError):
         FitSettings(0.5)
-    with pytest.raises(SettingsError, match="epsilon is -1"):
+    with pytest.raises(SettingsError, match=r"Control error \(epsilon\) is -1"):
         dataclasses.replace(settings, epsilon=-1)
 
 
 def test_errors_are_geofit_errors_and_value_errors():
     assert issubclass(SettingsError, GeofitError)
     assert issubclass(SettingsError, ValueError)
+
+
+def test_a_bad_setting_is_told_in_chinese_by_its_name():
+    with pytest.raises(SettingsError) as caught:
+        FitSettings(epsilon=-1)
+    assert str(caught.value) == "Control error (epsilon) is -1; a finite number above 0 is needed (metres)."
+    assert tell(str(caught.value), ZH) == "控制误差 ε（epsilon）为 -1；应为大于 0 的有限数（米）。"
+    assert set(LABELS) == {field.name for field in dataclasses.fields(FitSettings)}
+
+
+def test_an_input_error_is_told_in_chinese_and_crosses_to_another_process():
+    error = InputError(said("{reason}.", reason="a"), "b.", file="f.csv", row=3, column="x", value="7")
+    copy = pickle.loads(pickle.dumps(error))
+    assert str(copy) == str(error)
+    assert (copy.file, copy.row, copy.column, copy.value) == ("f.csv", 3, "x", "7")
+    assert str(InputError("no such file", file="f.csv")) == "f.csv: no such file."
+    assert (
+        tell(str(InputError("no such file", "look", file="f.csv", row=2)), ZH) == "f.csv，第 2 行：no such file。look"
+    )

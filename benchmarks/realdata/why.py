@@ -74,11 +74,16 @@ def why(errors: Errors, trial: Trial) -> str:
             f"{where}the likelihood smooths too {chosen} for these points: the regional field with {times} its "
             f"smoothing would miss by {metres(min(stiffer, softer))} m."
         )
-    return (
+    tried = (
         f"{where}no smoothing helps (the regional field misses by {metres(field)} m, with ten times its smoothing by "
-        f"{metres(stiffer)} m, with a tenth by {metres(softer)} m): the energy '{trial.energy}' itself suits these "
-        "points less than the thin plate's."
+        f"{metres(stiffer)} m, with a tenth by {metres(softer)} m): "
     )
+    if trial.energy == "plate":
+        return (
+            f"{tried}its energy is the thin plate's, but taken over the study area alone instead of the whole plane, "
+            "and on a net of control points instead of one function a point."
+        )
+    return f"{tried}the energy '{trial.energy}' itself suits these points less than the thin plate's."
 
 
 def metres(value: float) -> str:

@@ -21,6 +21,9 @@ __all__ = [
     "AccuracyReport",
     "CheckLine",
     "ConflictLine",
+    "ContradictionLine",
+    "CutLine",
+    "CutPlace",
     "FileCheck",
     "GroupLine",
     "HorizonReport",
@@ -211,6 +214,54 @@ class OrderLine:
 
 
 @dataclass(frozen=True)
+class ContradictionLine:
+    """A place where a repair could not push two horizons apart: ``lack`` metres are missing.
+
+    ``above`` and ``below`` name the exact points that stand against each other, empty where there is none.
+    """
+
+    upper: str
+    lower: str
+    x: float
+    y: float
+    lack: float
+    above: str
+    below: str
+    text: str
+
+
+@dataclass(frozen=True)
+class CutPlace:
+    """Throw and heave at one place of a fault's trace, metres; ``heave`` is None at the area's edge."""
+
+    distance: float
+    x: float
+    y: float
+    z: float
+    throw: float
+    heave: float | None
+
+
+@dataclass(frozen=True)
+class CutLine:
+    """The displacement of a horizon along a fault, between the block ``up`` and the block ``down``; metres.
+
+    ``places`` follow the trace, ``length`` is the distance from the first to the last.
+    """
+
+    fault: str
+    horizon: str
+    up: str
+    down: str
+    length: float
+    throw_min: float
+    throw_mean: float
+    throw_max: float
+    text: str
+    places: tuple[CutPlace, ...]
+
+
+@dataclass(frozen=True)
 class HorizonReport:
     """Everything said about one horizon; metres.
 
@@ -292,7 +343,8 @@ class AccuracyReport:
     """The accuracy report of a site.
 
     ``date`` is ISO 8601 (2026-11-21). ``orders`` is None where the order was not examined, empty where the site has
-    no two horizons to compare. ``failures`` holds horizons that could not be fitted, with the reason. ``issues``
+    no two horizons to compare. ``cuts`` are what faults displace, ``contradictions`` what a repair of crossings left.
+    ``failures`` holds horizons that could not be fitted, with the reason. ``issues``
     counts errors, warnings and notes of the readers; ``rejected`` lists errors and warnings. ``versions`` names the
     programs. ``picture`` names the picture of all horizons, empty if there is none.
     """
@@ -303,6 +355,8 @@ class AccuracyReport:
     horizons: tuple[HorizonReport, ...]
     failures: Words
     orders: tuple[OrderLine, ...] | None
+    contradictions: tuple[ContradictionLine, ...]
+    cuts: tuple[CutLine, ...]
     inputs: tuple[InputFile, ...]
     issues: tuple[tuple[str, int], ...]
     rejected: tuple[RejectedRow, ...]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from geofit.report import digits
-from geofit.report.accuracy_report import AccuracyReport, HorizonReport, OrderLine
+from geofit.report.accuracy_report import AccuracyReport, HorizonReport
 from geofit.report.document import (
     Block,
     Cell,
@@ -20,6 +20,7 @@ from geofit.report.document import (
 )
 from geofit.report.horizon_chapter import horizon_chapter
 from geofit.report.language import Language, sentence, tell
+from geofit.report.structure_blocks import structure_blocks
 
 __all__ = ["document"]
 
@@ -42,7 +43,7 @@ def document(report: AccuracyReport, t: Language, *, missing_picture: str = "", 
         Something the reader must know about the report itself, a missing font for one.
     """
     site = report.site or t("Site")
-    whole = Chapter(t("The site as a whole"), (*_order(report, t), *_inputs(report, t)))
+    whole = Chapter(t("The site as a whole"), (*structure_blocks(report, t), *_inputs(report, t)))
     chapters = [_cover(report, t, missing_picture, warning), whole]
     chapters += [horizon_chapter(horizon, t, missing_picture) for horizon in report.horizons]
     return Document(
@@ -125,52 +126,6 @@ def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
         digits.count(horizon.n),
         t("not examined") if off is None else digits.metres(error),
         checks,
-    )
-
-
-def _order(report: AccuracyReport, t: Language) -> list[Block]:
-    blocks: list[Block] = [Heading(t("Order of the horizons"))]
-    if report.orders is None:
-        blocks.append(Paragraph(t("Not examined: whether horizons cross and how thick the beds between them are.")))
-    elif not report.orders:
-        blocks.append(Paragraph(t("Nothing to examine: the site states no order of its horizons.")))
-    else:
-        columns = (
-            Column(t("Upper horizon")),
-            Column(t("Lower horizon")),
-            Column(t("Answer")),
-            Column(t("Least thickness, m"), "number"),
-            Column(t("Mean thickness, m"), "number"),
-            Column(t("Crossing area, m²"), "number"),
-            Column(t("Crossing volume, m³"), "number"),
-            Column(t("Deepest at x, y, m"), "number"),
-        )
-        blocks.append(
-            Paragraph(
-                t(
-                    "Thickness is measured vertically from the upper horizon down to the lower one. Below zero they "
-                    "cross: the area and the volume say how much."
-                ),
-                "quiet",
-            )
-        )
-        blocks.append(Table(columns, tuple(_order_row(order, t) for order in report.orders)))
-        blocks += [Paragraph(sentence(order.text, t), "quiet") for order in report.orders]
-    return blocks
-
-
-def _order_row(order: OrderLine, t: Language) -> tuple[Cell, ...]:
-    words = {True: t("holds"), False: t("does not hold"), None: t("not applicable")}
-    where = "–" if order.deepest is None else f"{digits.place(order.deepest[0])}, {digits.place(order.deepest[1])}"
-    return (
-        order.upper,
-        order.lower,
-        Mark(order.passed, words[order.passed]),
-        digits.metres(order.minimum),
-        digits.metres(order.mean),
-        digits.count(order.crossing_area),
-        digits.count(order.crossing_volume),
-        where,
     )
 
 

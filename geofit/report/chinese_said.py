@@ -91,6 +91,95 @@ _FIT = {
     "{down}": "{fault} 使 {horizon} 落差 {low:.2f} 至 {high:.2f} m，沿 {length:.0f} m 平均 {mean:.2f} m：{up} 高于 {down}",
     "all points of {horizon} lie on one side of {fault}": "{horizon} 的全部点位于 {fault} 一侧",
     "{block} rests on {count} points only": "{block} 仅有 {count} 个点",
+    "the fault {fault} cannot be laid: {reason}": "断层 {fault} 不能成面：{reason}",
+    "{names}: cut by a fault, so not pushed apart from other horizons": "{names}：被断层切割，未与其他层面分开",
+    "no repair: the order of the site names no two fitted horizons without a fault": "未作修正：场地次序中没有两个已拟合且未被断层切割的"
+    "层面",
+    "no repair: {reason}": "未作修正：{reason}",
+    "{name}: no 90 % surfaces, its standard deviation is not known": "{name}：标准差未知，未输出 90 % 上下界面",
+    "The order of the horizons was not examined: {reason}": "未检验层面次序：{reason}",
+}
+
+_SETTINGS = {
+    "Control error (epsilon)": "控制误差 ε（epsilon）",
+    "Interior tolerance (interior_tolerance)": "内部容差（interior_tolerance）",
+    "Seam tolerance (boundary_tolerance)": "拼接缝容差（boundary_tolerance）",
+    "Across sections (across)": "剖面之间（across）",
+    "At the seams (seam)": "拼接缝处（seam）",
+    "Exact core (core)": "精确核心区（core）",
+    "Laid over (frame)": "展布于（frame）",
+    "Smoothing (smoothing)": "光滑系数（smoothing）",
+    "Outliers (robust)": "异常点（robust）",
+    "Rounds, at most (max_iterations)": "最多轮数（max_iterations）",
+    "Control points (max_control_points)": "控制点（max_control_points）",
+    "One place within (conflict_distance)": "视为同一位置（conflict_distance）",
+    "metres": "米",
+    "the auto value's unit, or the word 'auto'": "与自动值同单位，或写 'auto'",
+    "{setting} is {value}; a finite number above 0 is needed ({unit}).": "{setting}为 {value}；应为大于 0 的有限数（{unit}）。",
+    "{setting} is {value}; choose one of {words}.": "{setting}为 {value}；应取 {words} 之一。",
+    "{setting} is {value}; choose one of {words} or a polygon of map coordinates.": "{setting}为 {value}；应取 {words} "
+    "之一，或平面坐标多边形。",
+    "{setting} is {value}; true or false is needed.": "{setting}为 {value}；应为 true 或 false。",
+    "{setting} is {value}; a whole number >= 0 is needed.": "{setting}为 {value}；应为不小于 0 的整数。",
+    "{setting} is {value}; a whole number of at least 16 is needed.": "{setting}为 {value}；应为不小于 16 的整数。",
+    "{setting} has shape {shape}; a polygon of at least three (easting, northing) corners is needed.": "{setting}的形状为 "
+    "{shape}；应为至少三个角点（东坐标，北坐标）的多边形。",
+}
+
+_ERRORS = {
+    "{count} point given": "仅给出 {count} 个点",
+    "{count} points given": "给出 {count} 个点",
+    "{given}; at least 3 are needed to lay a surface. Check the horizon's name and the filters of the import.": "{given}；成面至少需 3 "
+    "个点。请检查层面名称与导入筛选。",
+    "All {count} points stand at one place; at least 3 places are needed.": "全部 {count} 个点位于同一位置；至少需 3 个不同位置。",
+    "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.": "边界的形状为 {shape}；至少需三个"
+    "有限的角点（东坐标，北坐标）。",
+    "core is a polygon of map coordinates, but the surface is fitted in the frame '{frame}'. Choose core='auto', 'all' or "
+    "'none', or frame='map'.": "核心区为平面坐标多边形，而曲面采用坐标架“{frame}”。请取 core='auto'、'all' 或 'none'，或 frame='map'。",
+    "The core's polygon lies outside the study area. Check its coordinates and their order.": "核心区多边形位于研究区之外。请检查其坐标"
+    "与顺序。",
+    "The order names '{name}', which has no surface; there are {names}. Fit it, or take it out of the order.": "次序中的“{name}”没有"
+    "曲面；现有 {names}。请先拟合，或将其移出次序。",
+    "The order names a horizon twice: {names}. Name each once, top to bottom.": "次序中有层面重复：{names}。请自上而下各写一次。",
+    "'{name}' is no height field over the map, so nothing can be said to lie above or below it. Name fitted horizons only; "
+    "leave out faults, overturned folds and triangles read from files.": "“{name}”不是平面上的高度场，不能判断上下关系。请只列拟合的"
+    "层面，不含断层、倒转褶皱与文件读入的三角网。",
+    "'{name}' has no control net over the map: it was read from a file, or is no height field. Fit it again, or take it out "
+    "of the order.": "“{name}”没有平面上的控制网：由文件读入，或不是高度场。请重新拟合，或将其移出次序。",
+    "The least thickness is {value}; give metres, 0 or more.": "最小厚度为 {value}；应不小于 0（m）。",
+    "Too few points in the block '{block}' of {horizon}: {count} ({points}); at least {least} are needed to lay a surface. "
+    "Give more points there, or leave the fault out.": "{horizon} 的断块“{block}”点数过少：{count} 个（{points}）；成面至少需 {least} 个。"
+    "请补充该处数据，或不计该断层。",
+    "The block '{block}' has points on a side of {fault} where its surface has no area. Look at the points beside the fault: "
+    "one on the wrong side makes a block of its own.": "断块“{block}”在 {fault} 某一侧有点而无曲面范围。请查看断层旁的点：错位的点会"
+    "自成一块。",
+    "frame='sections' needs at least two named sections with ordered points; {lines} were given. Name them in the section "
+    "column, or choose frame='map' or 'best-plane'.": "frame='sections' 至少需两条有名称且点序正确的剖面；现有 {lines} 条。请在剖面列"
+    "中命名，或取 frame='map' 或 'best-plane'。",
+    "No smoothing makes the system of {points} points and {size} control points solvable: the points lie on too few places. "
+    "Give more points, or a larger conflict_distance.": "{points} 个点与 {size} 个控制点的方程组在任何光滑系数下均不可解：点位过少。"
+    "请补充数据，或增大 conflict_distance。",
+    "The core is straight between its section curves: its control points follow the sections.": "核心区在剖面曲线间为直线，其控制点随"
+    "剖面而定。",
+    "The core is straight between its section curves: pull at a point of the periphery.": "核心区在剖面曲线间为直线，请拉动外围区的点。",
+    "Control points with weights other than 1 act here. Set their weights to 1 first.": "此处有权重不为 1 的控制点。请先将其权重设为 1。",
+    "The weight is {weight:g}; between 0.01 and 100 is needed (1 is neutral).": "权重为 {weight:g}；应在 0.01 至 100 之间（1 为不加权）。",
+    "Control point ({i}, {j}) of patch '{patch}' holds the tangent plane of a seam; its weight stays 1. Choose one at least "
+    "{rows} rows away from the seam.": "曲面片“{patch}”的控制点（{i}，{j}）决定拼接缝处的切平面，权重保持 1。请选择距缝至少 {rows} 行的"
+    "控制点。",
+    "'{name}' was read from a file: its patches have no common control net. Fit it again, then adjust.": "“{name}”由文件读入，各曲面片"
+    "没有公共控制网。请重新拟合后再调整。",
+    "{name} is {value}; a finite number is needed.": "{name} 为 {value}；应为有限数。",
+    "There is no patch '{patch}'. The patches are: {names}.": "没有曲面片“{patch}”。现有：{names}。",
+    "The point {point} lies beside the surface '{name}'. Choose a place above or below it.": "点 {point} 在曲面“{name}”范围之外。请选择"
+    "其上方或下方的位置。",
+    "{first}, {second}": "{first}，{second}",
+    "{place}: {sentence}": "{place}：{sentence}",
+    "{reason}.": "{reason}。",
+    "{reason}. {remedy}": "{reason}。{remedy}",
+    "row {row}": "第 {row} 行",
+    "column '{column}'": "列“{column}”",
+    "value '{value}'": "值“{value}”",
 }
 
 _CHECKS = {
@@ -136,6 +225,8 @@ _CHECKS = {
     "未能反映的规律（莫兰指数 I {moran:.2f}，z {z:.1f}）；需增加控制点，或某一来源整体偏离",
     "not judged: no residual is beyond the interior tolerance, where the fit stops": "不予评判：残差均未超过内部容差，拟合至此即止",
     "not judged: all residuals are equal": "不予评判：残差全部相等",
+    "not judged: most residuals lie at the interior tolerance, where the fit stops; the normal plot leaves its line by "
+    "{off:.0%} for that": "不予评判：残差多位于内部容差处，拟合至此即止；正态概率图因此偏离直线 {off:.0%}",
     "the normal plot of the residuals is straight but for {off:.1%}": "残差正态概率图呈直线，偏离仅 {off:.1%}",
     "the residuals are not noise: the normal plot leaves its line by {off:.0%}, and {few} of {n} points make {share:.0%} of "
     "the sum of squares; look at the worst points first": "残差不是随机噪声：正态概率图偏离直线 {off:.0%}，{n} 个点中 {few} 个占"
@@ -216,4 +307,4 @@ _OFF_DATA = {
     "without {failed} of the sections no surface can be laid": "缺少其中 {failed} 条剖面便不能成面",
 }
 
-SAID = {**_FIT, **_CHECKS, **_FILE, **_OFF_DATA}
+SAID = {**_FIT, **_SETTINGS, **_ERRORS, **_CHECKS, **_FILE, **_OFF_DATA}

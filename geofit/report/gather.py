@@ -20,6 +20,9 @@ from geofit.report.accuracy_report import (
     AccuracyReport,
     CheckLine,
     ConflictLine,
+    ContradictionLine,
+    CutLine,
+    CutPlace,
     FileCheck,
     GroupLine,
     HorizonReport,
@@ -38,7 +41,9 @@ from geofit.report.result import HorizonResult, sigma_of
 from geofit.site import Site
 
 if TYPE_CHECKING:
+    from geofit.faults import FaultCut
     from geofit.order import Order
+    from geofit.repair import Contradiction
 
 __all__ = ["PICTURES", "accuracy_report", "picture_name", "today"]
 
@@ -66,6 +71,8 @@ def accuracy_report(
     results: Sequence[HorizonResult],
     orders: Sequence[Order] | None = None,
     *,
+    cuts: Sequence[FaultCut] = (),
+    contradictions: Sequence[Contradiction] = (),
     failures: Mapping[str, str] | None = None,
     date: str = "",
 ) -> AccuracyReport:
@@ -77,6 +84,10 @@ def accuracy_report(
         At least one; all of one site.
     orders : sequence of Order, optional
         What :func:`geofit.order.orders` found; None: not examined.
+    cuts : sequence of FaultCut
+        What faults displace, by :func:`geofit.faults.fit_blocks`.
+    contradictions : sequence of Contradiction
+        What :func:`geofit.repair.repair` could not mend.
     failures : mapping of str to str, optional
         Horizons that could not be fitted, and why.
     date : str
@@ -91,6 +102,10 @@ def accuracy_report(
         horizons=tuple(_horizon(result) for result in results),
         failures=tuple((failures or {}).items()),
         orders=None if orders is None else tuple(_order(order) for order in orders),
+        contradictions=tuple(
+            ContradictionLine(c.upper, c.lower, c.x, c.y, c.lack, c.above, c.below, c.text) for c in contradictions
+        ),
+        cuts=tuple(_cut(cut) for cut in cuts),
         inputs=_inputs(site),
         issues=tuple((word, severities.count(word)) for word in ("error", "warning", "note")),
         rejected=tuple(RejectedRow(**_issue(i)) for i in site.issues if i.severity in ("error", "warning")),
@@ -241,6 +256,17 @@ def _order(order: Order) -> OrderLine:
         order.upper, order.lower, found.passed, _finite(order.min), _finite(order.mean), order.crossed_area,
         order.crossed_volume, order.thinnest if order.crossings else None, found.text,
     )  # fmt: skip
+
+
+def _cut(cut: FaultCut) -> CutLine:
+    rows = np.column_stack([cut.distance, cut.trace, cut.throw]).tolist()
+    places = [
+        CutPlace(distance, x, y, z, throw, _finite(heave))
+        for (distance, x, y, z, throw), heave in zip(rows, cut.heave.tolist(), strict=True)
+    ]
+    throws = (float(cut.throw.min()), float(cut.throw.mean()), float(cut.throw.max()))
+    length = float(cut.distance[-1])
+    return CutLine(cut.fault, cut.horizon, cut.up, cut.down, length, *throws, cut.text, tuple(places))
 
 
 def _inputs(site: Site) -> tuple[InputFile, ...]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from geofit.errors import SettingsError
 from geofit.report.chinese import LABELS
+from geofit.report.chinese_io import LISTED
 from geofit.report.chinese_said import SAID
 from geofit.words import Said
 
@@ -39,7 +40,7 @@ class Language:
 
 
 EN = Language("en", "en")
-ZH = Language("zh", "zh-CN", {**SAID, **LABELS})
+ZH = Language("zh", "zh-CN", {**LISTED, **SAID, **LABELS})
 
 
 def language(code: str) -> Language:

@@ -71,6 +71,29 @@ def test_read_gives_back_knots_control_points_names_and_origin(written):
         np.testing.assert_allclose(theirs.control, ours.control, atol=1e-9)
 
 
+def test_a_file_in_millimetres_says_so_and_holds_the_same_surface(written, tmp_path):
+    surface, path, found, _ = written
+    back = write_step({"T1 顶板": surface}, tmp_path / "mm.step", unit="mm")["T1 顶板"]
+    assert back.passed
+    assert back.core_max_abs <= 1e-8
+    assert back.sigma == pytest.approx(found.sigma, rel=1e-9)
+    text = (tmp_path / "mm.step").read_text("ascii").replace("\n", "")
+    assert "SI_UNIT(.MILLI.,.METRE.)" in text
+    assert "SI_UNIT($,.METRE.)" not in text
+    (ours,), (theirs,) = (read_step(file).values() for file in (path, tmp_path / "mm.step"))
+    np.testing.assert_array_equal(theirs.origin, ORIGIN)
+    for a, b in zip(ours.patches, theirs.patches, strict=True):
+        np.testing.assert_allclose(a.control, b.control, atol=1e-9)
+    # The unit is a setting of the whole of OpenCASCADE: the next file must be in metres again.
+    assert write_step({"T1 顶板": surface}, tmp_path / "m.step")["T1 顶板"].sha256 == found.sha256
+
+
+def test_an_unknown_unit_is_refused(written, tmp_path):
+    with pytest.raises(InputError, match="m or mm"):
+        write_step({"T1": written[0]}, tmp_path / "ft.step", unit="ft")
+    assert not list(tmp_path.iterdir())
+
+
 def test_the_file_is_ascii_and_the_same_bytes_again(written, tmp_path):
     surface, path, found, _ = written
     twice = write_step({"T1 顶板": surface}, tmp_path / "other name.step")["T1 顶板"]
