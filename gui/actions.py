@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QMainWindow
 
 from geofit.gui.icons import icon
 from geofit.gui.language import LANGUAGES
+from geofit.gui.words import bare
 
 __all__ = ["EXAGGERATIONS", "Actions"]
 
@@ -60,6 +61,10 @@ _PLAIN: dict[str, _Spec] = {
                 QT_TRANSLATE_NOOP("Actions", "Cross-validate: how far the rock may lie elsewhere"), "examine"),
     "check_order": (QT_TRANSLATE_NOOP("Actions", "Check the &order"), "F7",
                     QT_TRANSLATE_NOOP("Actions", "Whether each horizon stays above the next one"), ""),
+    "order": (QT_TRANSLATE_NOOP("Actions", "O&rder of the horizons…"), None,
+              QT_TRANSLATE_NOOP("Actions", "Say which horizon lies above which"), ""),
+    "repair": (QT_TRANSLATE_NOOP("Actions", "&Push apart…"), "Ctrl+F7",
+               QT_TRANSLATE_NOOP("Actions", "Push horizons apart where they cross; points met exactly stay"), ""),
     "worst": (QT_TRANSLATE_NOOP("Actions", "Go to the &worst point"), "F8", "", ""),
     "exclude": (QT_TRANSLATE_NOOP("Actions", "E&xclude or include the chosen row"), "Ctrl+D", "", ""),
     "stop": (QT_TRANSLATE_NOOP("Actions", "&Stop the task"), "Esc", "", "cancel"),
@@ -125,7 +130,7 @@ def _action(window: QMainWindow, name: str, text: str, key: Any, tip: str, drawi
     action.setCheckable(checkable)
     if key is not None:
         action.setShortcut(QKeySequence(key))
-    words = QCoreApplication.translate("Actions", tip) if tip else action.text().replace("&", "").rstrip("…")
+    words = QCoreApplication.translate("Actions", tip) if tip else bare(action.text())
     keys = action.shortcut().toString(QKeySequence.SequenceFormat.NativeText)
     action.setToolTip(f"{words} ({keys})" if keys else words)
     action.setStatusTip(words)

@@ -92,7 +92,6 @@ class Activity(QObject):
             work = job.prepare()
             if work is None:
                 continue
-            self.began.emit(job.title)
             start = run_apart if job.apart else run
             self._task = start(
                 self,
@@ -105,6 +104,8 @@ class Activity(QObject):
                 on_cancelled=partial(_LOG.info, "Stopped: %s", job.title),
             )
             self._task.ended.connect(self._after)
+            # Not before there is a task: who hears of it asks whether something can be stopped.
+            self.began.emit(job.title)
             return
         self.ended.emit()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QLabel, QMainWindow, QProgressBar, QToolButton
 
 from geofit.gui.activity import Activity
@@ -21,13 +22,17 @@ class ActivityBar:
         self.progress.setRange(0, 1000)
         self.progress.setTextVisible(False)
         self.progress.setFixedWidth(140)
-        self.progress.setAccessibleName(window.tr("Progress"))
+        self.progress.setAccessibleName(QCoreApplication.translate("ActivityBar", "Progress"))
         self.stop.setIcon(icon("cancel"))
         self.stop.setAutoRaise(True)
-        self.stop.setToolTip(window.tr("Stop the task (Esc)"))
-        self.stop.setAccessibleName(window.tr("Stop the task"))
+        self.stop.setToolTip(QCoreApplication.translate("ActivityBar", "Stop the task (Esc)"))
+        self.stop.setAccessibleName(QCoreApplication.translate("ActivityBar", "Stop the task"))
         self.stop.clicked.connect(activity.cancel)
-        self.place.setToolTip(window.tr("Easting, northing and elevation under the pointer, without exaggeration"))
+        self.place.setToolTip(
+            QCoreApplication.translate(
+                "ActivityBar", "Easting, northing and elevation under the pointer, without exaggeration"
+            )
+        )
         self._title = ""
         self._task = (self.stage, self.progress, self.stop)
         bar = window.statusBar()

@@ -7,7 +7,7 @@ from PySide6.QtCore import QObject
 from geofit.accuracy import Accuracy
 from geofit.gui.document.document import Document
 from geofit.gui.document.making import edited
-from geofit.gui.document.recipe import HandEdit, Move, Pull
+from geofit.gui.document.recipe import HandEdit, Move, Pull, Weigh
 from geofit.gui.fitting import Fitting
 from geofit.gui.panels.adjust import AdjustPanel
 from geofit.gui.words import spoken
@@ -27,7 +27,9 @@ class Adjusting(QObject):
         self._trial: Task | None = None
         panel.adjust_wanted.connect(lambda patch, i, j, dz: self._try(Move(patch, i, j, dz)))
         panel.pull_wanted.connect(lambda index, share: self._try(Pull(index, share)))
+        panel.weigh_wanted.connect(lambda patch, i, j, weight: self._try(Weigh(patch, i, j, weight)))
         panel.adjust_requested.connect(self._adjust)
+        panel.weigh_requested.connect(self._weigh)
         panel.pull_requested.connect(self.pull)
         fitting.adjusted.connect(panel.show_effect)
 
@@ -41,6 +43,11 @@ class Adjusting(QObject):
         self._stop()
         if self._document.selection.horizon is not None:
             self._fitting.adjust(self._document.selection.horizon, patch, i, j, dz)
+
+    def _weigh(self, patch: str, i: int, j: int, weight: float) -> None:
+        self._stop()
+        if self._document.selection.horizon is not None:
+            self._fitting.weigh(self._document.selection.horizon, patch, i, j, weight)
 
     def _try(self, edit: HandEdit) -> None:
         self._stop()

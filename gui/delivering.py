@@ -17,6 +17,7 @@ from geofit.gui.activity import Activity
 from geofit.gui.document.document import Document
 from geofit.gui.document.exporting import export_surfaces
 from geofit.gui.preferences import Preferences
+from geofit.gui.showing import Showing
 from geofit.gui.workspace import Workspace
 from geofit.report.result import HorizonResult
 from geofit.surface import HorizonSurface
@@ -43,11 +44,12 @@ class Delivering(QObject):
         activity: Activity,
         preferences: Preferences,
         workspace: Workspace,
+        showing: Showing,
         window: QWidget,
     ) -> None:
         super().__init__(window)
         self._document, self._activity, self._preferences = document, activity, preferences
-        self._panels, self._window = workspace, window
+        self._panels, self._showing, self._window = workspace, showing, window
         self._reports: list[str] = []
         workspace.tree.report_chosen.connect(lambda path: QDesktopServices.openUrl(QUrl.fromLocalFile(path)))
 
@@ -57,7 +59,11 @@ class Delivering(QObject):
 
         surfaces = self._surfaces()
         if surfaces:
-            ExportDialog(surfaces, self._window).exec()
+            dialog = ExportDialog(surfaces, self._window)
+            dialog.exec()
+            self._showing.show_read_back({name: back for file in dialog.files for name, back in file.read_back.items()})
+            if dialog.files:
+                self._written([file.path for file in dialog.files])
 
     def export_other(self) -> None:
         """Ask for a file; its ending is the format."""

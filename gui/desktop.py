@@ -14,6 +14,7 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from geofit import __version__
+from geofit.gui.document.making import get_ready
 from geofit.gui.icons import application_icon
 from geofit.gui.language import apply_language
 from geofit.gui.main_window import MainWindow
@@ -22,6 +23,7 @@ from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
 from geofit.gui.theme import apply_theme, missing_chinese, set_font
 from geofit.gui.view3d.opengl import require_opengl
+from geofit.gui.worker import finish_all, warm
 
 __all__ = ["Desktop"]
 
@@ -71,6 +73,9 @@ class Desktop(QObject):
         waking.timeout.connect(lambda: None)
         waking.start()
         self.window.show()
+        # Two: one fits while the other makes the triangles of what was fitted before.
+        for _ in range(2):
+            warm(get_ready)
         if missing_chinese():
             _LOG.warning(
                 "No font on this machine has Chinese characters: they are shown as boxes. Install one "
@@ -79,6 +84,7 @@ class Desktop(QObject):
             self.window.panels.reveal("log")
         QTimer.singleShot(0, self, lambda: self._begin(file))
         code = self.app.exec()
+        finish_all()
         self.session.end()
         return code
 

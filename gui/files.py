@@ -204,6 +204,11 @@ class Files(QObject):
                 self._activity.do(
                     title, read_surfaces, found.project, path.parent, site, on_done=self._surfaces_read, apart=True
                 )
+        for fault, cut in site.faults.items():
+            _LOG.warning(
+                "The fault %s cuts %s: the window fits it as one surface; geofit.faults.fit_faulted lays it block by "
+                "block and measures the throw.", fault, ", ".join(cut),
+            )  # fmt: skip
         errors = sum(issue.severity == "error" for issue in site.issues)
         text = self.tr("{name}: {horizons} horizons, {errors} rows not used.")
         self.told.emit(text.format(name=site.name, horizons=len(site.horizons), errors=errors))

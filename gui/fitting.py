@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import Any
 
 from PySide6.QtCore import QObject, Signal
@@ -12,6 +11,7 @@ from geofit.accuracy import Accuracy
 from geofit.gui.activity import Activity, Work
 from geofit.gui.document.commands import (
     AdjustControlPoint,
+    ChangeWeight,
     Command,
     ExcludeRow,
     IncludeRow,
@@ -20,9 +20,10 @@ from geofit.gui.document.commands import (
     SetSettings,
     SetSurface,
 )
-from geofit.gui.document.making import edited, make
-from geofit.gui.document.recipe import DocumentError, HandEdit, Recipe, Row
+from geofit.gui.document.making import changed, examined, made
+from geofit.gui.document.recipe import DocumentError, Recipe, Row
 from geofit.gui.session import Session
+from geofit.gui.words import spoken
 from geofit.offdata import OffData
 from geofit.settings import FitSettings
 from geofit.surface import HorizonSurface
@@ -53,7 +54,9 @@ class Fitting(QObject):
     def fit(self, name: str) -> None:
         """Fit a horizon with its present settings and rows."""
         title = self.tr("Fit {name}").format(name=name)
-        self._activity.prepare(title, lambda: self._fit_work(name), on_done=lambda made: self._fitted(*made))
+        self._activity.prepare(
+            title, lambda: self._fit_work(name), on_done=lambda done: self._fitted(*done), apart=True
+        )
 
     def fit_all(self) -> None:
         """Fit every horizon whose surface is missing or stale; all of them if none is."""
@@ -64,11 +67,15 @@ class Fitting(QObject):
     def examine(self, name: str) -> None:
         """Find out how far a surface may lie from the rock where nobody drilled."""
         title = self.tr("Examine {name} off its data").format(name=name)
-        self._activity.prepare(title, lambda: self._examine_work(name), on_done=self._examined)
+        self._activity.prepare(title, lambda: self._examine_work(name), on_done=self._examined, apart=True)
 
     def adjust(self, name: str, patch: str, i: int, j: int, dz: float) -> None:
         """Raise a control point by ``dz`` metres."""
         self._edit(AdjustControlPoint(name, patch, i, j, dz))
+
+    def weigh(self, name: str, patch: str, i: int, j: int, weight: float) -> None:
+        """Give a control point another weight."""
+        self._edit(ChangeWeight(name, patch, i, j, weight))
 
     def pull(self, name: str, index: int, share: float = 1.0) -> None:
         """Pull a surface to one of its points."""
@@ -111,7 +118,7 @@ class Fitting(QObject):
         if surface is not None and surface.model is not None:
             self._fitted(recipe, surface)
             return None
-        return _made, (recipe, self._document.points_of(recipe), self._document.site.boundary)
+        return made, (recipe, *self._ingredients(recipe))
 
     def _fitted(self, recipe: Recipe, surface: HorizonSurface) -> None:
         self._document.put(recipe, surface)
@@ -125,7 +132,9 @@ class Fitting(QObject):
 
     def _make_again(self, recipe: Recipe) -> None:
         title = self.tr("Make {name} again").format(name=recipe.horizon)
-        self._activity.prepare(title, lambda: self._again_work(recipe), on_done=lambda made: self._document.put(*made))
+        self._activity.prepare(
+            title, lambda: self._again_work(recipe), on_done=lambda done: self._document.put(*done), apart=True
+        )
 
     def _again_work(self, recipe: Recipe) -> Work:
         """Undone or closed in the meantime, or put on the shelf by somebody else: then there is nothing to do."""
@@ -133,33 +142,39 @@ class Fitting(QObject):
         surface = self._document.shelf.surface(recipe)
         if not wanted or (surface is not None and surface.model is not None):
             return None
-        return _made, (recipe, self._document.points_of(recipe), self._document.site.boundary)
+        return made, (recipe, *self._ingredients(recipe))
 
     def complete(self, recipes: Sequence[Recipe]) -> None:
         """Make again what was read from files, so that it can be changed by hand."""
         for recipe in recipes:
-            if recipe.given == self._document.given(recipe.horizon):
+            if self._document.holds(recipe):
                 self._make_again(recipe)
 
-    def _edit(self, command: AdjustControlPoint | PullToPoint) -> None:
+    def _edit(self, command: AdjustControlPoint | PullToPoint | ChangeWeight) -> None:
         self._activity.prepare(
-            str(command.text), lambda: self._edit_work(command), on_done=lambda made: self._edited(command, *made)
+            spoken(command.text),
+            lambda: self._edit_work(command),
+            on_done=lambda done: self._edited(command, *done),
+            apart=True,
         )
 
-    def _edit_work(self, command: AdjustControlPoint | PullToPoint) -> Work:
+    def _edit_work(self, command: AdjustControlPoint | PullToPoint | ChangeWeight) -> Work:
         recipe = self._document.state.recipes.get(command.horizon)
         surface = self._document.shelf.surface(recipe)
         if recipe is None or surface is None:
             self.refused.emit(DocumentError(f"'{command.horizon}' has no surface to adjust. Fit it first."))
             return None
-        if surface.model is None and recipe.given != self._document.given(command.horizon):
+        if surface.model is None and not self._document.holds(recipe):
             text = (
                 f"'{command.horizon}' was read from a file, and its data have changed since. Fit it again, then adjust."
             )
             self.refused.emit(DocumentError(text))
             return None
-        points, boundary = self._document.points_of(recipe), self._document.site.boundary
-        return _changed, (recipe, surface, command.edit, points, boundary)
+        return changed, (recipe, surface, command.edit, *self._ingredients(recipe))
+
+    def _ingredients(self, recipe: Recipe) -> tuple[Any, ...]:
+        document = self._document
+        return document.points_of(recipe), document.site.boundary, document.given_for(recipe)
 
     def _edited(
         self, command: Command, former: Recipe, recipe: Recipe, before: Accuracy, surface: HorizonSurface
@@ -177,26 +192,7 @@ class Fitting(QObject):
         if recipe is None or surface is None:
             self.refused.emit(DocumentError(f"'{name}' has no surface to examine. Fit it first."))
             return None
-        return _looked, (recipe, surface)
+        return examined, (recipe, surface)
 
     def _examined(self, found: tuple[Recipe, OffData]) -> None:
         self._document.put_offdata(*found)
-
-
-def _made(recipe: Recipe, points: Any, boundary: Any, *, progress: Any) -> tuple[Recipe, HorizonSurface]:
-    return recipe, make(recipe, points, boundary, progress)
-
-
-def _changed(
-    recipe: Recipe, surface: HorizonSurface, edit: HandEdit, points: Any, boundary: Any, *, progress: Any
-) -> tuple[Recipe, Recipe, Accuracy | None, HorizonSurface]:
-    before = surface.accuracy
-    if surface.model is None:
-        surface = make(recipe, points, boundary, progress)
-    return recipe, replace(recipe, edits=(*recipe.edits, edit)), before, edited(surface, edit, progress)
-
-
-def _looked(recipe: Recipe, surface: HorizonSurface, *, progress: Any) -> tuple[Recipe, OffData]:
-    from geofit.examine import examine
-
-    return recipe, examine(surface, progress)

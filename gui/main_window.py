@@ -63,8 +63,8 @@ class MainWindow(QMainWindow):
         self.files = Files(session, self.activity, self.fitting, preferences, self)
         self.selecting = Selecting(document, self.panels, self.showing, self)
         self.adjusting = Adjusting(document, self.fitting, self.panels.adjust, self)
-        self.ordering = Ordering(document, self.activity, self.showing, self.panels, self)
-        self.delivering = Delivering(document, self.activity, preferences, self.panels, self)
+        self.ordering = Ordering(document, self.activity, self.fitting, self.showing, self.panels, self)
+        self.delivering = Delivering(document, self.activity, preferences, self.panels, self.showing, self)
         self.help = Help(self)
         self._connect_actions()
         self._connect_panels()
@@ -101,7 +101,7 @@ class MainWindow(QMainWindow):
         self._ready = False
         self.preferences.layout = (self.saveGeometry(), self.saveState(LAYOUT_VERSION))
         self.activity.cancel()
-        finish_all()
+        finish_all(helpers=False)
         for part in (self.showing, self.selecting, self.fitting):
             part.close()
         for end in self._ends:
@@ -149,6 +149,8 @@ class MainWindow(QMainWindow):
             "fit_all": self.fitting.fit_all,
             "examine": self._with_horizon(self.fitting.examine),
             "check_order": self.ordering.check,
+            "order": self.ordering.edit,
+            "repair": self.ordering.ask_repair,
             "worst": self.selecting.go_to_worst,
             "exclude": self._exclude_chosen,
             "stop": self.activity.cancel,
@@ -197,8 +199,9 @@ class MainWindow(QMainWindow):
         self.activity.failed.connect(self.fail)
         self.activity.began.connect(lambda _: self._enable())
         self.activity.ended.connect(self._enable)
-        self.fitting.refused.connect(lambda error: self.fail("", error))
-        self.delivering.refused.connect(lambda error: self.fail("", error))
+        for refusing in (self.fitting, self.delivering, self.ordering):
+            refusing.refused.connect(lambda error: self.fail("", error))
+        self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
         for part in (self.files, self.delivering, self.ordering):
             part.told.connect(self.tell)
         self.selecting.said.connect(self.tell)

@@ -1,4 +1,4 @@
-"""Whether the horizons stand above each other as they should."""
+"""Whether the horizons stand above each other as they should, and what is done where they do not."""
 
 from __future__ import annotations
 
@@ -6,12 +6,20 @@ import logging
 from typing import Any
 
 from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QDialog, QInputDialog, QWidget
 
 from geofit.gui.activity import Activity
+from geofit.gui.dialogs.order import OrderDialog
+from geofit.gui.document.commands import PushApart, SetOrder
 from geofit.gui.document.document import Document
-from geofit.gui.document.ordering import all_orders
+from geofit.gui.document.ordering import all_orders, over_map, pushed_apart
+from geofit.gui.document.recipe import DocumentError
+from geofit.gui.fitting import Fitting
 from geofit.gui.showing import Showing
+from geofit.gui.words import spoken
 from geofit.gui.workspace import Workspace
+from geofit.repair import Repair
+from geofit.surface import HorizonSurface
 
 __all__ = ["Ordering"]
 
@@ -19,26 +27,76 @@ _LOG = logging.getLogger(__name__)
 
 
 class Ordering(QObject):
-    """Compares every two horizons; what it finds stands in the checks. ``told(text)`` sums it up."""
+    """Compares every two horizons, and pushes them apart; what is found stands in the checks.
+
+    ``told(text)`` sums it up, ``refused(exception)`` says why nothing was done.
+    """
 
     told = Signal(str)
+    refused = Signal(object)
 
     def __init__(
-        self, document: Document, activity: Activity, showing: Showing, workspace: Workspace, parent: QObject
+        self,
+        document: Document,
+        activity: Activity,
+        fitting: Fitting,
+        showing: Showing,
+        workspace: Workspace,
+        window: QWidget,
     ) -> None:
-        super().__init__(parent)
-        self._document, self._activity = document, activity
-        self._showing, self._panels = showing, workspace
+        super().__init__(window)
+        self._document, self._activity, self._fitting = document, activity, fitting
+        self._showing, self._panels, self._window = showing, workspace, window
+
+    def edit(self) -> None:
+        """Ask for another order of the horizons."""
+        dialog = OrderDialog(self._document.horizons, self._window)
+        if dialog.exec() == QDialog.DialogCode.Accepted and dialog.order() != self._document.horizons:
+            self._fitting.push(SetOrder(dialog.order()))
 
     def check(self) -> None:
-        """Compare the surfaces at hand, in the document's order."""
+        """Compare the surfaces at hand that lie over the map, in the document's order."""
         # What stands behind the patches is not needed there, and is much to send to another process.
-        surfaces = {name: surface.with_(model=None) for name, surface in self._document.surfaces().items()}
+        surfaces = {name: one.with_(model=None) for name, one in over_map(self._document.surfaces()).items()}
         if len(surfaces) < 2:
             self.told.emit(self.tr("Two fitted horizons are needed to check their order."))
             return
         title = self.tr("Check the order")
         self._activity.do(title, all_orders, surfaces, self._document.site.ground, on_done=self._found, apart=True)
+
+    def ask_repair(self) -> None:
+        """Ask how thick the rock between two horizons is at least, and push them apart."""
+        minimum, given = QInputDialog.getDouble(
+            self._window,
+            self.tr("Push horizons apart"),
+            self.tr("Least thickness between a horizon and the next, metres"),
+            0.0, 0.0, 1000.0, 2,
+        )  # fmt: skip
+        if given:
+            self.repair(minimum)
+
+    def repair(self, minimum: float = 0.0) -> None:
+        """Push the horizons apart where they cross; exact points stay."""
+        surfaces = over_map(self._document.surfaces())
+        unready = [name for name, surface in surfaces.items() if surface.model is None]
+        if len(surfaces) < 2 or unready:
+            text = (
+                self.tr("'{name}' was read from a file and not fitted here. Fit it again, then push apart.").format(
+                    name=unready[0]
+                )
+                if unready
+                else self.tr("Two fitted horizons are needed to push them apart. Press Fit all first.")
+            )
+            self.refused.emit(DocumentError(text))
+            return
+        self._activity.do(
+            self.tr("Push horizons apart"),
+            pushed_apart,
+            surfaces,
+            minimum,
+            on_done=lambda found: self._repaired(surfaces, minimum, found),
+            apart=True,
+        )
 
     def _found(self, orders: tuple[Any, ...]) -> None:
         self._showing.show_orders(orders)
@@ -51,3 +109,26 @@ class Ordering(QObject):
             self.told.emit(text.format(count=len(crossing), all=len(orders)))
         else:
             self.told.emit(self.tr("No two horizons cross."))
+
+    def _repaired(self, former: dict[str, HorizonSurface], minimum: float, found: Repair) -> None:
+        document = self._document
+        if any(document.surface(name) is not surface for name, surface in former.items()):
+            self.refused.emit(DocumentError(self.tr("A surface changed meanwhile. Push the horizons apart once more.")))
+            return
+        for one in found.contradictions:
+            _LOG.warning("%s", spoken(one.text))
+        if found.contradictions:
+            self._panels.reveal("log")
+        if not found.moved:
+            self.told.emit(self.tr("No horizon had to move."))
+            return
+        command = PushApart(tuple(found.moved), tuple(former), minimum)
+        for name, recipe in command.recipes(document.state).items():
+            document.put(recipe, found.surfaces[name])
+        self._fitting.push(command)
+        moved = ", ".join(f"{name} {by:.2f} m" for name, by in found.moved.items())
+        self.told.emit(
+            self.tr("Moved at most: {moved}. Contradictions that stay: {count}.").format(
+                moved=moved, count=len(found.contradictions)
+            )
+        )

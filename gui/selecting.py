@@ -37,7 +37,9 @@ class Selecting(QObject):
         panels.section.point_chosen.connect(self._choose)
         for table in (panels.residuals.point_chosen, panels.checks.point_chosen, panels.offdata.point_chosen):
             table.connect(self._chosen_here)
-        panels.offdata.suggestion_chosen.connect(panels.view.focus_place)
+        panels.offdata.suggestion_chosen.connect(self._suggestion_chosen)
+        panels.checks.place_chosen.connect(panels.view.focus_place)
+        panels.scene.zoom_requested.connect(panels.view.zoom_to)
         panels.seams.seam_chosen.connect(self._seam_chosen)
         document.selection_changed.connect(self._show)
 
@@ -128,5 +130,17 @@ class Selecting(QObject):
         if self._showing.line is not None:
             self._panels.view.set_section(self._showing.line, thickness)
 
-    def _seam_chosen(self, _: int) -> None:
-        self._panels.view.set_seams(self._document.selection.horizon)
+    def _suggestion_chosen(self, x: float, y: float, z: float) -> None:
+        layers, key = self._panels.view.layers, f"suggestions:{self._document.selection.horizon}"
+        if key in layers:
+            layers.change(key, visible=True)
+        self._panels.view.focus_place(x, y, z)
+
+    def _seam_chosen(self, index: int) -> None:
+        name, view = self._document.selection.horizon, self._panels.view
+        if name is None:
+            return
+        view.set_seams(name)
+        place = view.contents.seam_place(name, index)
+        if place is not None:
+            view.focus_place(*place)

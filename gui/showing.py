@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import cast
 
 from numpy.typing import ArrayLike
-from PySide6.QtCore import QObject, QTimer
+from PySide6.QtCore import QObject, QTimer, Signal
 
+from geofit.accuracy import ReadBack
 from geofit.gui.document.document import Document
+from geofit.gui.drawing import Drawing
+from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.workspace import Workspace
 from geofit.order import Order
 from geofit.settings import FitSettings
+from geofit.surface import HorizonSurface
 
 __all__ = ["Showing"]
 
@@ -20,11 +24,17 @@ THICKNESS = 50.0
 
 
 class Showing(QObject):
-    """Keeps the panels as the document is. Several changes in one event are shown once."""
+    """Keeps the panels as the document is. Several changes in one event are shown once.
+
+    ``drawn(horizon)`` tells that the 3D view has a horizon's surface.
+    """
+
+    drawn = Signal(str)
 
     def __init__(self, document: Document, workspace: Workspace, parent: QObject) -> None:
         super().__init__(parent)
         self._document, self._panels = document, workspace
+        self.drawing = Drawing(self)
         self._site = False
         self._points: set[str] = set()
         self._results: set[str] = set()
@@ -32,6 +42,7 @@ class Showing(QObject):
         self.line: ArrayLike | None = None
         self.thickness = THICKNESS
         self.orders: tuple[Order, ...] = ()
+        self._read_back: dict[str, tuple[HorizonSurface, ReadBack]] = {}
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.now)
         self._ends: list[Callable[[], None]] = []
@@ -67,6 +78,7 @@ class Showing(QObject):
         whole = self._site
         if whole:
             panels.show_scene(is_open)
+            self.drawing.clear()
             panels.view.clear()
             if is_open:
                 panels.view.show_site(document.site_in_use())
@@ -106,12 +118,26 @@ class Showing(QObject):
         self.orders = orders
         self._show_horizon()
 
+    def show_read_back(self, found: Mapping[str, ReadBack]) -> None:
+        """Show what the reader found in the files of surfaces, for as long as these are the ones."""
+        surfaces = self._document.surfaces()
+        self._read_back |= {name: (surfaces[name], back) for name, back in found.items() if name in surfaces}
+        self._show_horizon()
+
     def _show_in_view(self, name: str) -> None:
-        surface, offdata = self._document.surface(name), self._document.offdata(name)
+        surface, offdata, view = self._document.surface(name), self._document.offdata(name), self._panels.view
         if surface is None:
-            self._panels.view.remove_surface(name)
-        else:
-            self._panels.view.show_surface(surface, None if offdata is None else offdata.uncertainty)
+            self.drawing.forget(name)
+            view.remove_surface(name)
+            return
+        uncertainty = None if offdata is None else offdata.uncertainty
+
+        def show(drawn: Drawn) -> None:
+            view.show_surface(surface, uncertainty, drawn)
+            view.show_suggestions(name, () if offdata is None else offdata.suggestions)
+            self.drawn.emit(name)
+
+        self.drawing.draw(surface, uncertainty, show)
 
     def _show_tree(self) -> None:
         document = self._document
@@ -134,7 +160,10 @@ class Showing(QObject):
         panels.residuals.show_surface(surface)
         panels.histogram.show_surface(surface)
         panels.seams.show_surface(surface)
-        panels.checks.show_surface(surface, offdata, self._orders_of(name))
+        written, back = self._read_back.get(name or "", (None, None))
+        panels.checks.show_surface(
+            surface, offdata, self._orders_of(name), back if surface is not None and written is surface else None
+        )
         panels.offdata.show_offdata(offdata, None if surface is None else surface.points, fitted=surface is not None)
         panels.adjust.show_surface(surface)
         panels.plan.show_surface(document.site_in_use() if known else None, name or "", surface, settings)
@@ -145,6 +174,7 @@ class Showing(QObject):
     def _on_site(self) -> None:
         self._site = True
         self.line, self.orders = None, ()
+        self._read_back.clear()
         self._later.start()
 
     def _on_site_again(self) -> None:

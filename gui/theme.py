@@ -8,6 +8,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication
 
+from geofit.gui.dark_style import DarkStyle
+
 __all__ = ["THEMES", "Theme", "apply_theme", "is_dark", "missing_chinese", "set_font"]
 
 Theme = Literal["system", "light", "dark"]
@@ -33,13 +35,13 @@ _MUTED = {"light": "#95a0aa", "dark": "#6d7882"}
 def apply_theme(app: QApplication, theme: Theme) -> None:
     """Give all windows the colours of a theme."""
     dark = theme == "dark" or (theme == "system" and app.styleHints().colorScheme() == Qt.ColorScheme.Dark)
-    app.setStyle("Fusion")
     palette = QPalette()
     for role, colour in (_DARK if dark else _LIGHT).items():
         palette.setColor(getattr(QPalette.ColorRole, role), QColor(colour))
     for role in ("WindowText", "Text", "ButtonText"):
         muted = QColor(_MUTED["dark" if dark else "light"])
         palette.setColor(QPalette.ColorGroup.Disabled, getattr(QPalette.ColorRole, role), muted)
+    app.setStyle(DarkStyle(palette) if dark else "Fusion")
     app.setPalette(palette)
 
 

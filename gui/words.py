@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication
 
 from geofit.report.language import EN, ZH, Language, tell
 from geofit.words import Said
 
-__all__ = ["SENTENCES", "speak", "spoken"]
+__all__ = ["SENTENCES", "bare", "speak", "spoken"]
 
 #: Sentences that the windows' own model says (geofit.gui.document), for the translators.
 SENTENCES = (
@@ -17,7 +19,9 @@ SENTENCES = (
     QT_TRANSLATE_NOOP("Said", "Include {file} row {row} in {name}"),
     QT_TRANSLATE_NOOP("Said", "Fit {name}"),
     QT_TRANSLATE_NOOP("Said", "Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})"),
+    QT_TRANSLATE_NOOP("Said", "Weight {weight:g} for control point {i}, {j} of {patch} ({name})"),
     QT_TRANSLATE_NOOP("Said", "Pull {name} to point {number}"),
+    QT_TRANSLATE_NOOP("Said", "Push apart {names}"),
     QT_TRANSLATE_NOOP("Said", "Order of the horizons"),
     QT_TRANSLATE_NOOP("Said", "Rename the site to {name}"),
 )
@@ -36,3 +40,14 @@ def spoken(text: str) -> str:
     if isinstance(text, Said) and text.template in SENTENCES:
         return QCoreApplication.translate("Said", text.template).format(**text.values)
     return tell(text, _language)
+
+
+def bare(text: str) -> str:
+    """Return the text of an action without the mark of its key and without dots.
+
+    Examples
+    --------
+    >>> bare("Save &as…"), bare("另存为(&A)...")
+    ('Save as', '另存为')
+    """
+    return re.sub(r"\(&\w\)|&", "", text).rstrip(".…")

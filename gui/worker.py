@@ -1,8 +1,8 @@
 """Long tasks beside the window: stages, progress, Cancel; results come back in the window's own thread.
 
 A task is a function that takes ``progress=`` (see :mod:`geofit.progress`). :func:`run` calls it in a thread.
-:func:`run_apart` calls it in a process of its own: OpenCASCADE holds the interpreter's lock for seconds, and a thread
-with it would stop the window; such a function, its arguments and its result must be picklable.
+:func:`run_apart` calls it in a process of its own: whatever holds the interpreter's lock in a thread (OpenCASCADE for
+seconds, a fit for tenths) would stop the window; such a function, its arguments and its result must be picklable.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from shiboken6 import isValid
 
 from geofit.errors import Cancelled, GeofitError
 
-__all__ = ["Task", "finish_all", "run", "run_apart", "tasks"]
+__all__ = ["Task", "finish_all", "run", "run_apart", "tasks", "warm"]
 
 _LOG = logging.getLogger(__name__)
 
@@ -175,18 +175,23 @@ def run_apart(parent: QObject, function: Callable[..., Any], *args: Any, **liste
     return run(parent, _in_process, function, args, **listeners)
 
 
+def warm(function: Callable[..., Any]) -> None:
+    """Have a process ready before it is needed; it calls ``function``, which loads what will be needed there."""
+    _pool().start(lambda: _HELPERS.append(_Helper(function)))
+
+
 def tasks() -> tuple[Task, ...]:
     """Return the tasks under way."""
     return tuple(_RUNNING.values())
 
 
-def finish_all(seconds: float = 30.0) -> bool:
-    """Stop all tasks and wait until threads and processes have ended; False if some did not in time."""
+def finish_all(seconds: float = 30.0, *, helpers: bool = True) -> bool:
+    """Stop all tasks and wait until threads have ended, and idle ``helpers`` too; False if some did not in time."""
     for task in tasks():
         if isValid(task):
             task.cancel()
     ended = _POOL is None or _POOL.waitForDone(int(1000 * seconds))
-    while _HELPERS:
+    while helpers and _HELPERS:
         _HELPERS.pop().end()
     QCoreApplication.sendPostedEvents()
     return ended
@@ -195,9 +200,9 @@ def finish_all(seconds: float = 30.0) -> bool:
 def _pool() -> QThreadPool:
     global _POOL
     if _POOL is None:
-        # Two, so that a long export does not hold up a fit.
+        # More than one, so that a long export does not hold up a fit; most of them wait for another process.
         _POOL = QThreadPool()
-        _POOL.setMaxThreadCount(2)
+        _POOL.setMaxThreadCount(4)
         _POOL.setExpiryTimeout(2000)
     return _POOL
 
@@ -213,11 +218,12 @@ def _bridge() -> _Bridge:
 class _Helper:
     """A process that runs one function after another; it has loaded OpenCASCADE when the second comes."""
 
-    def __init__(self) -> None:
+    def __init__(self, first: Callable[..., Any] | None = None) -> None:
+        self.first = first
         # A fresh interpreter: a fork of a process with threads and a window would inherit locks nobody frees.
         context = multiprocessing.get_context("spawn")
         self.pipe, theirs = context.Pipe()
-        self._process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        self._process = context.Process(target=_serve, args=(theirs, first), daemon=True)
         self._process.start()
         theirs.close()
 
@@ -268,12 +274,18 @@ def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: C
         raise told.error from None
     except BaseException:
         helper.end()
+        if helper.first is not None:
+            # Another one gets ready meanwhile: to begin afresh takes seconds.
+            _HELPERS.append(_Helper(helper.first))
         raise
     _HELPERS.append(helper)
     return result
 
 
-def _serve(pipe: Connection) -> None:
+def _serve(pipe: Connection, first: Callable[..., Any] | None) -> None:
+    if first is not None:
+        first()
+
     def listen(stage: str, fraction: float, /) -> None:
         pipe.send(("progress", (stage, fraction)))
 

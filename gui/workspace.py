@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QDockWidget, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDockWidget, QMainWindow, QStackedWidget, QTabBar, QVBoxLayout, QWidget
 
 from geofit.gui.panels.adjust import AdjustPanel
 from geofit.gui.panels.checks import ChecksPanel
@@ -48,7 +48,7 @@ class Workspace(QObject):
         self.docks = {
             "tree": self._dock("tree", self.tr("Project"), self.tree),
             "scene": self._dock("scene", self.tr("Scene"), self.scene),
-            "fit": self._dock("fit", self.tr("Fit"), _stacked(self.verdict, self.fit)),
+            "fit": self._dock("fit", self.tr("Fit"), _stacked(_inset(self.verdict), self.fit)),
             "adjust": self._dock("adjust", self.tr("Adjust by hand"), self.adjust),
             "residuals": self._dock("residuals", self.tr("Residuals"), self.residuals),
             "section": self._dock("section", self.tr("Section"), self.section),
@@ -85,15 +85,25 @@ class Workspace(QObject):
             ),
         ):
             for name in names:
-                window.addDockWidget(area, docks[name])
                 if tabbed and name != names[0]:
                     window.tabifyDockWidget(docks[names[0]], docks[name])
+                else:
+                    window.addDockWidget(area, docks[name])
                 docks[name].show()
             docks[names[0]].raise_()
         width, height = window.width(), window.height()
         window.resizeDocks([docks["tree"], docks["fit"]], [width // 6, width // 5], Qt.Orientation.Horizontal)
         window.resizeDocks([docks["residuals"]], [height // 3], Qt.Orientation.Vertical)
         window.resizeDocks([docks["tree"], docks["scene"]], [height // 2, height // 2], Qt.Orientation.Vertical)
+        self._hide_lost_tabs()
+
+    def _hide_lost_tabs(self) -> None:
+        """Hide tab bars that Qt makes while it puts docks into tabs, and forgets: another one has all their tabs."""
+        bars = self._window.findChildren(QTabBar, options=Qt.FindChildOption.FindDirectChildrenOnly)
+        held = [{bar.tabText(k) for k in range(bar.count())} for bar in bars]
+        for bar, tabs in zip(bars, held, strict=True):
+            if any(tabs < other for other in held):
+                bar.hide()
 
     def switches(self) -> list[QAction]:
         """Return an action for each dock that shows and hides it."""
@@ -118,6 +128,15 @@ class Workspace(QObject):
         dock.setObjectName(name)
         dock.setWidget(widget)
         return dock
+
+
+def _inset(widget: QWidget) -> QWidget:
+    """Keep a widget off the dock's edges."""
+    box = QWidget()
+    layout = QVBoxLayout(box)
+    layout.setContentsMargins(8, 8, 8, 0)
+    layout.addWidget(widget)
+    return box
 
 
 def _stacked(*widgets: QWidget) -> QWidget:

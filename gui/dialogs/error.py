@@ -74,8 +74,8 @@ class ErrorDialog(QDialog):
 
     def _message(self, error: Exception) -> str:
         if isinstance(error, InputError) and error.remedy:
-            what = str(error)[: -len(error.remedy)].rstrip()
-            return f"{what}\n\n{error.remedy}"
+            told, remedy = spoken(str(error)), spoken(error.remedy)
+            return f"{told.removesuffix(remedy).rstrip()}\n\n{remedy}" if told.endswith(remedy) else told
         if isinstance(error, GeofitError):
             return spoken(str(error))
         if isinstance(error, OSError):

@@ -48,8 +48,11 @@ class IssuesDialog(QDialog):
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.table.verticalHeader().hide()
         header = self.table.horizontalHeader()
+        header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         header.setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
-        header.setSectionResizeMode(5, QHeaderView.ResizeMode.Stretch)
+        for column in (5, 6):
+            header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
+        self.table.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         export = QPushButton(self.tr("&Export CSV…"))
         export.clicked.connect(self._export)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
@@ -83,13 +86,15 @@ class _Issues(QAbstractTableModel):
                 i.row or "",
                 i.column,
                 i.value,
-                f"{spoken(i.reason)} {spoken(i.remedy)}".strip(),
+                spoken(i.reason),
+                spoken(i.remedy),
             )
             for i in issues
         ]
-        self._keys = [(rank[i.severity], i.file, i.row, i.column, i.value, i.reason) for i in issues]
+        self._keys = [(rank[i.severity], i.file, i.row, i.column, i.value, i.reason, i.remedy) for i in issues]
         self._heads = (
             self.tr("State"), self.tr("File"), self.tr("Row"), self.tr("Column"), self.tr("Value"), self.tr("Reason"),
+            self.tr("What to do"),
         )  # fmt: skip
 
     def rowCount(self, parent: _Index = _NO_PARENT) -> int:  # noqa: N802

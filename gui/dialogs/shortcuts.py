@@ -14,6 +14,8 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
 )
 
+from geofit.gui.words import bare
+
 __all__ = ["ShortcutsDialog"]
 
 
@@ -30,7 +32,7 @@ class ShortcutsDialog(QDialog):
             menu = entry.menu()
             rows = _rows(menu.actions()) if isinstance(menu, QMenu) else []
             if rows:
-                item = QTreeWidgetItem(self.tree, [entry.text().replace("&", "")])
+                item = QTreeWidgetItem(self.tree, [bare(entry.text())])
                 item.addChildren([QTreeWidgetItem(list(row)) for row in rows])
         self.tree.expandAll()
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
@@ -44,7 +46,7 @@ class ShortcutsDialog(QDialog):
 def _rows(actions: list[QAction]) -> list[tuple[str, str]]:
     native = QKeySequence.SequenceFormat.NativeText
     return [
-        (action.text().replace("&", ""), ", ".join(key.toString(native) for key in action.shortcuts()))
+        (bare(action.text()), ", ".join(key.toString(native) for key in action.shortcuts()))
         for action in actions
         if action.shortcuts() and action.menu() is None
     ]

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from geofit.gui.document.recipe import DocumentError, HandEdit, Move, Pull, Recipe, Row, settings_from
+from geofit.gui.document.recipe import Apart, DocumentError, HandEdit, Move, Pull, Recipe, Row, Weigh, settings_from
 from geofit.gui.document.state import State
 from geofit.settings import FitSettings
 from geofit.words import Said, said
@@ -21,10 +21,12 @@ if TYPE_CHECKING:
 __all__ = [
     "COMMANDS",
     "AdjustControlPoint",
+    "ChangeWeight",
     "Command",
     "ExcludeRow",
     "IncludeRow",
     "PullToPoint",
+    "PushApart",
     "RenameSite",
     "SetCore",
     "SetOrder",
@@ -231,6 +233,28 @@ class AdjustControlPoint(_HandCommand):
 
 
 @dataclass
+class ChangeWeight(_HandCommand):
+    """Another weight for a control point of the periphery."""
+
+    kind = "weigh"
+    patch: str
+    i: int
+    j: int
+    weight: float
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said(
+            "Weight {weight:g} for control point {i}, {j} of {patch} ({name})",
+            weight=self.weight, i=self.i, j=self.j, patch=self.patch, name=self.horizon,
+        )  # fmt: skip
+
+    @property
+    def edit(self) -> HandEdit:  # noqa: D102
+        return Weigh(self.patch, self.i, self.j, self.weight)
+
+
+@dataclass
 class PullToPoint(_HandCommand):
     """The surface pulled to one of its data points."""
 
@@ -245,6 +269,39 @@ class PullToPoint(_HandCommand):
     @property
     def edit(self) -> HandEdit:  # noqa: D102
         return Pull(self.index, self.share)
+
+
+@dataclass
+class PushApart(Command):
+    """Horizons of a sequence pushed apart where they crossed; ``moved`` names those that had to move."""
+
+    kind = "apart"
+    moved: tuple[str, ...]
+    sequence: tuple[str, ...]
+    minimum: float
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        return said("Push apart {names}", names=", ".join(self.moved))
+
+    def recipes(self, state: State) -> dict[str, Recipe]:
+        """Return the new recipes of the horizons that move."""
+        missing = [name for name in self.sequence if name not in state.recipes]
+        if missing:
+            raise DocumentError(f"'{missing[0]}' has no surface that could be moved. Fit it first.")
+        return {
+            name: replace(former, edits=(*former.edits, Apart(self.sequence, self.minimum, others)))
+            for name in self.moved
+            for former in (state.recipes[name],)
+            for others in (tuple(state.recipes[other] for other in self.sequence if other != name),)
+        }
+
+    def on(self, state: State) -> State:  # noqa: D102
+        return replace(state, recipes={**state.recipes, **self.recipes(state)})
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
+        return cls(tuple(data["moved"]), tuple(data["sequence"]), data["minimum"])
 
 
 @dataclass
@@ -289,7 +346,8 @@ class RenameSite(Command):
 COMMANDS: dict[str, type[Command]] = {
     command.kind: command
     for command in (
-        SetSettings, SetCore, ExcludeRow, IncludeRow, SetSurface, AdjustControlPoint, PullToPoint, SetOrder, RenameSite,
+        SetSettings, SetCore, ExcludeRow, IncludeRow, SetSurface, AdjustControlPoint, ChangeWeight, PullToPoint,
+        PushApart, SetOrder, RenameSite,
     )
 }  # fmt: skip
 

@@ -194,8 +194,8 @@ class Document:
         """Return recipes whose surfaces are wanted, not at hand, and can be made from the site as it is."""
         return tuple(
             recipe
-            for name, recipe in self._state.recipes.items()
-            if self.shelf.surface(recipe) is None and recipe.given == self.given(name)
+            for recipe in self._state.recipes.values()
+            if self.shelf.surface(recipe) is None and self.holds(recipe)
         )
 
     def lost(self) -> tuple[str, ...]:
@@ -203,8 +203,16 @@ class Document:
         return tuple(
             name
             for name, recipe in self._state.recipes.items()
-            if self.shelf.surface(recipe) is None and recipe.given != self.given(name)
+            if self.shelf.surface(recipe) is None and not self.holds(recipe)
         )
+
+    def holds(self, recipe: Recipe) -> bool:
+        """Whether a surface can be made again as it was: the site has the data that the recipe was for."""
+        return all(part.given == self.given(part.horizon) for part in recipe.parts())
+
+    def given_for(self, recipe: Recipe) -> dict[str, PointSet]:
+        """Return all points of the other horizons that a recipe names."""
+        return {part.horizon: self._given(part.horizon) for part in recipe.parts() if part.horizon != recipe.horizon}
 
     def points_of(self, recipe: Recipe) -> PointSet:
         """Return the points that a recipe is made from."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -15,12 +15,14 @@ from geofit.points import PointSet
 from geofit.settings import FitSettings
 
 __all__ = [
+    "Apart",
     "DocumentError",
     "HandEdit",
     "Move",
     "Pull",
     "Recipe",
     "Row",
+    "Weigh",
     "fingerprint",
     "settings_from",
     "without_rows",
@@ -69,8 +71,27 @@ class Pull:
     share: float
 
 
-HandEdit = Move | Pull
-_EDITS: dict[str, type[HandEdit]] = {"move": Move, "pull": Pull}
+@dataclass(frozen=True)
+class Weigh:
+    """A control point of the periphery with another weight."""
+
+    patch: str
+    i: int
+    j: int
+    weight: float
+
+
+@dataclass(frozen=True)
+class Apart:
+    """Horizons pushed apart to ``minimum`` metres, from the top; ``others`` made all of them but this one."""
+
+    sequence: tuple[str, ...]
+    minimum: float
+    others: tuple[Recipe, ...]
+
+
+HandEdit = Move | Pull | Weigh
+_EDITS: dict[str, type[HandEdit]] = {"move": Move, "pull": Pull, "weigh": Weigh}
 
 
 @dataclass(frozen=True)
@@ -87,15 +108,15 @@ class Recipe:
         :func:`fingerprint` of the site's points and study area.
     excluded : tuple of Row
         Rows that were left out, sorted.
-    edits : tuple of HandEdit
-        Changes by hand after the fit, in their order.
+    edits : tuple of HandEdit or Apart
+        Changes after the fit, in their order.
     """
 
     horizon: str
     settings: FitSettings
     given: str
     excluded: tuple[Row, ...] = ()
-    edits: tuple[HandEdit, ...] = field(default=())
+    edits: tuple[HandEdit | Apart, ...] = field(default=())
 
     def to_data(self) -> dict[str, Any]:
         """Return numbers, words, lists and mappings only."""
@@ -104,20 +125,27 @@ class Recipe:
             "settings": asdict(self.settings),
             "given": self.given,
             "excluded": [asdict(row) for row in self.excluded],
-            "edits": [{"kind": kind, **asdict(edit)} for edit in self.edits for kind in (_kind(edit),)],
+            "edits": [_edit_data(edit) for edit in self.edits],
         }
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> Recipe:
         """Return what :meth:`to_data` was called on."""
-        edits = [dict(edit) for edit in data["edits"]]
         return cls(
             data["horizon"],
             settings_from(data["settings"]),
             data["given"],
             tuple(Row(**row) for row in data["excluded"]),
-            tuple(_EDITS[edit.pop("kind")](**edit) for edit in edits),
+            tuple(_edit_from(edit) for edit in data["edits"]),
         )
+
+    def parts(self) -> Iterator[Recipe]:
+        """Return this recipe, and all that its changes name."""
+        yield self
+        for edit in self.edits:
+            if isinstance(edit, Apart):
+                for other in edit.others:
+                    yield from other.parts()
 
 
 def settings_from(data: Mapping[str, Any]) -> FitSettings:
@@ -152,5 +180,15 @@ def _same(points: PointSet, file: str, row: int) -> NDArray[np.intp]:
     return same
 
 
-def _kind(edit: HandEdit) -> str:
-    return next(kind for kind, made in _EDITS.items() if isinstance(edit, made))
+def _edit_data(edit: HandEdit | Apart) -> dict[str, Any]:
+    if isinstance(edit, Apart):
+        others = [other.to_data() for other in edit.others]
+        return {"kind": "apart", "sequence": list(edit.sequence), "minimum": edit.minimum, "others": others}
+    return {"kind": next(kind for kind, made in _EDITS.items() if isinstance(edit, made)), **asdict(edit)}
+
+
+def _edit_from(data: Mapping[str, Any]) -> HandEdit | Apart:
+    if data["kind"] == "apart":
+        others = tuple(Recipe.from_data(other) for other in data["others"])
+        return Apart(tuple(data["sequence"]), data["minimum"], others)
+    return _EDITS[data["kind"]](**{name: value for name, value in data.items() if name != "kind"})

@@ -26,6 +26,7 @@ from geofit.errors import GeofitError
 from geofit.gui.panels.effect import Effect
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.panels.weight import WeightBox
 from geofit.gui.words import spoken
 from geofit.handwork import support
 from geofit.surface import HorizonSurface, Patch
@@ -41,14 +42,16 @@ PAUSE = 250
 class AdjustPanel(QWidget):
     """One change at a time.
 
-    ``adjust_requested`` and ``pull_requested`` come from Apply; ``adjust_wanted`` and ``pull_wanted`` a moment after
-    the last edit, for whoever can tell the effect by :meth:`show_effect`; ``control_chosen`` follows the boxes.
+    ``adjust_requested`` and ``pull_requested`` come from Apply, ``weigh_requested`` from Set; ``..._wanted`` a moment
+    after the last edit, for whoever can tell the effect by :meth:`show_effect`; ``control_chosen`` follows the boxes.
     """
 
     adjust_requested = Signal(str, int, int, float)
     pull_requested = Signal(int, float)
+    weigh_requested = Signal(str, int, int, float)
     adjust_wanted = Signal(str, int, int, float)
     pull_wanted = Signal(int, float)
+    weigh_wanted = Signal(str, int, int, float)
     control_chosen = Signal(str, int, int)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -201,6 +204,7 @@ class AdjustPanel(QWidget):
         form.addRow(index)
         form.addRow(self.tr("Move by"), self.dz)
         form.addRow(self.tr("Elevation"), self.z)
+        self.weight = WeightBox()
         self.z.setToolTip(self.tr("Elevation of the control point; the surface follows it part of the way."))
         for spin, words in ((self.dz, self.tr("Move by")), (self.z, self.tr("Elevation"))):
             spin.setAccessibleName(words)
@@ -209,7 +213,13 @@ class AdjustPanel(QWidget):
         column.setContentsMargins(8, 8, 8, 8)
         column.addLayout(form)
         column.addLayout(steps)
+        weight = QFormLayout()
+        weight.setContentsMargins(0, 0, 0, 0)
+        weight.addRow(self.tr("Weight"), self.weight)
+        column.addLayout(weight)
         column.addWidget(self.about_control)
+        self.weight.requested.connect(self._weigh)
+        self.weight.wanted.connect(lambda value: self.weigh_wanted.emit(*self._control(), value))
         self.patch.activated.connect(lambda _: self._choose_patch())
         for box in (self.i, self.j):
             box.valueChanged.connect(lambda _: self._choose())
@@ -273,7 +283,7 @@ class AdjustPanel(QWidget):
         if self._silent or self._surface is None:
             return
         self._show_control()
-        self.control_chosen.emit(self.patch.currentData(), self.i.value(), self.j.value())
+        self.control_chosen.emit(*self._control())
 
     def _show_control(self) -> None:
         """Show where the control point stands, what it moves, and what holds it."""
@@ -290,6 +300,10 @@ class AdjustPanel(QWidget):
         except GeofitError as error:
             words, self._held = spoken(str(error)), True
         self.about_control.setText(words)
+        weights = self._patch().weights
+        self.weight.show_weight(
+            1.0 if weights is None else float(weights[self.i.value(), self.j.value()]), held=self._held
+        )
         self.effect.clear()
         self._enable()
 
@@ -353,15 +367,22 @@ class AdjustPanel(QWidget):
         if not ready:
             self._pause.stop()
 
+    def _control(self) -> tuple[str, int, int]:
+        return self.patch.currentData(), self.i.value(), self.j.value()
+
+    def _weigh(self, weight: float) -> None:
+        self._pause.stop()
+        self.weigh_requested.emit(*self._control(), weight)
+
     def _want(self) -> None:
         if self.ways.currentIndex() == 0:
-            self.adjust_wanted.emit(self.patch.currentData(), self.i.value(), self.j.value(), self.dz.value())
+            self.adjust_wanted.emit(*self._control(), self.dz.value())
         elif self._point is not None:
             self.pull_wanted.emit(self._point, self.share.value() / 100)
 
     def _apply(self) -> None:
         self._pause.stop()
         if self.ways.currentIndex() == 0:
-            self.adjust_requested.emit(self.patch.currentData(), self.i.value(), self.j.value(), self.dz.value())
+            self.adjust_requested.emit(*self._control(), self.dz.value())
         elif self._point is not None:
             self.pull_requested.emit(self._point, self.share.value() / 100)

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_qtagg import FigureCanvasQTAgg
 from matplotlib.figure import Figure
 from PySide6.QtCore import QEvent, QSize
-from PySide6.QtGui import QColor, QPalette, QResizeEvent, QShowEvent
+from PySide6.QtGui import QColor, QPalette, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from geofit.gui.panels.marks import readable
@@ -66,12 +66,16 @@ class Canvas(FigureCanvasQTAgg):
     def repaint_figure(self) -> None:
         """Draw the figure anew, when it is next seen."""
         self._pending = True
-        if self.isVisible():
-            self.refresh()
+        self.refresh()
 
     def refresh(self) -> None:
         """Show the figure as it is now, when the canvas is next seen."""
-        self.draw_idle()  # type: ignore[no-untyped-call]
+        self.draw_idle()
+
+    def draw_idle(self) -> None:
+        """Draw with the next paint event: a dock behind others has none, though Qt calls it visible."""
+        self._draw_pending = True
+        self.update()
 
     def draw(self) -> None:
         """Draw; a glyph that no font has and a canvas too small for its axes are no errors."""
@@ -82,12 +86,6 @@ class Canvas(FigureCanvasQTAgg):
             warnings.filterwarnings("ignore", message=r"Glyph .* missing from font")
             warnings.filterwarnings("ignore", message=r"constrained_layout not applied")
             super().draw()  # type: ignore[no-untyped-call]
-
-    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
-        """Draw what changed while nobody saw it."""
-        super().showEvent(event)  # type: ignore[no-untyped-call]
-        if self._pending:
-            self.refresh()
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Follow the theme."""

@@ -151,7 +151,7 @@ class ChecksPanel(QWidget):
         return self._row("σ", a.passed, measured(a.sigma, "m"), measured(a.epsilon, "m"), words)
 
     def _check(self, check: Check) -> QTreeWidgetItem:
-        value, limit = (measured(number, check.unit) for number in (check.value, check.limit))
+        value, limit = (measured(number, spoken(check.unit)) for number in (check.value, check.limit))
         item = self._row(spoken(check.name), check.passed, value, limit, spoken(check.text))
         item.setData(0, _PLACE, _places(check))
         return item

@@ -127,14 +127,20 @@ class OffDataPanel(QWidget):
                     mean=sd.mean, most=sd.max
                 )
             )
-            lines.append(
+            words = (
                 self.tr(
                     "Widened by a factor of {factor:.2f}, so that 90 % of the left-out points lie in the 90 % band."
-                ).format(factor=sd.factor)
+                )
+                if sd.factor >= 1
+                else self.tr(
+                    "Narrowed by a factor of {factor:.2f}: fewer than 10 % of the left-out points lay outside the "
+                    "90 % band."
+                )
             )
+            lines.append(words.format(factor=sd.factor))
         for left in offdata.left_out:
             words = self.tr(
-                "{name}: {inside:.0%} of the left-out points lie in the 90 % band ({raw:.0%} before widening)."
+                "{name}: {inside:.0%} of the left-out points lie in the 90 % band ({raw:.0%} before calibration)."
             )
             lines.append(words.format(name=self._scheme(left.scheme), inside=left.inside, raw=left.inside_raw))
         self.figures.setText("\n".join(lines) or self.tr("No figure could be found; the notes say why."))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from geofit.chart import Chart
 from geofit.frame import Frame, map_frame
@@ -19,6 +20,9 @@ from geofit.site import Site
 from geofit.surface import HorizonSurface
 
 __all__ = ["PlanPanel"]
+
+#: Width of words and tools beside the plan, and the most that Qt gives a widget, pixels.
+SIDE, MOST = 220, 16_777_215
 
 
 class PlanPanel(QWidget):
@@ -57,13 +61,18 @@ class PlanPanel(QWidget):
         self.reason = QLabel()
         self.reason.setWordWrap(True)
         self.reason.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        content = QWidget()
-        column = QVBoxLayout(content)
-        column.setContentsMargins(8, 8, 8, 8)
+        content, side = QWidget(), QWidget()
+        column = QVBoxLayout(side)
+        column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(6)
         column.addLayout(tools)
-        column.addWidget(self.view, 1)
-        column.addWidget(self.reason)
+        column.addWidget(self.reason, 1, Qt.AlignmentFlag.AlignTop)
+        self._parts = QBoxLayout(QBoxLayout.Direction.TopToBottom, content)
+        self._parts.setContentsMargins(8, 8, 8, 8)
+        self._parts.setSpacing(6)
+        self._parts.addWidget(side)
+        self._parts.addWidget(self.view, 1)
+        self._side = side
         self.pages = Placeholder(content)
         self.setLayout(self.pages)
         for word in ("auto", "all", "none"):
@@ -123,6 +132,14 @@ class PlanPanel(QWidget):
             self._why = f"{self._why}\n{more}"
         self._settle()
         self.pages.reveal()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Put words and tools beside the plan where it is wide and low."""
+        super().resizeEvent(event)
+        wide = self.width() > 1.6 * self.height()
+        self._parts.setDirection(QBoxLayout.Direction.LeftToRight if wide else QBoxLayout.Direction.TopToBottom)
+        self._side.setMinimumWidth(SIDE if wide else 0)
+        self._side.setMaximumWidth(SIDE if wide else MOST)
 
     def undo_drag(self) -> None:
         """Take back the last drag."""

@@ -72,7 +72,7 @@ class PlanView(QWidget):
         self.drawing = False
         self.blank: CoreBox | None = None
         self._centre, self._scale = np.zeros(2), 1.0
-        self._fitted = False
+        self._fitted = self._moved = False
         self._layer: QPixmap | None = None
         self._grip: int | str | None = None
         self._from = np.zeros(2)
@@ -99,10 +99,10 @@ class PlanView(QWidget):
         self._fitted = bool(len(xy)) and self.width() > 80
         if len(xy):
             low, high = xy.min(axis=0), xy.max(axis=0)
-            room = np.array([max(self.width() - 48, 40), max(self.height() - 76, 40)])
+            room = np.array([max(self.width() - 48, 40), max(self.height() - (24 if self._wide else 76), 40)])
             self._centre = (low + high) / 2
             self._scale = float((room / np.maximum(high - low, 1.0)).min())
-        self._layer = None
+        self._layer, self._moved = None, False
         self.update()
 
     def zoom(self, factor: float, about: QPointF | None = None) -> None:
@@ -112,7 +112,7 @@ class PlanView(QWidget):
         self._scale = float(np.clip(self._scale * factor, 1e-4, 1e4))
         moved = self.to_map(about)
         self._centre = self._centre + place - moved
-        self._layer = None
+        self._layer, self._moved = None, True
         self.update()
 
     def to_map(self, place: QPointF) -> Floats:
@@ -128,8 +128,12 @@ class PlanView(QWidget):
 
     @property
     def _middle(self) -> float:
-        # The scale bar and the legend stand below.
-        return self.height() / 2 - 14
+        # The scale bar and the legend stand below, or beside where there is room.
+        return self.height() / 2 - (0 if self._wide else 14)
+
+    @property
+    def _wide(self) -> bool:
+        return self.width() > 2.5 * self.height()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Paint the kept picture of the data, and the rectangle over it."""
@@ -144,6 +148,7 @@ class PlanView(QWidget):
             painter.setPen(QPen(self.palette().color(QPalette.ColorRole.Highlight), 1))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
+        painter.end()
 
     def _paint_box(self, painter: QPainter, box: CoreBox) -> None:
         colour = readable(CORE, self.palette())
@@ -270,7 +275,7 @@ class PlanView(QWidget):
             self._show_cursor(self._grip_at(event.position()))
         elif self._grip == "plan":
             self._centre = self._centre + self._from - place
-            self._layer = None
+            self._layer, self._moved = None, True
             self.update()
         elif self._start is not None:
             self.box = self._dragged(self._start, place)
@@ -330,9 +335,9 @@ class PlanView(QWidget):
             super().keyPressEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
-        """Fit the first time; later keep the scale."""
+        """Fit until somebody has moved or magnified the plan; then keep the scale."""
         self._layer = None
-        if not self._fitted or not event.oldSize().isValid():
+        if not self._fitted or not self._moved or not event.oldSize().isValid():
             self.fit()
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802

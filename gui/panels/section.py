@@ -9,7 +9,7 @@ from matplotlib.backend_bases import MouseEvent
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QShowEvent
+from PySide6.QtGui import QPaintEvent
 from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
 from geofit.errors import GeofitError
@@ -129,11 +129,12 @@ class SectionPanel(QWidget):
         self.pages.reveal()
         self._cut()
 
-    def showEvent(self, event: QShowEvent) -> None:  # noqa: N802
+    def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Cut what changed while nobody saw it."""
-        super().showEvent(event)
+        super().paintEvent(event)
         if self._due:
-            self._cut()
+            self._due = False
+            QTimer.singleShot(0, self, self._cut)
 
     @property
     def line(self) -> object:
@@ -195,7 +196,8 @@ class SectionPanel(QWidget):
 
     def _cut(self) -> None:
         """Cut beside the window; while a cut is under way only the last wish is kept."""
-        self._due = self._data is not None and not self.isVisible()
+        # A dock behind others counts as visible, but nothing of it is seen.
+        self._due = self._data is not None and self.visibleRegion().isEmpty()
         if self._data is None or self._due:
             return
         if self._task is not None:

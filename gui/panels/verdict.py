@@ -27,6 +27,7 @@ class _Mark(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         paint(painter, QRectF(self.rect()).adjusted(2, 2, -2, -2), self.name)
+        painter.end()
 
 
 class VerdictBadge(QFrame):
@@ -127,3 +128,5 @@ class VerdictBadge(QFrame):
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(colour)
             painter.drawRoundedRect(QRectF(0, 0, 5, self.height()), 2, 2)
+        # Not when Python lets go of it: a traceback would hold it beyond the event.
+        painter.end()

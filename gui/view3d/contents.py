@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.view3d.horizon_items import control_item, points_item, seams_item, shape_item, suggestions_item
 from geofit.gui.view3d.item import Item, Look
 from geofit.gui.view3d.layers import Layer
-from geofit.gui.view3d.shape import BAND, Shape, across, next_below, sd_at, seam_lines, shape_of
+from geofit.gui.view3d.shape import next_below, seam_lines
 from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, holes_item, sections_item
 from geofit.gui.view3d.stage import Stage
 from geofit.offdata import Suggestion, Uncertainty
@@ -35,8 +35,7 @@ class Contents:
         self.points: dict[str, PointSet] = {}
         self.surfaces: dict[str, HorizonSurface] = {}
         self.control: dict[str, list[tuple[str, int, int]]] = {}
-        self._shapes: dict[str, Shape] = {}
-        self._uncertainty: dict[str, Uncertainty | None] = {}
+        self._drawn: dict[str, Drawn] = {}
         self._colours: dict[str, str] = {}
 
     def show_site(self, site: Site) -> None:
@@ -81,24 +80,25 @@ class Contents:
             self._show_points(name)
 
     def show_surface(
-        self, surface: HorizonSurface, uncertainty: Uncertainty | None = None, shape: Shape | None = None
+        self, surface: HorizonSurface, uncertainty: Uncertainty | None = None, drawn: Drawn | None = None
     ) -> None:
-        """Show a surface, or its new fit; ``shape`` if its triangles are made already."""
+        """Show a surface, or its new fit; ``drawn`` if it was made ready already."""
         name, layers = surface.name, self.stage.layers
-        self.surfaces[name], self._uncertainty[name] = surface, uncertainty
-        self._shapes[name] = shape or shape_of(surface)
+        drawn = drawn or drawn_of(surface, uncertainty)
+        self.surfaces[name], self._drawn[name] = surface, drawn
         self.points.setdefault(name, surface.points)
         colour = self.colour(name)
-        choices = ["plain", "elevation", "dip", "thickness"] + ["standard deviation"] * (uncertainty is not None)
+        choices = ["plain", "elevation", "dip", "thickness"] + ["standard deviation"] * (drawn.sd is not None)
         self.stage.show(
             Layer(f"surface:{name}", "surface", name, colour, choices=tuple(choices), isolines=False),
-            lambda layer, look: shape_item(self._shapes[name], self._values(name, layer.colour_by), layer, look),
+            lambda layer, look: shape_item(drawn.shape, self._values(name, layer.colour_by), layer, look),
         )
-        for kind, sign in (("upper", BAND), ("lower", -BAND)):
-            if uncertainty is None:
+        for kind, bound in (("upper", drawn.upper), ("lower", drawn.lower)):
+            if bound is None:
                 layers.remove(f"{kind}:{name}")
             else:
-                self._show_bound(name, kind, sign, uncertainty)
+                layer = Layer(f"{kind}:{name}", kind, name, colour, visible=False, opacity=0.35)
+                self.stage.show(layer, partial(shape_item, bound, None))
         self._show_points(name)
         for key, show in ((f"seams:{name}", self.show_seams), (f"control:{name}", self.show_control)):
             if key in layers:
@@ -107,24 +107,11 @@ class Contents:
             if layer.colour_by == "thickness" and layer.horizon != name:
                 self.stage.rebuild(layer.key)
 
-    def _show_bound(self, name: str, kind: str, sign: float, uncertainty: Uncertainty) -> None:
-        def build(layer: Layer, look: Look) -> Item:
-            shape = self._shapes[name]
-            coarse = shape.coarse or shape
-            surface = self.surfaces[name]
-            way = sign * across(surface, uncertainty)
-            lifted = shape.lifted(sd_at(surface, uncertainty, shape.xyz), way)
-            few = coarse.lifted(sd_at(surface, uncertainty, coarse.xyz), way)
-            return shape_item(replace(lifted, coarse=few), None, layer, look)
-
-        layer = Layer(f"{kind}:{name}", kind, name, self.colour(name), visible=False, opacity=0.35)
-        self.stage.show(layer, build)
-
     def remove_surface(self, name: str) -> None:
         """Take away a surface with all that belongs to it; its points stay if they are of the site."""
         for kind in ("surface", "upper", "lower", "seams", "control", "suggestions"):
             self.stage.layers.remove(f"{kind}:{name}")
-        for known in (self.surfaces, self._shapes, self._uncertainty, self.control):
+        for known in (self.surfaces, self._drawn, self.control):
             known.pop(name, None)
         if self.site is not None and name in self.site.horizons:
             self._show_points(name)
@@ -135,7 +122,7 @@ class Contents:
     def clear(self) -> None:
         """Take everything away."""
         self.site = None
-        for known in (self.points, self.surfaces, self._shapes, self._uncertainty, self.control, self._colours):
+        for known in (self.points, self.surfaces, self._drawn, self.control, self._colours):
             known.clear()
         self.stage.layers.clear()
 
@@ -150,6 +137,18 @@ class Contents:
         layer = Layer(f"seams:{name}", "seams", name, choices=("angle", "gap"), colour_by="angle")
         self.stage.show(layer, lambda a, b: seams_item(runs, seams, a, b))
 
+    def seam_place(self, name: str, index: int) -> tuple[float, float, float] | None:
+        """Return the middle of a seam's longest line inside the study area; None where the scene has no such seam."""
+        surface = self.surfaces.get(name)
+        seams = surface.accuracy.seams if surface is not None and surface.accuracy is not None else ()
+        if surface is None or not 0 <= index < len(seams):
+            return None
+        runs = seam_lines(surface, seams[index : index + 1])[0]
+        if not runs:
+            return None
+        x, y, z = max(runs, key=len)[len(max(runs, key=len)) // 2].tolist()
+        return x, y, z
+
     def show_control(self, name: str) -> None:
         """Show the control points of a surface."""
         if not self.surfaces[name].patches:
@@ -163,11 +162,11 @@ class Contents:
         self.stage.show(Layer(f"control:{name}", "control", name), build)
 
     def show_suggestions(self, name: str, suggestions: tuple[Suggestion, ...]) -> None:
-        """Show where the next holes should stand."""
+        """List where the next holes should stand; they are seen when somebody asks for them."""
         key = f"suggestions:{name}"
         if suggestions:
             top = float(self.everything()[:, 2].max())
-            layer = Layer(key, "suggestions", name, labels=True)
+            layer = Layer(key, "suggestions", name, visible=False, labels=True)
             self.stage.show(layer, lambda a, b: suggestions_item(suggestions, top, a, b))
         else:
             self.stage.layers.remove(key)
@@ -187,7 +186,7 @@ class Contents:
     def everything(self) -> Floats:
         """Return the corners of all that is known, (n, 3) map coordinates; empty if nothing is."""
         found = [np.stack([p.xyz.min(axis=0), p.xyz.max(axis=0)]) for p in self.points.values() if len(p)]
-        found += [shape.xyz for shape in self._shapes.values()]
+        found += [drawn.shape.xyz for drawn in self._drawn.values()]
         if self.site is not None:
             found += [hole.xyz for hole in self.site.holes]
             if (ground := self.site.ground) is not None:
@@ -216,16 +215,14 @@ class Contents:
 
     def _values(self, name: str, by: str) -> tuple[Floats, Floats] | None:
         """Return what a surface is coloured by, at the vertices of its fine and coarse triangles."""
-        shape = self._shapes[name]
-        fine, coarse = shape, shape.coarse or shape
+        fine = self._drawn[name].shape
+        coarse = fine.coarse or fine
         if by == "elevation":
             return fine.xyz[:, 2], coarse.xyz[:, 2]
         if by == "dip":
             return fine.dip, coarse.dip
-        uncertainty = self._uncertainty[name]
-        if by == "standard deviation" and uncertainty is not None:
-            surface = self.surfaces[name]
-            return sd_at(surface, uncertainty, fine.xyz), sd_at(surface, uncertainty, coarse.xyz)
+        if by == "standard deviation":
+            return self._drawn[name].sd
         if by == "thickness":
             below = next_below(self.surfaces[name], coarse, list(self.surfaces.values()))
             if below is not None:

@@ -24,8 +24,6 @@ Ints = NDArray[np.int64]
 #: Chordal tolerance of the still picture as a share of the surface's width; triangles of the moving one, at most
 #: about: software draws some 20,000 in the time of a frame.
 FINE, FEW = 1 / 8_000, 1_000
-#: A 90 % band reaches so many standard deviations to either side.
-BAND = 1.6449
 #: Vertices at which two horizons are compared to find the one below.
 PROBES = 200
 #: The one below lies under at least this share of them: a short fault is not meant.

@@ -18,6 +18,7 @@ from geofit.gui.view3d.axes import floor_lines, marks, nice
 from geofit.gui.view3d.camera import Eye, framed
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.contents import Contents
+from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.view3d.grips import Grip, Grips
 from geofit.gui.view3d.item import Look
 from geofit.gui.view3d.layers import Layers
@@ -25,7 +26,6 @@ from geofit.gui.view3d.opengl import require_opengl
 from geofit.gui.view3d.overlay import Content, merged
 from geofit.gui.view3d.pointer import Pointer
 from geofit.gui.view3d.projector import Projector
-from geofit.gui.view3d.shape import Shape
 from geofit.gui.view3d.shoot import shoot
 from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, SectionPlane
@@ -113,10 +113,10 @@ class SceneView(QWidget):
         self._placed()
 
     def show_surface(
-        self, surface: HorizonSurface, uncertainty: Uncertainty | None = None, shape: Shape | None = None
+        self, surface: HorizonSurface, uncertainty: Uncertainty | None = None, drawn: Drawn | None = None
     ) -> None:
-        """Show a surface or its new fit; ``shape`` (:func:`shape_of`, in a worker) spares the window 0.3 s."""
-        self.contents.show_surface(surface, uncertainty, shape)
+        """Show a surface or its new fit; ``drawn`` (:func:`drawn_of`, in a worker) spares the window 0.3 s."""
+        self.contents.show_surface(surface, uncertainty, drawn)
         self._placed()
         self.pointer.renew()
 

@@ -33,13 +33,14 @@ from geofit.gui.wizard.memory import Memory
 from geofit.gui.wizard.result_page import ResultPage
 from geofit.gui.wizard.table_page import TablePage
 from geofit.gui.wizard.words import kind_name
+from geofit.gui.words import spoken
 from geofit.gui.worker import Task, run
 from geofit.importing import Import, import_files
 from geofit.io.mapping import ColumnMapping
 from geofit.io.source import Source
 from geofit.progress import Progress
 
-__all__ = ["ImportWizard"]
+__all__ = ["ImportWizard", "memory_file"]
 
 
 class ImportWizard(QDialog):
@@ -53,7 +54,7 @@ class ImportWizard(QDialog):
         self.setWindowTitle(self.tr("Import"))
         self.setAcceptDrops(True)
         self.site_file = free_name(folder)
-        self._memory = Memory(_memory_file())
+        self._memory = Memory(memory_file())
         self._drafts: list[Draft] = []
         self._found: Import | None = None
         self._task: Task | None = None
@@ -269,7 +270,9 @@ class ImportWizard(QDialog):
         self._refresh(keep=True)
 
     def _failed(self, error: Exception) -> None:
-        self.message.setText(str(error) if isinstance(error, GeofitError) else f"{type(error).__name__}: {error}")
+        self.message.setText(
+            spoken(str(error)) if isinstance(error, GeofitError) else f"{type(error).__name__}: {error}"
+        )
 
     def _refresh(self, *, keep: bool = False) -> None:
         """Enable what can be done, and say what is still needed."""
@@ -299,6 +302,7 @@ def _import(
     return import_files(files, site_file, mappings=mappings, crs=crs, progress=progress)
 
 
-def _memory_file() -> Path:
+def memory_file() -> Path:
+    """Return where the mappings of former imports are kept."""
     folder = QStandardPaths.writableLocation(QStandardPaths.StandardLocation.AppDataLocation)
     return Path(folder) / "mappings.json"

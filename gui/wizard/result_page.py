@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QCheckBox, QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QPushButton,
+    QSplitter,
+    QVBoxLayout,
+    QWidget,
+)
 
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
@@ -13,6 +22,8 @@ from geofit.importing import Import
 __all__ = ["ResultPage"]
 
 _ORDER = {"error": 0, "warning": 1, "note": 2}
+#: Widest column of reasons: what to do about them must be seen beside it.
+_REASON = 330
 
 
 class ResultPage(QWidget):
@@ -89,6 +100,10 @@ class ResultPage(QWidget):
                 Column(self.tr("What to do"), np.array([spoken(one.remedy) for one in issues], str)),
             )
         )
+        header = self.issues.horizontalHeader()
+        reason, remedy = header.count() - 2, header.count() - 1
+        header.resizeSection(reason, min(header.sectionSize(reason), _REASON))
+        header.setSectionResizeMode(remedy, QHeaderView.ResizeMode.Stretch)
         quiet = int((self._severity == _ORDER["note"]).sum())
         self.notes.setText(self.tr("Show &notes ({count} guesses that were made)").format(count=quiet))
         self._filter()

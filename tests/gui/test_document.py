@@ -15,9 +15,11 @@ from geofit.gui.document import shelf as shelf_module
 from geofit.gui.document.commands import (
     COMMANDS,
     AdjustControlPoint,
+    ChangeWeight,
     ExcludeRow,
     IncludeRow,
     PullToPoint,
+    PushApart,
     RenameSite,
     SetCore,
     SetOrder,
@@ -27,7 +29,7 @@ from geofit.gui.document.commands import (
 )
 from geofit.gui.document.document import Document
 from geofit.gui.document.making import make
-from geofit.gui.document.recipe import DocumentError, Move, Pull, Recipe, Row, fingerprint
+from geofit.gui.document.recipe import Apart, DocumentError, Move, Pull, Recipe, Row, Weigh, fingerprint
 from geofit.gui.document.shelf import Shelf
 from geofit.gui.document.signal import Signal
 from geofit.gui.document.state import State
@@ -57,11 +59,21 @@ rows = st.builds(Row, st.text(max_size=5), st.integers(0, 99), st.integers(0, 3)
 polygon = st.lists(st.tuples(numbers, numbers), min_size=3, max_size=5).map(tuple)
 cores = st.sampled_from(["auto", "all", "none"]) | polygon
 settings_ = st.builds(FitSettings, epsilon=st.floats(1e-6, 1e3), core=cores)
-edits = st.builds(Move, st.text(max_size=4), st.integers(), st.integers(), numbers) | st.builds(
-    Pull, st.integers(), numbers
+edits = (
+    st.builds(Move, st.text(max_size=4), st.integers(), st.integers(), numbers)
+    | st.builds(Pull, st.integers(), numbers)
+    | st.builds(Weigh, st.text(max_size=4), st.integers(), st.integers(), numbers)
+)
+stacked = st.builds(
+    Apart, st.just(("up", "low")), numbers, st.just((Recipe("up", FitSettings(), "x", (), (Pull(1, 0.5),)),))
 )
 recipes = st.builds(
-    Recipe, st.just("low"), settings_, st.text(max_size=4), st.lists(rows).map(tuple), st.lists(edits).map(tuple)
+    Recipe,
+    st.just("low"),
+    settings_,
+    st.text(max_size=4),
+    st.lists(rows).map(tuple),
+    st.lists(edits | stacked).map(tuple),
 )
 commands = st.one_of(
     st.builds(SetSettings, st.just("low"), settings_),
@@ -70,7 +82,9 @@ commands = st.one_of(
     st.builds(IncludeRow, st.just("low"), rows),
     st.builds(SetSurface, recipes),
     st.builds(AdjustControlPoint, st.just("low"), st.text(max_size=4), st.integers(), st.integers(), numbers),
+    st.builds(ChangeWeight, st.just("low"), st.text(max_size=4), st.integers(), st.integers(), st.floats(0.01, 100)),
     st.builds(PullToPoint, st.just("low"), st.integers(), numbers),
+    st.builds(PushApart, st.just(("low",)), st.just(("up", "low")), st.floats(0, 10)),
     st.builds(SetOrder, st.permutations(["up", "low"]).map(tuple)),
     st.builds(RenameSite, st.text(min_size=1)),
 )
@@ -113,6 +127,7 @@ def test_every_command_is_told_in_words_that_can_be_translated():
     samples = [
         SetSettings("low", FitSettings()), SetCore("low", "all"), ExcludeRow("low", Row("a", 1)),
         IncludeRow("low", Row("a", 1)), SetSurface(recipe), AdjustControlPoint("low", "core", 1, 2, 0.5),
+        ChangeWeight("low", "core", 1, 2, 0.5), PushApart(("low",), ("up", "low"), 0.5),
         PullToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
     ]  # fmt: skip
     assert {type(command) for command in samples} == set(COMMANDS.values())

@@ -17,7 +17,8 @@ def test_lines_break_where_the_width_ends(qtbot):
         flow.addWidget(part)
     box.resize(600, 80)
     box.show()
-    assert len({part.geometry().center().y() for part in parts}) == 1
+    middles = [part.geometry().center().y() for part in parts]
+    assert max(middles) - min(middles) <= 1  # a pixel, where heights are even and odd
     assert parts[-1].geometry().right() == 599
     assert flow.heightForWidth(150) > flow.heightForWidth(600)
     box.resize(150, 200)

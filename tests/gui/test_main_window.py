@@ -192,8 +192,8 @@ def test_rows_not_used_are_listed(qtbot):
     qtbot.addWidget(dialog)
     model = dialog.table.model()
     assert dialog.balance.text() == "10 rows read = 9 used + 1 listed here."
-    row = [model.index(0, column).data() for column in range(6)]
-    assert row == ["not used", "b.csv", "9", "z", "abc", "This is no number Correct it."]
+    row = [model.index(0, column).data() for column in range(7)]
+    assert row == ["not used", "b.csv", "9", "z", "abc", "This is no number", "Correct it."]
 
 
 def test_shortcuts_are_listed_by_menu(app):

@@ -146,7 +146,7 @@ def test_a_hidden_panel_cuts_when_it_is_shown(panel, qtbot):
     panel.show_section(sample_site(), {WITH_PERIPHERY: fitted()}, LINE, 80.0)
     assert panel._task is None
     panel.show()
-    assert panel._task is not None
+    qtbot.waitUntil(lambda: panel._task is not None)
     wait(panel, qtbot)
     assert WITH_PERIPHERY in lines(panel)
 

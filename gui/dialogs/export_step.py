@@ -1,0 +1,306 @@
+"""Writes horizons as STEP, and shows what an independent reader found in the file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import partial
+from glob import escape
+from pathlib import Path
+
+import numpy as np
+from PySide6.QtCore import QSettings, Qt, QUrl
+from PySide6.QtGui import QCloseEvent, QDesktopServices
+from PySide6.QtWidgets import (
+    QButtonGroup,
+    QComboBox,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QHeaderView,
+    QLabel,
+    QLineEdit,
+    QListWidget,
+    QListWidgetItem,
+    QProgressBar,
+    QPushButton,
+    QRadioButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from geofit.accuracy import Check
+from geofit.errors import GeofitError
+from geofit.files import file_stems
+from geofit.gui.document.step_files import StepFile, step_paths, write_step_files
+from geofit.gui.panels.marks import icon, verdict_mark
+from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.words import spoken
+from geofit.gui.worker import Task, run_apart
+from geofit.report import digits
+from geofit.surface import HorizonSurface
+
+__all__ = ["ExportDialog"]
+
+_FOLDER = "folder"
+
+
+class ExportDialog(QDialog):
+    """Asks which horizons go where, writes them in a process of its own, and lists the checks of the read-back.
+
+    ``files`` holds what was written last.
+    """
+
+    def __init__(self, surfaces: Mapping[str, HorizonSurface], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(self.tr("Export STEP"))
+        # The patches are all that a file holds; what stands behind them need not travel to the other process.
+        self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
+        self._task: Task | None = None
+        self.files: list[StepFile] = []
+        self.horizons = self._list()
+        self.target = QLineEdit(str(Path(str(QSettings().value(_FOLDER, ""))) / self._proposed()))
+        self.unit = QComboBox()
+        self.unit.addItem(self.tr("metres"), "m")
+        self.unit.addItem(self.tr("millimetres"), "mm")
+        self.unit.setToolTip(
+            self.tr("The file says which unit it has, and CAD systems convert. The surfaces are the same.")
+        )
+        self.together, self.apart = QRadioButton(self.tr("&One file")), QRadioButton(self.tr("One file a &horizon"))
+        self.message, self.sign = QLabel(), QLabel()
+        self.message.setWordWrap(True)
+        self.message.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.table = DataTable()
+        self.table.setAccessibleName(self.tr("What the reader found in the file"))
+        self.progress = QProgressBar()
+        self.progress.setRange(0, 0)
+        self.progress.setTextVisible(False)
+        self.write = QPushButton(self.tr("&Write"))
+        self.write.setDefault(True)
+        self.stop = QPushButton(self.tr("&Stop"))
+        self.folder = QPushButton(self.tr("Open &folder"))
+        self.close_box = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
+        self._lay_out()
+        self.horizons.itemChanged.connect(self._refresh)
+        self.target.textChanged.connect(self._refresh)
+        self.apart.toggled.connect(self._refresh)
+        self.write.clicked.connect(self._write)
+        self.stop.clicked.connect(self._cancel)
+        self.folder.clicked.connect(self._open_folder)
+        self.close_box.rejected.connect(self.reject)
+        self._say(self.tr("After writing, OpenCASCADE reads the file back; what it finds is listed here."), "none")
+        self._refresh()
+
+    def chosen(self) -> list[str]:
+        """Return the horizons that will be written."""
+        items = (self.horizons.item(row) for row in range(self.horizons.count()))
+        return [item.data(Qt.ItemDataRole.UserRole) for item in items if item.checkState() == Qt.CheckState.Checked]
+
+    def reject(self) -> None:
+        """Stop what runs, and close."""
+        self._cancel()
+        super().reject()
+
+    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
+        """Stop what runs."""
+        self._cancel()
+        super().closeEvent(event)
+
+    def _list(self) -> QListWidget:
+        made = QListWidget()
+        made.setAccessibleName(self.tr("Horizons to write"))
+        for name, surface in self._surfaces.items():
+            accuracy = surface.accuracy
+            text = name if accuracy is None else f"{name}   σ {digits.equals(accuracy.sigma)}"
+            item = QListWidgetItem(verdict_mark(None if accuracy is None else accuracy.passed), text)
+            item.setData(Qt.ItemDataRole.UserRole, name)
+            item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
+            item.setCheckState(Qt.CheckState.Checked)
+            made.addItem(item)
+        made.setFixedHeight(min(max(made.count(), 3), 6) * (made.sizeHintForRow(0) + 2) + 8)
+        return made
+
+    def _proposed(self) -> str:
+        names = list(self._surfaces)
+        return "horizons.step" if len(names) > 1 else f"{file_stems(names)[names[0]]}.step"
+
+    def _lay_out(self) -> None:
+        browse = QPushButton(self.tr("&Browse…"))
+        browse.clicked.connect(self._browse)
+        place = QHBoxLayout()
+        place.addWidget(self.target, 1)
+        place.addWidget(browse)
+        group, choice = QButtonGroup(self), QHBoxLayout()
+        for button in (self.together, self.apart):
+            group.addButton(button)
+            choice.addWidget(button)
+        choice.addStretch(1)
+        self.together.setChecked(True)
+        unit = QHBoxLayout()
+        unit.addWidget(self.unit)
+        unit.addWidget(QLabel(self.tr("in map coordinates, ISO 10303-242 (AP242)")), 1)
+        form = QFormLayout()
+        form.addRow(self.tr("Hori&zons"), self.horizons)
+        # A label before a layout has no buddy of its own.
+        for text, field, row in ((self.tr("F&ile"), self.target, place), (self.tr("&Unit"), self.unit, unit)):
+            label = QLabel(text)
+            label.setBuddy(field)
+            form.addRow(label, row)
+        form.insertRow(2, "", choice)
+        said = QHBoxLayout()
+        said.addWidget(self.sign, 0, Qt.AlignmentFlag.AlignTop)
+        said.addWidget(self.message, 1)
+        foot = QHBoxLayout()
+        foot.addWidget(self.progress, 1)
+        foot.addStretch(1)
+        foot.addWidget(self.folder)
+        foot.addWidget(self.stop)
+        foot.addWidget(self.write)
+        foot.addWidget(self.close_box)
+        self._fields = (self.horizons, self.target, browse, self.together, self.apart, self.unit)
+        layout = QVBoxLayout(self)
+        layout.addLayout(form)
+        layout.addLayout(said)
+        layout.addWidget(self.table, 1)
+        layout.addLayout(foot)
+        self.resize(960, 640)
+
+    def _browse(self) -> None:
+        path, _ = QFileDialog.getSaveFileName(
+            self, self.windowTitle(), self.target.text(), self.tr("STEP files (*.step *.stp)")
+        )
+        if path:
+            self.target.setText(path)
+
+    def _path(self) -> Path:
+        path = Path(self.target.text().strip()).expanduser()
+        return path if path.suffix.lower() in (".step", ".stp") else path.with_name(path.name + ".step")
+
+    def _write(self) -> None:
+        names = self.chosen()
+        surfaces = {name: self._surfaces[name] for name in names}
+        self.files = []
+        self._say(self.tr("Writing, and reading back what was written…"), "none")
+        work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked())
+        self._task = run_apart(
+            self,
+            write_step_files,
+            *work,
+            title=self.windowTitle(),
+            on_done=self._written,
+            on_failed=self._failed,
+            on_cancelled=partial(self._stopped, list(step_paths(names, work[1], separate=work[3]))),
+        )
+        self._task.ended.connect(self._rested)
+        self._refresh()
+
+    def _written(self, files: list[StepFile]) -> None:
+        self.files = files
+        QSettings().setValue(_FOLDER, str(files[0].path.parent))
+        found = {name: back for file in files for name, back in file.read_back.items()}
+        size = digits.size(sum(file.size for file in files))
+        names = ", ".join(file.path.name for file in files)
+        if all(back.passed for back in found.values()):
+            self._say(self.tr("Wrote {names} ({size}). Every check of the file holds.").format(names=names, size=size),
+                      "passed")  # fmt: skip
+        else:
+            bad = ", ".join(name for name, back in found.items() if not back.passed)
+            text = self.tr(
+                "Wrote {names} ({size}), but the file does not hold what it should for: {bad}. Look at the failed "
+                "checks below; fit these horizons with a smaller tolerance or another core before you pass the file on."
+            )
+            self._say(text.format(names=names, size=size, bad=bad), "failed")
+        self._show_checks([(name, check) for name, back in found.items() for check in self._checks(name, files)])
+
+    def _checks(self, name: str, files: list[StepFile]) -> list[Check]:
+        back = next(file.read_back[name] for file in files if name in file.read_back)
+        sigma = self._surfaces[name].accuracy
+        first = Check(
+            "σ", None if sigma is None else back.sigma < sigma.epsilon, back.sigma, sigma.epsilon if sigma else np.nan,
+            "m", self.tr("{faces} faces; σ of all points from the surface in the file").format(faces=back.faces),
+        )  # fmt: skip
+        return [first, *back.checks]
+
+    def _show_checks(self, rows: list[tuple[str, Check]]) -> None:
+        results = {True: self.tr("passed"), False: self.tr("failed"), None: self.tr("not applicable")}
+        passed = [check.passed for _, check in rows]
+
+        def texts(values: list[str]) -> np.ndarray[tuple[int], np.dtype[np.str_]]:
+            return np.array(values, dtype=np.str_)
+
+        self.table.show_columns(
+            (
+                Column(self.tr("Horizon"), texts([name for name, _ in rows])),
+                Column(
+                    self.tr("Check of the file"),
+                    texts([spoken(check.name) for _, check in rows]),
+                    icons=lambda row: verdict_mark(passed[row]),
+                ),
+                Column(
+                    self.tr("Result"),
+                    texts([results[value] for value in passed]),
+                    order=[{False: 0, True: 1, None: 2}[value] for value in passed],
+                ),
+                Column(
+                    self.tr("Found"), texts([digits.measured(check.value, spoken(check.unit)) for _, check in rows])
+                ),
+                Column(
+                    self.tr("Limit"), texts([digits.measured(check.limit, spoken(check.unit)) for _, check in rows])
+                ),
+                Column(self.tr("In words"), texts([spoken(check.text) for _, check in rows])),
+            )
+        )
+        self.table.resizeColumnsToContents()
+        header = self.table.horizontalHeader()
+        header.setSectionResizeMode(header.count() - 1, QHeaderView.ResizeMode.Stretch)
+
+    def _failed(self, error: Exception) -> None:
+        if isinstance(error, GeofitError):
+            text = spoken(str(error))
+        elif isinstance(error, OSError):
+            text = self.tr("{reason}. Check that the folder is there, can be written, and has room.").format(
+                reason=error
+            )
+        else:
+            text = self.tr("This is a mistake in geofit, not in your data; please report it: {error}").format(
+                error=f"{type(error).__name__}: {error}"
+            )
+        self._say(text, "failed")
+
+    def _stopped(self, files: list[Path]) -> None:
+        """Sweep away what the ended process left half written."""
+        for file in files:
+            for rest in file.parent.glob(f".{escape(file.stem)}-????????.step"):
+                rest.unlink(missing_ok=True)
+        self._say(self.tr("Stopped. A file that was not finished is not there."), "none")
+
+    def _rested(self) -> None:
+        self._task = None
+        self._refresh()
+
+    def _cancel(self) -> None:
+        if self._task is not None:
+            self._task.cancel()
+
+    def _open_folder(self) -> None:
+        QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.files[0].path.parent)))
+
+    def _say(self, text: str, mark: str) -> None:
+        self.message.setText(text)
+        self.sign.setPixmap(icon(mark).pixmap(16))
+
+    def _refresh(self) -> None:
+        """Enable what can be done, and say which files there will be."""
+        running, names = self._task is not None, self.chosen()
+        for field in self._fields:
+            field.setEnabled(not running)
+        self.apart.setEnabled(not running and len(names) > 1)
+        self.write.setVisible(not running)
+        self.write.setEnabled(bool(names) and bool(self.target.text().strip()))
+        self.stop.setVisible(running)
+        self.progress.setVisible(running)
+        self.folder.setVisible(bool(self.files) and not running)
+        self.table.setVisible(bool(self.files) and not running)
+        files = [path.name for path in step_paths(names, self._path(), separate=self.apart.isChecked())]
+        self.target.setToolTip("\n".join(files))

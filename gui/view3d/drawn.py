@@ -1,0 +1,63 @@
+"""Everything that a worker can make ready before a surface is drawn: triangles, standard deviations, 90 % bounds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of
+from geofit.offdata import Uncertainty
+from geofit.progress import Progress, tell
+from geofit.spread import band
+from geofit.spread import sd_at as sd_of_fit
+from geofit.surface import HorizonSurface
+
+__all__ = ["BAND", "Drawn", "drawn_of"]
+
+Floats = NDArray[np.float64]
+
+#: A 90 % band reaches so many standard deviations to either side.
+BAND = 1.6449
+
+
+@dataclass(frozen=True, eq=False)
+class Drawn:
+    """A surface as triangles; ``sd`` at the vertices of the fine and the coarse ones, metres, and the 90 % bounds."""
+
+    shape: Shape
+    sd: tuple[Floats, Floats] | None = None
+    upper: Shape | None = None
+    lower: Shape | None = None
+
+
+def drawn_of(
+    surface: HorizonSurface, uncertainty: Uncertainty | None = None, *, progress: Progress | None = None
+) -> Drawn:
+    """Return a surface made ready for drawing.
+
+    The bounds of a surface that was fitted here are its own net moved up and down; of one that was read from a file
+    its triangles are moved, by what the grid of standard deviations says.
+    """
+    tell(progress, "triangles", 0.0)
+    shape = shape_of(surface)
+    if uncertainty is None:
+        return Drawn(shape)
+    coarse = shape.coarse or shape
+    if surface.model is None:
+        fine, few = (sd_at(surface, uncertainty, one.xyz) for one in (shape, coarse))
+        upper, lower = (_lifted(surface, uncertainty, shape, fine, few, sign) for sign in (BAND, -BAND))
+    else:
+        fine, few = (sd_of_fit(surface, uncertainty, one.xyz) for one in (shape, coarse))
+        upper, lower = (shape_of(bound) for bound in band(surface, uncertainty))
+    return Drawn(shape, (fine, few), upper, lower)
+
+
+def _lifted(
+    surface: HorizonSurface, uncertainty: Uncertainty, shape: Shape, fine: Floats, few: Floats, sign: float
+) -> Shape:
+    way = sign * across(surface, uncertainty)
+    moved = shape.lifted(fine, way)
+    coarse = (shape.coarse or shape).lifted(few, way)
+    return Shape(moved.xyz, moved.triangles, moved.normals, coarse)

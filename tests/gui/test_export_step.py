@@ -1,0 +1,110 @@
+"""The STEP dialog: what is chosen is written, read back and judged; a stop leaves nothing half done."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from panel_samples import FAULT, WITH_PERIPHERY, fitted
+from PySide6.QtCore import QSettings, Qt
+
+from geofit.accuracy import Check
+from geofit.gui.dialogs.export_step import ExportDialog
+from geofit.gui.document.step_files import step_paths
+from geofit.io.step import read_step
+
+
+def opened(qtbot, *names):
+    dialog = ExportDialog({name: fitted(name) for name in names})
+    qtbot.addWidget(dialog)
+    dialog.show()
+    return dialog
+
+
+def rested(qtbot, dialog):
+    qtbot.waitUntil(lambda: dialog._task is None, timeout=120_000)
+
+
+def press(qtbot, dialog, button):
+    qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+    rested(qtbot, dialog)
+
+
+def column(dialog, title):
+    found = next(one for one in dialog.table.rows.columns if one.title == title)
+    return [found.text(row) for row in range(dialog.table.rows.total)]
+
+
+@pytest.mark.usefixtures("own_settings")
+def test_two_horizons_in_one_file_of_millimetres_are_read_back_and_judged(qtbot, tmp_path):
+    dialog = opened(qtbot, WITH_PERIPHERY, FAULT)
+    assert not dialog.table.isVisible()
+    dialog.target.setText(str(tmp_path / "dam"))
+    dialog.unit.setCurrentIndex(dialog.unit.findData("mm"))
+    press(qtbot, dialog, dialog.write)
+    (file,) = dialog.files
+    assert file.path == tmp_path / "dam.step"
+    assert "SI_UNIT(.MILLI.,.METRE.)" in file.path.read_text("ascii").replace("\n", "")
+    assert "Every check of the file holds" in dialog.message.text()
+    assert dialog.table.isVisible()
+    assert set(column(dialog, "Horizon")) == {WITH_PERIPHERY, FAULT}
+    assert "failed" not in column(dialog, "Result")
+    names = column(dialog, "Check of the file")
+    for wanted in ("σ", "core", "seam gap", "seam angle", "validity", "free edges", "tolerance", "self-intersection"):
+        assert any(wanted in name for name in names), wanted
+    assert {*read_step(file.path)} == {WITH_PERIPHERY, FAULT}
+    assert QSettings().value("folder") == str(tmp_path)
+
+
+def test_each_horizon_in_a_file_of_its_own_and_only_the_chosen_ones(qtbot, tmp_path):
+    dialog = opened(qtbot, WITH_PERIPHERY, FAULT)
+    dialog.target.setText(str(tmp_path / "dam.step"))
+    dialog.apart.setChecked(True)
+    assert "dam_T3-T2.step" in dialog.target.toolTip()
+    dialog.horizons.item(0).setCheckState(Qt.CheckState.Unchecked)
+    assert not dialog.apart.isEnabled(), "one horizon is one file"
+    press(qtbot, dialog, dialog.write)
+    assert [file.path.name for file in dialog.files] == ["dam.step"]
+    assert list(dialog.files[0].read_back) == [FAULT]
+    dialog.horizons.item(1).setCheckState(Qt.CheckState.Unchecked)
+    assert not dialog.write.isEnabled()
+
+
+def test_a_folder_that_is_not_there_is_told_with_what_to_do(qtbot, tmp_path):
+    dialog = opened(qtbot, FAULT)
+    dialog.target.setText(str(tmp_path / "no" / "dam.step"))
+    press(qtbot, dialog, dialog.write)
+    assert "Make the folder, or name another" in dialog.message.text()
+    assert dialog.write.isEnabled()
+    assert not dialog.files
+    assert not dialog.table.isVisible()
+
+
+def test_stop_ends_the_process_and_leaves_no_file(qtbot, tmp_path):
+    dialog = opened(qtbot, WITH_PERIPHERY, FAULT)
+    dialog.target.setText(str(tmp_path / "dam.step"))
+    qtbot.mouseClick(dialog.write, Qt.MouseButton.LeftButton)
+    assert not dialog.target.isEnabled()
+    assert dialog.stop.isVisible()
+    (tmp_path / ".dam-k3y8x1qz.step").write_text("what a process that is ended leaves behind")
+    press(qtbot, dialog, dialog.stop)
+    assert "Stopped" in dialog.message.text()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_check_that_fails_is_named_above_the_table(qtbot, tmp_path):
+    dialog = opened(qtbot, FAULT)
+    dialog.target.setText(str(tmp_path / "dam.step"))
+    press(qtbot, dialog, dialog.write)
+    (file,) = dialog.files
+    bad = Check("read-back seam gap", False, 0.02, 1e-6, "m", "a gap")
+    back = replace(file.read_back[FAULT], checks=(bad,))
+    dialog._written([replace(file, read_back={FAULT: back})])
+    assert f"does not hold what it should for: {FAULT}" in dialog.message.text()
+    assert column(dialog, "Result").count("failed") == 1
+
+
+def test_names_of_files_of_their_own_are_sound_and_different():
+    plan = step_paths(["T1/T2", "t1_t2"], Path("dam.stp"), separate=True)
+    assert [path.name for path in plan] == ["dam_T1_T2.stp", "dam_t1_t2-2.stp"]

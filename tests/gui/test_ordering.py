@@ -1,0 +1,99 @@
+"""The order of the horizons in the window: changed, checked without faults, and mended as one step."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QDialog
+
+from geofit.errors import FitError
+from geofit.gui.dialogs.order import OrderDialog
+from geofit.gui.document.making import make
+from geofit.gui.document.ordering import over_map
+from geofit.order import order_of
+from geofit.points import PointSet
+from geofit.settings import FitSettings
+from geofit.site import Site
+
+
+def scattered(seed, lift):
+    """A plane seen at scattered places with errors of decimetres."""
+    rng = np.random.default_rng(seed)
+    plan = rng.uniform(0, 400, (60, 2))
+    z = 0.05 * plan[:, 0] + lift + rng.normal(0, 0.4, 60)
+    return PointSet(np.column_stack([plan, z]), file=f"{seed}.csv", row=np.arange(60) + 2)
+
+
+@pytest.fixture
+def crossing(app):
+    """Two horizons a decimetre apart, whose fits cross."""
+    settings = FitSettings(core="none")
+    site = Site("Dam", {"up": scattered(1, 0.1), "low": scattered(2, 0.0)}, {"up": settings, "low": settings})
+    app.desktop.session.begin(site, None)
+    app.window.fitting.fit_all()
+    app.idle()
+    return app
+
+
+def crossed(app):
+    return order_of(app.document.surface("up"), app.document.surface("low")).crossed_volume
+
+
+def test_horizons_are_pushed_apart_and_back_as_one_step_that_can_be_made_again(crossing):
+    document, stack = crossing.document, crossing.window.session.stack
+    before, steps = dict(document.surfaces()), stack.count()
+    assert crossed(crossing) > 0
+    crossing.window.ordering.repair(0.05)
+    crossing.idle()
+    assert crossed(crossing) == 0
+    assert stack.count() == steps + 1
+    assert stack.undoText().startswith("Push apart")
+    name = next(name for name in before if document.surface(name) is not before[name])
+    recipe, moved = document.state.recipes[name], document.surface(name)
+    again = make(recipe, document.points_of(recipe), None, None, document.given_for(recipe))
+    np.testing.assert_allclose(again.patches[0].control, moved.patches[0].control, atol=1e-12)
+    assert not document.stale(name)
+    stack.undo()
+    crossing.idle()
+    assert all(document.surface(name) is surface for name, surface in before.items())
+
+
+def test_the_order_is_changed_by_a_dialog_and_undone(crossing, monkeypatch):
+    def drive(dialog):
+        dialog.list.setCurrentRow(1)
+        dialog.move_chosen(-1)
+        return QDialog.DialogCode.Accepted
+
+    monkeypatch.setattr(OrderDialog, "exec", drive)
+    crossing.trigger("order")
+    assert crossing.document.horizons == ("low", "up")
+    crossing.window.session.stack.undo()
+    assert crossing.document.horizons == ("up", "low")
+
+
+def test_a_weight_is_set_by_hand_or_refused_with_a_reason(crossing, qtbot):
+    document, adjust = crossing.document, crossing.window.panels.adjust
+    document.select("low")
+    crossing.idle()
+    before = document.surface("low")
+    patch = before.patches[0]
+    i, j = (n // 2 for n in patch.control.shape[:2])
+    adjust.choose_control(patch.name, i, j)
+    adjust.weight.value.setValue(3.0)
+    assert adjust.weight.button.isEnabled()
+    adjust.weight.button.click()
+    crossing.idle()
+    after = document.surface("low").patches[0]
+    assert after.weights[i, j] == 3.0
+    assert adjust.weight.value.value() == 3.0
+    assert "Weight 3" in crossing.window.session.stack.undoText()
+    crossing.window.fitting.weigh("low", patch.name, 10_000, 0, 2.0)
+    qtbot.waitUntil(lambda: not crossing.window.activity.busy, timeout=60_000)
+    assert isinstance(crossing.failures.pop(), FitError)
+    assert document.surface("low").patches[0] is after
+
+
+def test_faults_are_left_out_of_the_order():
+    from panel_samples import FAULT, WITH_PERIPHERY, fitted
+
+    assert list(over_map({WITH_PERIPHERY: fitted(), FAULT: fitted(FAULT)})) == [WITH_PERIPHERY]

@@ -1,0 +1,88 @@
+"""The report dialog: the forms and the language that were chosen, from the surfaces as they are."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+from panel_samples import FAULT, fitted, sample_site
+from PySide6.QtCore import QDate, Qt
+from PySide6.QtGui import QDesktopServices
+
+from geofit.gui.dialogs.report import ReportDialog
+from geofit.report.result import HorizonResult
+
+
+@pytest.fixture
+def opened_files(monkeypatch):
+    files = []
+    monkeypatch.setattr(QDesktopServices, "openUrl", lambda url: files.append(url.toLocalFile()))
+    return files
+
+
+def opened(qtbot):
+    site = sample_site()
+    dialog = ReportDialog(site, [HorizonResult(fitted(FAULT), site)])
+    qtbot.addWidget(dialog)
+    dialog.show()
+    return dialog
+
+
+def press(qtbot, dialog, button):
+    qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: dialog._task is None, timeout=180_000)
+
+
+def test_the_report_in_chinese_with_its_date_and_what_was_examined(qtbot, tmp_path, opened_files):
+    dialog = opened(qtbot)
+    written = []
+    dialog.written.connect(written.append)
+    dialog.language.setCurrentIndex(dialog.language.findData("zh"))
+    dialog.forms["pdf"].setChecked(False)
+    dialog.forms["json"].setChecked(True)
+    dialog.date.setDate(QDate(2025, 3, 9))
+    dialog.folder.setText(str(tmp_path / "out"))
+    assert dialog.examine.isChecked(), "it came without a check off the data"
+    press(qtbot, dialog, dialog.write)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["report.html", "report.json"]
+    assert written == [tmp_path / "out" / "report.html"]
+    assert opened_files == [str(written[0])]
+    html = written[0].read_text("utf-8")
+    assert "精度检验报告" in html
+    assert "2025-03-09" in html
+    data = json.loads((tmp_path / "out" / "report.json").read_text("utf-8"))
+    assert data["horizons"][0]["sigma"] == pytest.approx(fitted(FAULT).accuracy.sigma)
+    assert data["horizons"][0]["off_data"] is not None
+    assert dialog.view.isVisible()
+
+
+def test_without_a_form_or_a_folder_nothing_can_be_written(qtbot):
+    dialog = opened(qtbot)
+    for box in dialog.forms.values():
+        box.setChecked(False)
+    assert not dialog.write.isEnabled()
+    dialog.forms["html"].setChecked(True)
+    assert dialog.write.isEnabled()
+    dialog.folder.setText(" ")
+    assert not dialog.write.isEnabled()
+
+
+def test_a_folder_that_cannot_be_made_is_told(qtbot, tmp_path, opened_files):
+    (tmp_path / "file").write_text("")
+    dialog = opened(qtbot)
+    dialog.examine.setChecked(False)
+    dialog.folder.setText(str(tmp_path / "file" / "out"))
+    press(qtbot, dialog, dialog.write)
+    assert "folder cannot be made" in dialog.message.text()
+    assert not opened_files
+    assert not dialog.view.isVisible()
+
+
+def test_stop_writes_nothing(qtbot, tmp_path, opened_files):
+    dialog = opened(qtbot)
+    dialog.folder.setText(str(tmp_path / "out"))
+    qtbot.mouseClick(dialog.write, Qt.MouseButton.LeftButton)
+    press(qtbot, dialog, dialog.stop)
+    assert "Stopped" in dialog.message.text()
+    assert not list(tmp_path.glob("out/report*"))
+    assert not opened_files
