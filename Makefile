@@ -1,4 +1,5 @@
-# make demo | report-demo | test | lint | real | bench | clean. Python 3.11 or newer; everything goes into .venv.
+# make demo | report-demo | test | lint | real | bench | screenshots | package | clean.
+# Python 3.11 or newer; everything goes into .venv.
 SHELL := /bin/sh
 # A name may stand on the path and still not run (version managers leave such shims), so each is tried.
 PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
@@ -8,7 +9,7 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint $(LOCK)
 
-.PHONY: demo report-demo test lint real bench clean python
+.PHONY: demo report-demo test lint real bench screenshots package clean python
 
 demo: .venv/.installed
 	$(BIN)/geofit demo --out demo_out
@@ -33,8 +34,18 @@ real: .venv/.installed-test
 bench: .venv/.installed-test
 	@set -e; for script in benchmarks/fit.py benchmarks/distance.py; do $(BIN)/python $$script; done
 
+screenshots: .venv/.installed-test
+	$(BIN)/python tools/screenshots.py
+
+package: .venv/.installed-test
+	$(INSTALL) 'pyinstaller>=6.10' 'setuptools>=77'
+	rm -rf build/package
+	$(PIP) install --quiet --no-deps --no-build-isolation --target build/package/site .
+	$(BIN)/pyinstaller --noconfirm --log-level WARN --workpath build/package --distpath dist packaging/geofit.spec
+	$(BIN)/python packaging/try_package.py dist/geofit
+
 clean:
-	rm -rf .venv build demo_out report_demo real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
+	rm -rf .venv build dist demo_out report_demo real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
 
 python:
 	@echo $(PYTHON)

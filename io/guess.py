@@ -175,7 +175,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
                 "warning" if guess.reason.startswith("by its values") else "note",
                 table.name,
                 taken_as(guess),
-                said("State columns = {{ {role} = ... }} where this is wrong.", role=role),
+                said("State columns = {entry} where this is wrong.", entry=f"{{ {role} = ... }}"),
                 column=guess.column,
             )
     if schema.name == "picks":
