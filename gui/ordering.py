@@ -55,14 +55,19 @@ class Ordering(QObject):
             self._fitting.push(SetOrder(dialog.order()))
 
     def check(self) -> None:
-        """Compare the surfaces at hand that lie over the map, in the document's order."""
+        """Compare the strata at hand, in the document's order."""
         # What stands behind the patches is not needed there, and is much to send to another process.
-        surfaces = {name: one.with_(model=None) for name, one in over_map(self._document.surfaces()).items()}
+        surfaces = {name: one.with_(model=None) for name, one in self._strata().items()}
         if len(surfaces) < 2:
             self.told.emit(self.tr("Two fitted horizons are needed to check their order."))
             return
         title = self.tr("Check the order")
         self._activity.do(title, all_orders, surfaces, self._document.site.ground, on_done=self._found, apart=True)
+
+    def _strata(self) -> dict[str, HorizonSurface]:
+        """Return the surfaces over the map; where the site states an order, those that it names (weathering cuts)."""
+        stated = self._document.site.order
+        return {n: one for n, one in over_map(self._document.surfaces()).items() if not stated or n in stated}
 
     def ask_repair(self) -> None:
         """Ask how thick the rock between two horizons is at least, and push them apart."""
@@ -77,7 +82,7 @@ class Ordering(QObject):
 
     def repair(self, minimum: float = 0.0) -> None:
         """Push the horizons apart where they cross; exact points stay."""
-        surfaces = over_map(self._document.surfaces())
+        surfaces = self._strata()
         unready = [name for name, surface in surfaces.items() if surface.model is None]
         if len(surfaces) < 2 or unready:
             text = (

@@ -97,3 +97,13 @@ def test_faults_are_left_out_of_the_order():
     from panel_samples import FAULT, WITH_PERIPHERY, fitted
 
     assert list(over_map({WITH_PERIPHERY: fitted(), FAULT: fitted(FAULT)})) == [WITH_PERIPHERY]
+
+
+def test_a_surface_that_cuts_the_strata_is_left_out_where_the_site_states_an_order(app):
+    settings = FitSettings(core="none")
+    points = {"up": scattered(1, 5.0), "cut": scattered(3, 2.5), "low": scattered(2, 0.0)}
+    site = Site("Dam", points, dict.fromkeys(points, settings), order=("up", "low"))
+    app.desktop.session.begin(site, None)
+    app.window.fitting.fit_all()
+    app.idle()
+    assert list(app.window.ordering._strata()) == ["up", "low"]
