@@ -198,6 +198,9 @@ def _read_collars(
             rows.warn(i, "hole", reason)
     attitudes = _collar_stations(rows, name, dip, declination)
     rows.close()
+    for i in np.flatnonzero(~rows.ok).tolist():
+        if name[i] not in first:
+            journal.refused[name[i]] = f"{rows.file}, {rows.line[i]}"
     if not first:
         raise InputError("No row of the collar table can be used", "See the listed rows.", file=source.name) from None
     return {hole: _Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole)) for hole, i in first.items() if rows.ok[i]}

@@ -16,11 +16,15 @@ Severity = Literal["error", "warning", "note"]
 
 @dataclass
 class Journal:
-    """One list for all files of one reading; handed down to every reader, which appends to it."""
+    """One list for all files of one reading; handed down to every reader, which appends to it.
+
+    ``refused`` says of holes whose collar was not used where that row stands.
+    """
 
     issues: list[ImportIssue] = field(default_factory=list)
     counts: list[TableCount] = field(default_factory=list)
     inputs: dict[str, str] = field(default_factory=dict)
+    refused: dict[str, str] = field(default_factory=dict)
 
     def read(self, source: Source) -> bytes:
         """Return the bytes of a file and keep their SHA-256."""

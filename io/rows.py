@@ -118,6 +118,9 @@ class Rows:
             name = names[i]
             if name in lookup:
                 continue
+            if name in self.journal.refused:
+                place = self.journal.refused[name]
+                hints[name] = said("Its own row was not used ({place}): mend that first.", place=place)
             if name not in hints:
                 near = get_close_matches(name, present, 1) if len(hints) < 20 else []
                 hints[name] = (

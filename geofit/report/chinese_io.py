@@ -58,6 +58,7 @@ _GUESSES = {
     "Column '{column}' is taken as {role}, {reason}, confidence {confidence:.2f}": "列“{column}”取作{role}，{reason}，可信度 "
     "{confidence:.2f}",
     "{text}; also possible: {others}": "{text}；亦可能为：{others}",
+    "Its own row was not used ({place}): mend that first.": "其自身所在行未被采用（{place}），请先更正该行。",
     "State columns = {entry} where this is wrong.": "如有误，请注明 columns = {entry}。",
     "State columns = { z = ... } with the elevation of the horizon.": "请以 columns = { z = ... } 注明层面高程所在列。",
     "by its name": "据列名",

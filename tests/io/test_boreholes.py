@@ -152,3 +152,12 @@ def test_tangential_is_asked_for(write):
 def test_stated_units(write, unit, metres):
     holes = read_boreholes(Source(path=write("hole,x,y,z_ft,depth\nA,10,20,100,50\n"), unit=unit))
     np.testing.assert_allclose(holes.holes[0].xyz[-1], np.array([10, 20, 50]) * metres, atol=1e-9)
+
+
+def test_intervals_of_a_refused_collar_point_to_its_row(write):
+    collar = write("hole,x,y,z,depth\nZK1,0,0,100,50\nZK10,50,0,1o3,50\n", "collar.csv")
+    log = write("hole,from,to,code\nZK1,0,10,Q\nZK10,0,12,Q\nZK11,0,9,Q\n", "log.csv")
+    found = read_boreholes(collar, None, [log])
+    remedies = {issue.value: issue.remedy for issue in found.issues if issue.file == "log.csv"}
+    assert remedies["ZK10"] == "Its own row was not used (collar.csv, 3): mend that first."
+    assert remedies["ZK11"].startswith("Did you mean")
