@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import re
+import signal
 import sys
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import wraps
@@ -111,10 +113,43 @@ def say(text: str) -> None:
 
 
 @contextmanager
-def listening() -> Iterator[Progress | None]:
-    """Show stages and the time left on a terminal; nothing in a pipe."""
+def listening() -> Iterator[Progress]:
+    """Show stages and the time left on a terminal; nothing in a pipe. Ctrl-C stops at the next stage at last."""
+    with _interrupts() as stopped, _bars() as show:
+
+        def listen(stage: str, fraction: float, /) -> bool:
+            show(stage, fraction)
+            return not stopped()
+
+        yield listen
+
+
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], bool]]:
+    """Remember Ctrl-C: a library's callback in which the exception is raised may lose it."""
+    elsewhere = threading.current_thread() is not threading.main_thread()
+    if elsewhere or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield lambda: False
+        return
+    asked = threading.Event()
+
+    def handle(_number: int, _frame: object) -> None:
+        asked.set()
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, handle)
+    try:
+        yield asked.is_set
+        if asked.is_set():
+            raise KeyboardInterrupt
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def _bars() -> Iterator[Callable[[str, float], None]]:
     if not sys.stderr.isatty():
-        yield None
+        yield lambda stage, fraction: None
         return
     from rich.console import Console
     from rich.markup import escape
@@ -130,10 +165,10 @@ def listening() -> Iterator[Progress | None]:
     with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
         task = bars.add_task("starting", total=1.0)
 
-        def listen(stage: str, fraction: float, /) -> None:
+        def show(stage: str, fraction: float) -> None:
             bars.update(task, completed=fraction, description=escape(stage))
 
-        yield listen
+        yield show
 
 
 def print_results(results: Sequence[HorizonResult]) -> None:

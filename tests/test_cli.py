@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import hashlib
 import json
@@ -236,6 +237,20 @@ def test_ctrl_c_leaves_no_half_written_file(tmp_path):
         assert "END-ISO-10303-21;" in path.read_text(encoding="utf-8")[-200:]
     for path in (tmp_path / "o").glob("*.json"):
         json.loads(path.read_text(encoding="utf-8"))
+
+
+def test_ctrl_c_that_a_library_swallows_stops_the_run_at_its_next_stage():
+    def run() -> None:
+        with console.listening() as progress:
+            assert progress("fit", 0.1) is True
+            with contextlib.suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+            assert progress("pictures", 0.5) is False
+
+    before = signal.getsignal(signal.SIGINT)
+    with pytest.raises(KeyboardInterrupt):
+        run()
+    assert signal.getsignal(signal.SIGINT) is before
 
 
 def test_a_listener_that_says_stop_stops_the_run(picks, tmp_path):
