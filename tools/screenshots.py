@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import argparse
 import os
-import shutil
 import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+import virtual_screen
 
 ROOT = Path(__file__).resolve().parents[1]
 SCALES = ("1", "1.5")
@@ -63,22 +64,10 @@ def display() -> Iterator[None]:
     if not sys.platform.startswith("linux") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
         yield
         return
-    program = shutil.which("Xvfb")
-    if program is None:
-        sys.exit("There is no display, and no Xvfb to make one (Debian and Ubuntu: apt-get install xvfb).")
-    reading, writing = os.pipe()
-    server = subprocess.Popen(
-        [program, "-displayfd", str(writing), "-screen", "0", "2560x1600x24", "-nolisten", "tcp"],
-        pass_fds=[writing],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    os.close(writing)
+    server = virtual_screen.start("2560x1600")
+    if isinstance(server, str):
+        sys.exit(f"No pictures: {server}.")
     try:
-        number = os.read(reading, 16).decode().strip()  # written when it is ready; empty if it ends before
-        if not number:
-            sys.exit("There is no display, and Xvfb does not start.")
-        os.environ["DISPLAY"] = f":{number}"
         yield
     finally:
         os.environ.pop("DISPLAY", None)

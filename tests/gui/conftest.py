@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import atexit
 import os
-import select
-import shutil
 import subprocess
 import sys
 import threading
 
 import pytest
+import virtual_screen
 
 pytest.importorskip("PySide6", reason="the windows need PySide6: pip install 'geofit[gui]'")
 
@@ -19,26 +18,9 @@ def _display() -> str | None:
     """Return why no window can open here; where Xvfb is installed, start it and return None."""
     if not sys.platform.startswith("linux") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
         return None
-    program = shutil.which("Xvfb")
-    if program is None:
-        return "no display, and no Xvfb to make one (Debian and Ubuntu: apt-get install xvfb)"
-    reading, writing = os.pipe()
-    # Xvfb chooses a free number itself and writes it when it is ready.
-    server = subprocess.Popen(
-        [program, "-displayfd", str(writing), "-screen", "0", "1600x1000x24", "-nolisten", "tcp"],
-        pass_fds=[writing],
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    os.close(writing)
-    ready, _, _ = select.select([reading], [], [], 20)
-    number = os.read(reading, 16).decode().strip() if ready else ""
-    os.close(reading)
-    if not number:
-        server.kill()
-        server.wait()
-        return "no display, and Xvfb does not start"
-    os.environ["DISPLAY"] = f":{number}"
+    server = virtual_screen.start("1600x1000")
+    if isinstance(server, str):
+        return server
     _SERVERS.append(server)
     return None
 
