@@ -31,7 +31,6 @@ if TYPE_CHECKING:
     from geofit.report.language import Language
     from geofit.settings import FitSettings
     from geofit.site import Site
-    from geofit.surface import HorizonSurface
 
 __all__ = ["app", "main"]
 
@@ -281,9 +280,10 @@ def info(
     as_json: _Json = False,
 ) -> int:
     """Say what is in a file."""
+    from geofit.describing import describe_site, describe_surfaces
     from geofit.io.surface_files import is_surface_file
 
-    rows = _describe_surfaces(file) if is_surface_file(file) else None
+    rows = describe_surfaces(file) if is_surface_file(file) else None
     header: tuple[str, ...] = (
         "surface",
         "patches",
@@ -296,7 +296,7 @@ def info(
     if rows is None:
         site = _read(file, {}, None)
         header = ("horizon", "points", "kinds", "west..east, m", "south..north, m", "z, m")
-        rows, issues = _describe_site(site), site.issues
+        rows, issues = describe_site(site), site.issues
         print_counts(site.counts)
     if as_json:
         print_json([dict(zip(header, row, strict=True)) for row in rows])
@@ -571,47 +571,6 @@ def _summary(accuracy: dict[str, Any], name: str) -> dict[str, Any]:
         **accuracy,
         "version": __version__,
     }
-
-
-def _describe_surfaces(file: Path) -> list[tuple[str, ...]]:
-    import numpy as np
-
-    from geofit.io.surface_files import read_surface_file
-    from geofit.mesh import MeshSurface
-
-    rows: list[tuple[str, ...]] = []
-    for name, surface in read_surface_file(file).items():
-        if isinstance(surface, MeshSurface):
-            size, xyz = (f"{len(surface.mesh.triangles)} triangles", f"{len(surface.mesh.points)}"), surface.mesh.xyz
-        else:
-            size = (str(len(surface.patches)), str(surface.control_points))
-            xyz = np.concatenate([_corners(surface, i) for i in range(len(surface.patches))])
-        rows.append((name, *size, *_ranges(xyz)))
-    return rows
-
-
-def _corners(surface: HorizonSurface, index: int) -> Any:
-    import numpy as np
-
-    patch = surface.patches[index]
-    u0, u1, v0, v1 = patch.domain
-    u, v = np.meshgrid(np.linspace(u0, u1, 30), np.linspace(v0, v1, 30))
-    return patch.evaluate(u, v).reshape(-1, 3) + surface.origin
-
-
-def _describe_site(site: Site) -> list[tuple[str, ...]]:
-    rows: list[tuple[str, ...]] = []
-    for name, points in site.horizons.items():
-        kinds = points.kind.tolist()
-        words = ", ".join(f"{kind} {kinds.count(kind)}" for kind in dict.fromkeys(kinds))
-        rows.append((name, str(len(points)), words, *_ranges(points.xyz)))
-    return rows
-
-
-def _ranges(xyz: Any) -> tuple[str, str, str]:
-    low, high = xyz.min(axis=0), xyz.max(axis=0)
-    x, y, z = (f"{a:.1f} .. {b:.1f}" for a, b in zip(low, high, strict=True))
-    return x, y, z
 
 
 def main() -> None:

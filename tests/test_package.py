@@ -40,7 +40,7 @@ FLOORS = (
     ("sitefit",),
     ("io", "sample"),
     ("report",),
-    ("deliver", "exporting", "importing"),
+    ("deliver", "describing", "exporting", "importing"),
     ("cli", "console"),
     ("__main__", "gui"),
 )  # fmt: skip

@@ -10,22 +10,10 @@ from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QLineEdit, QSizePo
 __all__ = ["AutoField", "ChoiceField", "CoreField", "Field", "NumberField"]
 
 
-class Field(QWidget):
-    """A value that can be edited; ``changed`` after each keystroke or choice."""
+class NumberField(QWidget):
+    """A number with its unit. What cannot be read as a number is handed on as text, for the settings to refuse."""
 
     changed = Signal()
-
-    def value(self) -> Any:
-        """Return what is written: a number, a word, or the text itself where it is no number."""
-        raise NotImplementedError
-
-    def put(self, value: Any) -> None:
-        """Show a value without emitting."""
-        raise NotImplementedError
-
-
-class NumberField(Field):
-    """A number with its unit. What cannot be read as a number is handed on as text, for the settings to refuse."""
 
     def __init__(self, unit: str = "", *, whole: bool = False) -> None:
         super().__init__()
@@ -56,8 +44,10 @@ class NumberField(Field):
             self.edit.setText(f"{value:g}" if isinstance(value, float) else str(value))
 
 
-class ChoiceField(Field):
+class ChoiceField(QWidget):
     """One of a few words."""
+
+    changed = Signal()
 
     def __init__(self, choices: dict[Any, str]) -> None:
         super().__init__()
@@ -82,8 +72,10 @@ class ChoiceField(Field):
         self.box.setCurrentIndex(max(self.box.findData(value), 0))
 
 
-class AutoField(Field):
+class AutoField(QWidget):
     """A number that may be left to the fit; ``automatic`` is what the settings hold then."""
+
+    changed = Signal()
 
     def __init__(self, automatic: Any, words: dict[bool, str], *, whole: bool = False, start: float = 1) -> None:
         super().__init__()
@@ -151,3 +143,7 @@ class CoreField(ChoiceField):
         """Drop the polygon, when another horizon is shown."""
         while self.box.count() > self._plain:
             self.box.removeItem(self._plain)
+
+
+#: What the panel works with: each takes and gives one value, and ``changed`` tells of each keystroke or choice.
+Field = NumberField | ChoiceField | AutoField
