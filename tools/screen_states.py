@@ -50,7 +50,8 @@ def take(out: Path, sets: list[str], states: tuple[str, ...]) -> None:
     for name in sets:
         language, theme, _ = name.split("-")
         folder = out / name
-        shutil.rmtree(folder, ignore_errors=not states)
+        if not states:
+            shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True, exist_ok=True)
         print(name, flush=True)
         _Set(desktop, folder, states).take("zh_CN" if language == "zh" else "en", theme)
