@@ -217,11 +217,17 @@ def test_one_horizon_that_cannot_be_fitted_does_not_take_the_others_along(tmp_pa
 
 
 @pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def heed_ctrl_c() -> None:
+    """Undo what a shell does to the jobs it puts in the background: they, and all they start, ignore Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to a single process")
 def test_ctrl_c_leaves_no_half_written_file(tmp_path):
     picks = write_picks(tmp_path / "picks.csv", names=tuple(f"H{i}" for i in range(8)))
     process = subprocess.Popen(
         [sys.executable, "-m", "geofit", "fit", picks, "--out", tmp_path / "o"],
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed_ctrl_c,
     )  # fmt: skip
     # Interrupted when the first files are there, in the middle of the run.
     deadline = time.monotonic() + 120
@@ -248,9 +254,24 @@ def test_ctrl_c_that_a_library_swallows_stops_the_run_at_its_next_stage():
             assert progress("pictures", 0.5) is False
 
     before = signal.getsignal(signal.SIGINT)
-    with pytest.raises(KeyboardInterrupt):
-        run()
-    assert signal.getsignal(signal.SIGINT) is before
+    heed_ctrl_c()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run()
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_a_run_in_the_background_goes_on_ignoring_ctrl_c():
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with console.listening() as progress:
+            signal.raise_signal(signal.SIGINT)
+            assert progress("fit", 0.1) is True
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def test_a_listener_that_says_stop_stops_the_run(picks, tmp_path):
