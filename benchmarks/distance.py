@@ -10,8 +10,8 @@ import time
 
 import numpy as np
 
-from geofit import bspline
-from geofit.distance import project
+from geofit.geometry.distance import project
+from geofit.splines import bspline
 from geofit.surface import Patch
 
 

@@ -18,7 +18,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit import FitSettings, HorizonSurface, PointSet, fit_horizon
 from geofit.check import sigma
-from geofit.storage import equal_accuracy
+from geofit.checks.storage import equal_accuracy
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
 from peers.geomplate import geom_plate

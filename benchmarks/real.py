@@ -24,8 +24,8 @@ from geofit import FitSettings, GeofitError, fit_horizon
 from geofit.accuracy import Check
 from geofit.console import print_table
 from geofit.deliver import deliver
-from geofit.examine import examine
 from geofit.files import replacing
+from geofit.prediction.examine import examine
 from geofit.report.result import HorizonResult
 
 ROOT = Path(__file__).resolve().parents[1]

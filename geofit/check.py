@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from geofit.accuracy import Accuracy, Check, Conflict, Group, Seam
-from geofit.distance import Projection, project
-from geofit.lattice import lattices
-from geofit.oscillation import oscillation
-from geofit.residual_tests import residual_checks
-from geofit.seams import seams
-from geofit.selfcross import self_crossing
-from geofit.shape import shape_checks
+from geofit.checks.lattice import lattices
+from geofit.checks.oscillation import oscillation
+from geofit.checks.residual_tests import residual_checks
+from geofit.checks.seams import seams
+from geofit.checks.selfcross import self_crossing
+from geofit.checks.shape import shape_checks
+from geofit.checks.trend import trend
+from geofit.geometry.distance import Projection, project
 from geofit.surface import HorizonSurface
-from geofit.trend import trend
 from geofit.words import said
 
 __all__ = ["check", "sigma"]

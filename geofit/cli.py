@@ -240,7 +240,7 @@ def check(
 ) -> int:
     """Measure points against the surface in a CAD file or GOCAD TSurf, ours or any other."""
     from geofit.accuracy import plain
-    from geofit.given import check_given
+    from geofit.checks.given import check_given
     from geofit.io.surface_files import read_surface_file
     from geofit.report.result import HorizonResult
 

@@ -17,13 +17,13 @@ from geofit.site import Site
 from geofit.words import said
 
 if TYPE_CHECKING:
-    from geofit.faults import FaultCut
     from geofit.offdata import OffData
-    from geofit.order import Order
-    from geofit.repair import Contradiction
     from geofit.report.accuracy_report import AccuracyReport
     from geofit.report.pictures import Pictures
-    from geofit.sitefit import SiteFit
+    from geofit.stack.faults import FaultCut
+    from geofit.stack.order import Order
+    from geofit.stack.repair import Contradiction
+    from geofit.stack.sitefit import SiteFit
     from geofit.surface import HorizonSurface
 
 __all__ = ["Delivery", "Form", "Reports", "deliver", "write_reports"]
@@ -94,7 +94,7 @@ def deliver(
     pdf : bool
         Whether the report is written as PDF, too: about a second a horizon.
     apart : bool
-        Whether horizons of the site's order that cross are pushed apart (:func:`geofit.repair.repair`).
+        Whether horizons of the site's order that cross are pushed apart (:func:`geofit.stack.repair.repair`).
     bands : bool
         Whether ``_upper90.step`` and ``_lower90.step`` are written: the rock lies between them with 90 %.
 
@@ -109,7 +109,7 @@ def deliver(
     """
     from geofit.report.gather import accuracy_report
     from geofit.report.pictures import draw_site
-    from geofit.sitefit import fit_site
+    from geofit.stack.sitefit import fit_site
 
     names = _chosen(site, horizons)
     if pdf and language.code == "zh":
@@ -201,7 +201,7 @@ def write_reports(
     Cancelled
         If ``progress`` returned False; then nothing is written.
     """
-    from geofit.examine import examine
+    from geofit.prediction.examine import examine
     from geofit.report.gather import accuracy_report
     from geofit.report.pictures import draw, draw_site
 
@@ -233,7 +233,7 @@ def write_reports(
 
 def _orders_of(results: Sequence[HorizonResult]) -> tuple[tuple[Order, ...] | None, str]:
     """Compare surfaces in the order of their site; None and the reason where that is not possible."""
-    from geofit.sitefit import SiteFit
+    from geofit.stack.sitefit import SiteFit
 
     surfaces = {result.name: result.surface for result in results}
     return _orders(results[0].site, SiteFit(surfaces, {name: name for name in surfaces}))
@@ -261,12 +261,12 @@ def _written(
     surface: HorizonSurface, site: Site, stem: Path, progress: Progress, language: Language, fit: float, bands: bool
 ) -> _Made:
     """Examine a surface, and write what belongs to it."""
-    from geofit.examine import examine
+    from geofit.checks.storage import equal_accuracy
     from geofit.io.step import write_step
+    from geofit.prediction.examine import examine
     from geofit.report.pictures import draw, write_picture
     from geofit.report.result import write_json
     from geofit.report.tables import write_residuals
-    from geofit.storage import equal_accuracy
 
     clock = _Clock(fit)
     offdata = examine(surface, _within(progress, 0.0, 0.45))
@@ -291,7 +291,7 @@ def _written(
 def _write_bands(surface: HorizonSurface, offdata: OffData, stem: Path) -> tuple[str, ...]:
     """Write the surfaces between which the rock lies with 90 %; return why there are none."""
     from geofit.io.step import write_step
-    from geofit.spread import band
+    from geofit.prediction.spread import band
 
     if offdata.uncertainty is None:
         return (said("{name}: no 90 % surfaces, its standard deviation is not known", name=surface.name),)
@@ -315,7 +315,7 @@ class _Clock:
 
 def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, str]:
     """Compare the horizons of the site's order that were fitted; None and the reason where that is not possible."""
-    from geofit.sitefit import compare
+    from geofit.stack.sitefit import compare
 
     if site.order and len([name for name in site.order if name in fits.horizon.values()]) < 2:
         return None, ""

@@ -17,8 +17,8 @@ Floats = NDArray[np.float64]
 
 def describe_surfaces(file: Path) -> list[tuple[str, ...]]:
     """Return a row for each surface of a file: name, patches, control points, ranges of x, y and z."""
+    from geofit.geometry.mesh import MeshSurface
     from geofit.io.surface_files import read_surface_file
-    from geofit.mesh import MeshSurface
 
     rows: list[tuple[str, ...]] = []
     for name, surface in read_surface_file(file).items():

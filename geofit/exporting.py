@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.contours import contours
-from geofit.cut import CutLine, cut, section_line
 from geofit.errors import InputError, SettingsError
 from geofit.files import file_stems
-from geofit.loops import TrimmedSurface
-from geofit.mesh import MeshSurface, triangulate
-from geofit.sampling import deviation_grid, elevation_grid, thickness_grid
+from geofit.geometry.contours import contours
+from geofit.geometry.cut import CutLine, cut, section_line
+from geofit.geometry.loops import TrimmedSurface
+from geofit.geometry.mesh import MeshSurface, triangulate
+from geofit.geometry.sampling import deviation_grid, elevation_grid, thickness_grid
 from geofit.surface import HorizonSurface
 
 if TYPE_CHECKING:

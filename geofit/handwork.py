@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, vstack
 
-from geofit.assemble import Part, divide
-from geofit.distance import project
 from geofit.errors import ExactnessError, FitError
+from geofit.geometry.distance import project
 from geofit.model import Model
-from geofit.skin import least_change
+from geofit.steps.assemble import Part, divide
+from geofit.steps.skin import least_change
 from geofit.surface import HorizonSurface, Patch
 from geofit.words import Said, said
 

@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.accuracy import Conflict
-from geofit.assemble import patches_of
-from geofit.chart import Chart
 from geofit.check import check
-from geofit.core import fit_with_core
-from geofit.net import Net, approximate_all
-from geofit.partition import Split
 from geofit.points import PointSet
 from geofit.settings import FitSettings
+from geofit.steps.assemble import patches_of
+from geofit.steps.chart import Chart
+from geofit.steps.core import fit_with_core
+from geofit.steps.net import Net, approximate_all
+from geofit.steps.partition import Split
 from geofit.surface import HorizonSurface, Partition, Patch
 
 __all__ = ["Model", "Problem"]

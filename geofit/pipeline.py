@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
-from geofit.adjust import adjust
-from geofit.chart import Chart, choose_chart
-from geofit.conflicts import settle
-from geofit.distance import project
 from geofit.errors import ExactnessError, FitError, PointsError
+from geofit.geometry.distance import project
 from geofit.model import Model, Problem
-from geofit.partition import Split, split_all, split_auto, split_none, split_rectangle
 from geofit.points import PointSet
+from geofit.prediction.robust import fit_robustly
 from geofit.progress import Progress, tell
-from geofit.robust import fit_robustly
 from geofit.settings import FitSettings
+from geofit.steps.adjust import adjust
+from geofit.steps.chart import Chart, choose_chart
+from geofit.steps.conflicts import settle
+from geofit.steps.partition import Split, split_all, split_auto, split_none, split_rectangle
 from geofit.surface import HorizonSurface
 from geofit.words import said
 

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit import bspline
 from geofit.accuracy import Accuracy
 from geofit.points import PointSet
 from geofit.settings import FitSettings
+from geofit.splines import bspline
 
 if TYPE_CHECKING:
     from geofit.accuracy import ReadBack
@@ -165,13 +165,13 @@ class HorizonSurface:
 
         Where the surface stands over a place more than once (an overturned fold), the highest.
         """
-        from geofit.distance import elevation
+        from geofit.geometry.distance import elevation
 
         return elevation(self, x, y)
 
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed orthogonal distance of (n, 3) map coordinates, metres, positive above."""
-        from geofit.distance import project
+        from geofit.geometry.distance import project
 
         return project(self.patches, np.atleast_2d(np.asarray(xyz, float)) - self.origin).distance
 
@@ -195,7 +195,7 @@ class HorizonSurface:
 
     def to_shape(self) -> Any:
         """Return a cadquery shell of the sewn patches in map coordinates."""
-        from geofit.stitch import to_shape
+        from geofit.steps.stitch import to_shape
 
         return to_shape(self)
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.elevation import plan_map
+from geofit.geometry.elevation import plan_map
 from geofit.occ import to_geom
 from geofit.surface import HorizonSurface, Patch
 

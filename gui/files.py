@@ -206,8 +206,8 @@ class Files(QObject):
                 )
         for fault, cut in site.faults.items():
             _LOG.warning(
-                "The fault %s cuts %s: the window fits it as one surface; geofit.faults.fit_faulted lays it block by "
-                "block and measures the throw.", fault, ", ".join(cut),
+                "The fault %s cuts %s: the window fits it as one surface; geofit.stack.faults.fit_faulted lays it "
+                "block by block and measures the throw.", fault, ", ".join(cut),
             )  # fmt: skip
         errors = sum(issue.severity == "error" for issue in site.issues)
         text = self.tr("{name}: {horizons} horizons, {errors} rows not used.")

@@ -18,7 +18,7 @@ from geofit.gui.fitting import Fitting
 from geofit.gui.showing import Showing
 from geofit.gui.words import spoken
 from geofit.gui.workspace import Workspace
-from geofit.repair import Repair
+from geofit.stack.repair import Repair
 from geofit.surface import HorizonSurface
 
 __all__ = ["Ordering"]

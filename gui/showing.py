@@ -13,8 +13,8 @@ from geofit.gui.document.document import Document
 from geofit.gui.drawing import Drawing
 from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.workspace import Workspace
-from geofit.order import Order
 from geofit.settings import FitSettings
+from geofit.stack.order import Order
 from geofit.surface import HorizonSurface
 
 __all__ = ["Showing"]

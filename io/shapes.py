@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.loops import TrimmedSurface
+from geofit.geometry.loops import TrimmedSurface
 from geofit.occ import along, edges_with_faces, explore, faces_of, from_geom
 from geofit.points import PointSet
 from geofit.surface import HorizonSurface, Patch

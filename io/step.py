@@ -24,7 +24,7 @@ from geofit.io.shapes import FileShape, document, products, quiet, surface_of
 from geofit.io.step_check import read_back
 from geofit.io.step_text import canonical
 from geofit.occ import faces_of, placement
-from geofit.stitch import shell
+from geofit.steps.stitch import shell
 from geofit.surface import HorizonSurface, Patch
 
 __all__ = ["UNITS", "Unit", "read_shapes", "read_step", "store_step", "write_step"]
@@ -109,7 +109,7 @@ def read_step(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
 
     Planes, cylinders and other surfaces are converted to NURBS. A trimmed face becomes the patch over the
     smallest parameter rectangle that holds it, with the loops that cut it: such a surface is a
-    :class:`geofit.loops.TrimmedSurface`, whose ``distance`` ends at the loops. If the product is a height
+    :class:`geofit.geometry.loops.TrimmedSurface`, whose ``distance`` ends at the loops. If the product is a height
     field, the loop of its free edges becomes the surface's outline, which ``elevation`` respects.
 
     Parameters

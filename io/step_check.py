@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.accuracy import Check, ReadBack, Seam
-from geofit.distance import project
+from geofit.geometry.distance import project
 from geofit.occ import along, edges_with_faces, faces_of, free_edges, free_loops
 from geofit.surface import HorizonSurface
 from geofit.words import said

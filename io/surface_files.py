@@ -20,7 +20,7 @@ def is_surface_file(path: str | Path) -> bool:
 
 
 def read_surface_file(path: str | Path) -> Mapping[str, HorizonSurface]:
-    """Read the surfaces of a file by name: patches, or the triangles of a :class:`geofit.mesh.MeshSurface`.
+    """Read the surfaces of a file by name: patches, or the triangles of a :class:`geofit.geometry.mesh.MeshSurface`.
 
     Raises
     ------

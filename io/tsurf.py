@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from geofit.errors import InputError
+from geofit.geometry.mesh import Mesh, MeshSurface
 from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.units import metres_of
-from geofit.mesh import Mesh, MeshSurface
 from geofit.points import PointSet
 
 __all__ = ["read_tsurf"]

@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from geofit import FitSettings, PointSet, Site, bspline
+from geofit import FitSettings, PointSet, Site
 from geofit.accuracy import Accuracy, Check, Conflict, Group, ReadBack, Seam
+from geofit.checks.storage import equal_accuracy
 from geofit.offdata import LeftOut, OffData, Outlier, Suggestion, Uncertainty
 from geofit.report.result import HorizonResult
 from geofit.site import Hole, ImportIssue, Section, TableCount
-from geofit.storage import equal_accuracy
+from geofit.splines import bspline
 from geofit.surface import HorizonSurface, Partition, Patch
 from geofit.words import said
 

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from geofit import bspline
 from geofit.points import PointSet
 from geofit.settings import FitSettings
+from geofit.splines import bspline
 from geofit.surface import HorizonSurface, Patch
 
 ORIGIN = np.array([5e5, 3.1e6, 400.0])

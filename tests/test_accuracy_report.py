@@ -12,8 +12,6 @@ import pytest
 from results import examined, horizon
 
 from geofit.errors import MissingDependencyError
-from geofit.order import Order
-from geofit.overlap import Crossing
 from geofit.report import fonts
 from geofit.report.accuracy_report import AccuracyReport, from_json, to_json, write_json
 from geofit.report.chapters import document
@@ -23,6 +21,8 @@ from geofit.report.html import write_html
 from geofit.report.language import EN, ZH
 from geofit.report.pdf import write_pdf
 from geofit.report.pictures import draw, draw_site
+from geofit.stack.order import Order
+from geofit.stack.overlap import Crossing
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 pypdf = pytest.importorskip("pypdf", reason="pypdf reads the PDF's fonts; it comes with the extra 'test'")

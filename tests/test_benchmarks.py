@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from geofit import FitSettings, HorizonSurface, PointSet
-from geofit.bspline import clamped_knots
+from geofit.splines.bspline import clamped_knots
 from geofit.surface import Patch
 
 FOLDER = Path(__file__).resolve().parents[1] / "benchmarks"

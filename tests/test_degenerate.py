@@ -7,8 +7,8 @@ import pytest
 from truth import EASTING, NORTHING, hills, paper_arrangement, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
-from geofit.chart import choose_chart
 from geofit.errors import FitError, PointsError
+from geofit.steps.chart import choose_chart
 
 ALL, NONE = FitSettings(core="all"), FitSettings(core="none")
 CORES = pytest.mark.parametrize("settings", [FitSettings(), ALL, NONE], ids=["auto", "all", "none"])

@@ -12,14 +12,14 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from surfaces import ORIGIN, fold, height_field, horizon, nine
 
-from geofit.cut import CutLine
 from geofit.errors import InputError, SettingsError
 from geofit.exporting import FORMATS, Request, export, read_line, read_surfaces, section
+from geofit.geometry.cut import CutLine
+from geofit.geometry.sampling import deviation_grid, elevation_grid, thickness_grid
 from geofit.io.export.section_csv import write_section_csv
 from geofit.io.grid import read_ground
 from geofit.io.step import write_step
 from geofit.points import PointSet
-from geofit.sampling import deviation_grid, elevation_grid, thickness_grid
 
 
 @pytest.fixture(scope="module")

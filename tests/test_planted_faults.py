@@ -13,9 +13,9 @@ from surfaces import ORIGIN, fold, height_field, horizon, split
 from truth import paper_arrangement
 
 from geofit import FitSettings, fit_horizon
-from geofit.aboveground import check_ground
 from geofit.check import check
-from geofit.dips import check_dips
+from geofit.checks.aboveground import check_ground
+from geofit.checks.dips import check_dips
 from geofit.sample import horizon_truth
 from geofit.sample.truth import HORIZONS
 from geofit.site import Ground, Orientations

@@ -12,7 +12,8 @@ import pytest
 from results import ORIGIN, horizon, patch
 
 import geofit
-from geofit import FitSettings, PointSet, bspline
+from geofit import FitSettings, PointSet
+from geofit.checks.storage import equal_accuracy
 from geofit.files import file_stems, replacing
 from geofit.report import fonts, plots, scene
 from geofit.report.pictures import Pictures, draw, draw_site, write_picture
@@ -20,7 +21,7 @@ from geofit.report.result import HorizonResult, horizon_data, write_json
 from geofit.report.style import bands
 from geofit.report.tables import write_issues, write_residuals
 from geofit.report.view import choose_view
-from geofit.storage import equal_accuracy
+from geofit.splines import bspline
 from geofit.surface import HorizonSurface, Patch
 
 

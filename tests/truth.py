@@ -105,3 +105,23 @@ def thin_plate(points: PointSet) -> Height:
 def rms(error: Floats) -> float:
     """Return the root mean square."""
     return float(np.sqrt(np.mean(error**2)))
+
+
+def folded(lines=6, n=40, reverse=(), seed=None, azimuth=0.0):
+    """An overturned fold on parallel sections; its truth is known everywhere."""
+    xyz, names = [], []
+    for i in range(lines):
+        t = np.linspace(0, 1, n)
+        if seed is not None:
+            t = np.sort(np.concatenate([[0, 1], np.random.default_rng(seed + i).uniform(0, 1, n - 2)]))
+        line = fold_at(t, np.full(n, 60.0 * i))
+        xyz.append(line[::-1] if i in reverse else line)
+        names += [f"S{i}"] * n
+    c, s = np.cos(azimuth), np.sin(azimuth)
+    xyz = np.concatenate(xyz)
+    xyz[:, :2] = xyz[:, :2] @ np.array([[c, s], [-s, c]])
+    return PointSet(xyz + np.array((EASTING, NORTHING, 500)), section=names, kind="section")
+
+
+def fold_at(t, y):
+    return np.column_stack([150 * t + 130 * np.sin(2 * np.pi * t) + 0.05 * y, y, 220 * t + 6 * np.sin(y / 70)])

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from math import isfinite, nan
 
 from geofit import FitSettings, GeofitError, HorizonSurface, PointSet, fit_horizon
-from geofit.examine import examine
 from geofit.offdata import OffData
+from geofit.prediction.examine import examine
 
 from .why import metres
 

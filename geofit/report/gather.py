@@ -41,9 +41,9 @@ from geofit.report.result import HorizonResult, sigma_of
 from geofit.site import Site
 
 if TYPE_CHECKING:
-    from geofit.faults import FaultCut
-    from geofit.order import Order
-    from geofit.repair import Contradiction
+    from geofit.stack.faults import FaultCut
+    from geofit.stack.order import Order
+    from geofit.stack.repair import Contradiction
 
 __all__ = ["PICTURES", "accuracy_report", "picture_name", "today"]
 
@@ -83,11 +83,11 @@ def accuracy_report(
     results : sequence of HorizonResult
         At least one; all of one site.
     orders : sequence of Order, optional
-        What :func:`geofit.order.orders` found; None: not examined.
+        What :func:`geofit.stack.order.orders` found; None: not examined.
     cuts : sequence of FaultCut
-        What faults displace, by :func:`geofit.faults.fit_blocks`.
+        What faults displace, by :func:`geofit.stack.faults.fit_blocks`.
     contradictions : sequence of Contradiction
-        What :func:`geofit.repair.repair` could not mend.
+        What :func:`geofit.stack.repair.repair` could not mend.
     failures : mapping of str to str, optional
         Horizons that could not be fitted, and why.
     date : str

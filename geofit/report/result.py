@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 
 import geofit
 from geofit.accuracy import Accuracy, ReadBack, Seam, plain
+from geofit.checks.storage import Storage
 from geofit.files import replacing
 from geofit.offdata import OffData
 from geofit.site import ImportIssue, Site
-from geofit.storage import Storage
 from geofit.surface import HorizonSurface
 
 __all__ = ["HorizonResult", "horizon_data", "sigma_of", "write_json"]

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geofit.cut import CutLine
 from geofit.files import replacing
+from geofit.geometry.cut import CutLine
 from geofit.report.style import INK, LINE, MUTED, drawing, quiet
 
 if TYPE_CHECKING:

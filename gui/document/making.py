@@ -57,7 +57,7 @@ def _pushed(
     surface: HorizonSurface, edit: Apart, boundary: Floats | None, given: Given, progress: Progress | None
 ) -> HorizonSurface:
     """Make the neighbours as they were, and push all apart once more."""
-    from geofit.repair import repair
+    from geofit.stack.repair import repair
 
     stack = {surface.name: surface}
     for other in edit.others:
@@ -104,7 +104,7 @@ def changed(
 
 def examined(recipe: Recipe, surface: HorizonSurface, *, progress: Progress) -> tuple[Recipe, OffData]:
     """Find out how far the rock may lie from a surface where nobody drilled."""
-    from geofit.examine import examine
+    from geofit.prediction.examine import examine
 
     return recipe, examine(surface, progress)
 

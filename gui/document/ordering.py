@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 from threadpoolctl import threadpool_limits
 
-from geofit.elevation import plan_map
-from geofit.order import Order, orders
+from geofit.geometry.elevation import plan_map
 from geofit.progress import Progress, tell
-from geofit.repair import Repair, repair
 from geofit.site import Ground
+from geofit.stack.order import Order, orders
+from geofit.stack.repair import Repair, repair
 from geofit.surface import HorizonSurface
 
 __all__ = ["all_orders", "over_map", "pushed_apart"]

@@ -21,8 +21,8 @@ from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken
 from geofit.offdata import OffData
-from geofit.order import Order
 from geofit.report.digits import measured
+from geofit.stack.order import Order
 from geofit.surface import HorizonSurface
 
 __all__ = ["ChecksPanel"]

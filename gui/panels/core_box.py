@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.chart import Chart, choose_chart
 from geofit.errors import GeofitError
-from geofit.frame import Frame
-from geofit.partition import split_rectangle
+from geofit.geometry.frame import Frame
 from geofit.points import PointSet
 from geofit.settings import FitSettings
+from geofit.steps.chart import Chart, choose_chart
+from geofit.steps.partition import split_rectangle
 from geofit.surface import HorizonSurface
 
 __all__ = ["CoreBox", "chart_of", "taken"]

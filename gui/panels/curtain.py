@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
-from geofit.cut import CutLine, cut, section_line
-from geofit.mesh import Mesh, triangulate
+from geofit.geometry.cut import CutLine, cut, section_line
+from geofit.geometry.mesh import Mesh, triangulate
 from geofit.progress import Progress, tell
 from geofit.site import Site
 from geofit.surface import HorizonSurface

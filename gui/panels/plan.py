@@ -7,8 +7,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from geofit.chart import Chart
-from geofit.frame import Frame, map_frame
+from geofit.geometry.frame import Frame, map_frame
 from geofit.gui.panels.core_box import CoreBox, chart_of, taken
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
@@ -17,6 +16,7 @@ from geofit.gui.words import spoken
 from geofit.report.view import rims
 from geofit.settings import FitSettings
 from geofit.site import Site
+from geofit.steps.chart import Chart
 from geofit.surface import HorizonSurface
 
 __all__ = ["PlanPanel"]

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of
 from geofit.offdata import Uncertainty
+from geofit.prediction.spread import band
+from geofit.prediction.spread import sd_at as sd_of_fit
 from geofit.progress import Progress, tell
-from geofit.spread import band
-from geofit.spread import sd_at as sd_of_fit
 from geofit.surface import HorizonSurface
 
 __all__ = ["BAND", "Drawn", "drawn_of"]

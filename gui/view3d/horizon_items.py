@@ -12,7 +12,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkFiltersCore import vtkContourFilter
 
 from geofit.accuracy import Seam
-from geofit.contours import interval_for
+from geofit.geometry.contours import interval_for
 from geofit.gui.view3d.actors import Part, coloured, dots, lines, poly, ramped, shaded, triangles
 from geofit.gui.view3d.colouring import PointColours, legible, points_by, ramp, rgb, seam_colours
 from geofit.gui.view3d.item import Item, Look, extent

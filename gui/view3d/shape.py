@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from geofit.accuracy import Seam
-from geofit.mesh import Mesh, MeshSurface, triangulate
+from geofit.geometry.mesh import Mesh, MeshSurface, triangulate
 from geofit.offdata import Uncertainty
 from geofit.report.view import trimmed
 from geofit.site import Ground

@@ -12,7 +12,7 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from geofit.cut import section_line
+from geofit.geometry.cut import section_line
 from geofit.gui.view3d.actors import Part, lines, poly
 from geofit.gui.view3d.axes import floor_lines, marks, nice
 from geofit.gui.view3d.camera import Eye, framed

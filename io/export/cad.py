@@ -15,7 +15,7 @@ from typing import Any
 from geofit.errors import InputError
 from geofit.files import replacing
 from geofit.occ import placement
-from geofit.stitch import shell
+from geofit.steps.stitch import shell
 from geofit.surface import HorizonSurface
 
 __all__ = ["write_brep", "write_iges"]

@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from geofit.contours import Contour
-from geofit.cut import CutLine
 from geofit.files import file_stems, replacing
-from geofit.mesh import Mesh
+from geofit.geometry.contours import Contour
+from geofit.geometry.cut import CutLine
+from geofit.geometry.mesh import Mesh
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.files import replacing
+from geofit.geometry.mesh import Mesh
 from geofit.io.extra import need
-from geofit.mesh import Mesh
 from geofit.points import PointSet
 
 __all__ = ["write_geoh5"]

@@ -8,9 +8,9 @@ from os import PathLike
 
 import numpy as np
 
-from geofit.contours import Contour
 from geofit.errors import InputError
 from geofit.files import replacing
+from geofit.geometry.contours import Contour
 from geofit.io.extra import need
 
 __all__ = ["write_contours_gpkg"]

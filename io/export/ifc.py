@@ -12,8 +12,8 @@ import numpy as np
 from geofit import __version__
 from geofit.errors import InputError
 from geofit.files import replacing
+from geofit.geometry.mesh import triangulate
 from geofit.io.extra import need
-from geofit.mesh import triangulate
 from geofit.site import Hole
 from geofit.surface import HorizonSurface, Patch
 

@@ -12,7 +12,7 @@ import numpy as np
 from geofit import __version__
 from geofit.errors import InputError
 from geofit.files import replacing
-from geofit.mesh import Mesh
+from geofit.geometry.mesh import Mesh
 
 __all__ = ["write_landxml"]
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.files import replacing
-from geofit.mesh import Mesh
+from geofit.geometry.mesh import Mesh
 from geofit.points import PointSet
 
 __all__ = ["write_omf"]

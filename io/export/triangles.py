@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.files import replacing
-from geofit.mesh import Mesh
+from geofit.geometry.mesh import Mesh
 
 __all__ = ["common_origin", "write_glb", "write_obj", "write_ply", "write_stl"]
 

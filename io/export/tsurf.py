@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from os import PathLike
 
 from geofit.files import replacing
-from geofit.mesh import Mesh
+from geofit.geometry.mesh import Mesh
 
 __all__ = ["write_tsurf"]
 

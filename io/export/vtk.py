@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.errors import InputError
 from geofit.files import file_stems, replacing
-from geofit.mesh import Mesh
+from geofit.geometry.mesh import Mesh
 from geofit.points import PointSet
 
 __all__ = ["write_vtm", "write_vtp"]

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QApplication
 
 from geofit.accuracy import Check, Conflict, ReadBack
 from geofit.gui.panels.checks import ChecksPanel
-from geofit.order import Order
+from geofit.stack.order import Order
 
 
 @pytest.fixture

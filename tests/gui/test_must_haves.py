@@ -72,7 +72,8 @@ def click(view, place):
 def test_01_the_library_needs_no_qt():
     code = (
         "import sys; sys.modules['PySide6'] = None\n"
-        "import geofit, geofit.cli, geofit.pipeline, geofit.examine, geofit.repair, geofit.report.accuracy_report\n"
+        "import geofit, geofit.cli, geofit.pipeline, geofit.prediction.examine, geofit.stack.repair\n"
+        "import geofit.report.accuracy_report\n"
         "assert not [name for name in sys.modules if name.startswith('PySide6.')]"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120, check=False)

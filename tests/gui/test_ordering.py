@@ -10,10 +10,10 @@ from geofit.errors import FitError
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.gui.document.making import make
 from geofit.gui.document.ordering import over_map
-from geofit.order import order_of
 from geofit.points import PointSet
 from geofit.settings import FitSettings
 from geofit.site import Site
+from geofit.stack.order import order_of
 
 
 def scattered(seed, lift):

@@ -12,7 +12,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtTest import QTest
 
 import geofit
-from geofit.frame import map_frame
+from geofit.geometry.frame import map_frame
 from geofit.gui.panels.core_box import CoreBox
 from geofit.gui.panels.plan import PlanPanel
 from geofit.gui.panels.plan_ink import round_length

@@ -7,8 +7,8 @@ import pytest
 from surfaces import fold, horizon, nine
 
 from geofit.errors import InputError, MissingDependencyError
+from geofit.geometry.mesh import triangulate
 from geofit.io.export.geoh5 import write_geoh5
-from geofit.mesh import triangulate
 from geofit.points import PointSet
 
 POINTS = PointSet(np.array([[5e5, 3.1e6, 400.0], [500010.5, 3100020.25, 410.125]]))

@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from surfaces import fold, horizon, nine
 
 from geofit.errors import InputError
+from geofit.geometry.mesh import Mesh, triangulate
 from geofit.io.export import dxf, landxml, triangles, tsurf, vtk
-from geofit.mesh import Mesh, triangulate
 from geofit.points import PointSet
 
 

@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from surfaces import ORIGIN, fold, height_field, horizon, nine
 
+from geofit.checks.given import check_given
 from geofit.errors import InputError
 from geofit.exporting import Request, export, read_surfaces
-from geofit.given import check_given
+from geofit.geometry.loops import TrimmedSurface
+from geofit.geometry.mesh import MeshSurface, triangulate
 from geofit.io.export.cad import write_brep, write_iges
 from geofit.io.export.tsurf import write_tsurf
 from geofit.io.surface_files import read_surface_file
-from geofit.loops import TrimmedSurface
-from geofit.mesh import MeshSurface, triangulate
 from geofit.points import PointSet
 from geofit.settings import FitSettings
 

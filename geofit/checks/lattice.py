@@ -1,0 +1,74 @@
+"""Places all over a surface: the ends and the middle of every knot span, with normals."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.geometry.clip import inside
+from geofit.splines.bspline import collocation
+from geofit.surface import HorizonSurface, Patch
+
+__all__ = ["Lattice", "lattices", "places"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Lattice:
+    """One patch: ``points`` (a, b, 3) about the origin, ``normal`` (a, b, 3), ``within`` (a, b) the outline.
+
+    A normal is as long as the sine of the angle between S_u and S_v: 0 where the patch is degenerate. Places with
+    two odd indices are the middles of spans.
+    """
+
+    points: Floats
+    normal: Floats
+    within: NDArray[np.bool_]
+
+    @property
+    def middles(self) -> Lattice:
+        """The middles of the spans alone."""
+        return Lattice(self.points[1::2, 1::2], self.normal[1::2, 1::2], self.within[1::2, 1::2])
+
+
+def lattices(surface: HorizonSurface) -> tuple[Lattice, ...]:
+    """Lay a lattice over each patch, fine enough that no wiggle of one control point falls between its places."""
+    return tuple(_lattice(surface, patch) for patch in surface.patches)
+
+
+def places(parts: Sequence[Lattice]) -> tuple[Floats, Floats]:
+    """Return points (n, 3) and normals (n, 3) of all places within the outline."""
+    return np.concatenate([p.points[p.within] for p in parts]), np.concatenate([p.normal[p.within] for p in parts])
+
+
+def _lattice(surface: HorizonSurface, patch: Patch) -> Lattice:
+    points, su, sv = _grid(patch)
+    lengths = np.linalg.norm(su, axis=-1) * np.linalg.norm(sv, axis=-1)
+    normal = np.cross(su, sv) / np.maximum(lengths, 1e-300)[..., None]
+    within = np.ones(points.shape[:2], bool)
+    if surface.outline is not None:
+        outline = surface.outline - surface.origin[:2]
+        within = inside(outline, points[..., :2].reshape(-1, 2)).reshape(within.shape)
+    return Lattice(points, normal, within)
+
+
+def _grid(patch: Patch) -> tuple[Floats, Floats, Floats]:
+    """Points and first derivatives on the lattice, each (a, b, 3)."""
+    u, v = _ends_and_middles(patch.knots_u), _ends_and_middles(patch.knots_v)
+    if patch.weights is not None:
+        grid = u[:, None], v[None, :]
+        return patch.evaluate(*grid), patch.evaluate(*grid, 1, 0), patch.evaluate(*grid, 0, 1)
+    along, along_du = (collocation(patch.knots_u, patch.degree[0], u, order) for order in (0, 1))
+    across, across_dv = (collocation(patch.knots_v, patch.degree[1], v, order) for order in (0, 1))
+    # One axis after the other: a sum over rows for each column of the lattice instead of 16 products a place.
+    rows, rows_du = (np.tensordot(matrix, patch.control, axes=1) for matrix in (along, along_du))
+    return across @ rows, across @ rows_du, across_dv @ rows
+
+
+def _ends_and_middles(knots: Floats) -> Floats:
+    breaks = np.unique(knots)
+    return np.sort(np.concatenate([breaks, (breaks[1:] + breaks[:-1]) / 2]))

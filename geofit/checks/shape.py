@@ -1,0 +1,202 @@
+"""Faults of the surface itself: folds, collapsed patches, elevations far out, study area left uncovered."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.accuracy import Check
+from geofit.checks.lattice import Lattice, places
+from geofit.geometry.elevation import plan_map
+from geofit.surface import HorizonSurface, Patch
+from geofit.words import said
+
+__all__ = ["shape_checks"]
+
+Floats = NDArray[np.float64]
+
+#: How far beyond the range of the data an elevation may go, as a share of that range.
+RANGE_SHARE = 0.5
+#: Part of the study area, in percent, that the surface may leave uncovered.
+UNCOVERED = 0.1
+#: An edge shorter than this share of its patch has collapsed.
+SHORT = 1e-6
+#: Sine of the angle between a corner's edges below which the corner has collapsed (half a degree).
+FLAT = 0.0087
+#: Cosine between two legs of the control net beyond which the second runs back over the first (154 degrees).
+BACK = -0.9
+#: Places that a check names.
+NAMED = 20
+
+
+def shape_checks(surface: HorizonSurface, parts: Sequence[Lattice]) -> list[Check]:
+    """Look at the patches on their lattices: "normals", "patches", "elevation range", "area" where they apply."""
+    checks = [_normals(surface, parts), _patches(surface)]
+    if len(surface.points) and np.ptp(surface.points.xyz[:, 2]) > 0:
+        checks.append(_elevation_range(surface, parts))
+    if surface.outline is not None:
+        checks.append(_area(surface))
+    return checks
+
+
+def _normals(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check:
+    """Folds and flipped normals: a fold that is meant turns its normals; any other surface's look to one side."""
+    points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
+    normal = np.concatenate([p.normal.reshape(-1, 3) for p in parts])
+    turned = np.linalg.norm(normal, axis=1) < 1e-9
+    frame = surface.fit.get("frame")
+    if frame != "sections":
+        upward = np.array([0.0, 0.0, 1.0]) if frame == "map" else _majority(normal)
+        turned |= normal @ upward < 0
+    count = int(turned.sum())
+    if count:
+        text = said(
+            "{count} of {total} places folded or degenerate: the surface turns over there, or its normals look to the "
+            "other side",
+            count=count,
+            total=len(normal),
+        )
+    else:
+        text = said("{count} of {total} places folded or degenerate", count=0, total=len(normal))
+    where = points[turned][:NAMED] + surface.origin
+    return Check("normals", count == 0, count, 0, "places", text, _named(where))
+
+
+def _majority(normal: Floats) -> Floats:
+    """Mean normal of the places that look to the side that most look to: patches that are turned round count less."""
+    longest = normal[np.argmax(np.linalg.norm(normal, axis=1))]
+    mean = (normal * np.where(normal @ longest < 0, -1.0, 1.0)[:, None]).mean(axis=0)
+    return np.asarray(mean if np.median(normal @ mean) >= 0 else -mean)
+
+
+def _patches(surface: HorizonSurface) -> Check:
+    """Edges without length, corners without an angle, control points that run back over their neighbours."""
+    faults: list[tuple[str, Floats]] = []
+    for patch in surface.patches:
+        faults += [(patch.name, place) for place in _collapsed(patch)]
+        if surface.fit.get("frame") != "best-plane" and plan_map(patch) is None:
+            # A height field's control points stand in order by construction.
+            faults += [(patch.name, place) for place in _out_of_order(patch)]
+    count = len(faults)
+    if not count:
+        text = said("no edge, corner or control point of {n} patches has collapsed", n=len(surface.patches))
+        return Check("patches", True, 0, 0, "places", text)
+    names = ", ".join(dict.fromkeys(name for name, _ in faults))
+    text = said(
+        "{count} places where patches are degenerate (an edge without length, a corner without an angle, control "
+        "points that run back): {names}; other programs may refuse such a face",
+        count=count,
+        names=names,
+    )
+    return Check("patches", False, count, 0, "places", text, _named(np.array([p for _, p in faults]) + surface.origin))
+
+
+def _collapsed(patch: Patch) -> list[Floats]:
+    net = patch.control
+    size = float(np.linalg.norm(np.ptp(net.reshape(-1, 3), axis=0)))
+    edges = (net[:, 0], net[:, -1], net[0], net[-1])
+    found = [edge[0] for edge in edges if np.linalg.norm(np.diff(edge, axis=0), axis=1).sum() <= SHORT * size]
+    for i in (0, -1):
+        for j in (0, -1):
+            along = net[1 if i == 0 else -2, j] - net[i, j]
+            across = net[i, 1 if j == 0 else -2] - net[i, j]
+            lengths = float(np.linalg.norm(along) * np.linalg.norm(across))
+            if np.linalg.norm(np.cross(along, across)) <= FLAT * lengths:
+                found.append(net[i, j])
+    return found
+
+
+def _out_of_order(patch: Patch) -> list[Floats]:
+    found = []
+    for net in (patch.control, patch.control.transpose(1, 0, 2)):
+        legs = np.diff(net, axis=0)
+        lengths = np.linalg.norm(legs, axis=2)
+        cosine = (legs[1:] * legs[:-1]).sum(axis=2) / np.maximum(lengths[1:] * lengths[:-1], 1e-300)
+        found.append(net[1:-1][cosine < BACK])
+    return list(np.concatenate(found))
+
+
+def _elevation_range(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check:
+    points, _ = places(parts)
+    if not len(points):
+        points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
+    z = surface.points.xyz[:, 2] - surface.origin[2]
+    beyond = np.maximum(z.min() - points[:, 2], points[:, 2] - z.max())
+    worst = int(np.argmax(beyond))
+    value, limit = max(float(beyond[worst]), 0.0), RANGE_SHARE * float(np.ptp(z))
+    text = said("elevations reach {value:.1f} m beyond the data's range", value=value)
+    where = _named(points[[worst]] + surface.origin) if value > limit else ()
+    return Check("elevation range", value <= limit, value, limit, "m", text, where)
+
+
+def _area(surface: HorizonSurface) -> Check:
+    """Area of the surface's plan within the study area, beside the area of its polygon."""
+    assert surface.outline is not None
+    outline = surface.outline - surface.origin[:2]
+    wanted = abs(_signed_area(outline))
+    covered = _covered(surface.patches, outline)
+    off = 100.0 * abs(covered / wanted - 1.0)
+    figures = {"covered": covered, "wanted": wanted, "off": off}
+    if off <= UNCOVERED:
+        text = said("the surface covers {covered:.0f} of the study area's {wanted:.0f} square metres", **figures)
+    elif covered < wanted:
+        text = said(
+            "the surface covers only {covered:.0f} of the study area's {wanted:.0f} square metres: {off:.1f} % of it "
+            "have no surface",
+            **figures,
+        )
+    else:
+        text = said(
+            "the patches cover {covered:.0f} square metres of a study area of {wanted:.0f}: they overlap", **figures
+        )
+    return Check("area", off <= UNCOVERED, off, UNCOVERED, "%", text)
+
+
+def _covered(patches: Sequence[Patch], outline: Floats) -> float:
+    if all(plan_map(patch) is not None for patch in patches):
+        corners = [patch.control[[0, -1, -1, 0], [0, 0, -1, -1], :2] for patch in patches]
+        return sum(abs(_signed_area(_clipped(outline, quad))) for quad in corners)
+    import shapely
+
+    rims = []
+    for patch in patches:
+        u0, u1, v0, v1 = patch.domain
+        t = np.linspace(0, 1, 100)
+        along, across = u0 + t * (u1 - u0), v0 + t * (v1 - v0)
+        sides = ((along, v0), (u1, across), (along[::-1], v1), (u0, across[::-1]))
+        ring = np.concatenate([patch.evaluate(u, v)[:-1, :2] for u, v in sides])
+        rims.append(shapely.make_valid(shapely.Polygon(ring)))
+    return float(shapely.intersection(shapely.union_all(rims), shapely.Polygon(outline)).area)
+
+
+def _clipped(polygon: Floats, convex: Floats) -> Floats:
+    """Sutherland and Hodgman (1974): the part of a polygon within a convex one; edges may run back on themselves."""
+    if _signed_area(convex) < 0:
+        convex = convex[::-1]
+    for start, end in zip(convex, np.roll(convex, -1, axis=0), strict=True):
+        if not len(polygon):
+            break
+        side = end - start
+        off = side[0] * (polygon[:, 1] - start[1]) - side[1] * (polygon[:, 0] - start[0])
+        kept: list[Floats] = []
+        for k in range(len(polygon)):
+            a, b = k - 1, k
+            if (off[a] < 0) != (off[b] < 0):
+                kept.append(polygon[a] + (polygon[b] - polygon[a]) * off[a] / (off[a] - off[b]))
+            if off[b] >= 0:
+                kept.append(polygon[b])
+        polygon = np.array(kept).reshape(-1, 2)
+    return polygon
+
+
+def _signed_area(ring: Floats) -> float:
+    if len(ring) < 3:
+        return 0.0
+    x, y = (ring - ring[0]).T
+    return float((x * np.roll(y, -1) - y * np.roll(x, -1)).sum() / 2)
+
+
+def _named(where: Floats) -> tuple[tuple[float, float, float], ...]:
+    return tuple((float(x), float(y), float(z)) for x, y, z in where[:NAMED])

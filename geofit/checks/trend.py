@@ -1,0 +1,117 @@
+"""Departure of the surface from the regional trend where no point holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from geofit.accuracy import Check
+from geofit.checks.lattice import Lattice, places
+from geofit.surface import HorizonSurface
+from geofit.words import said
+
+__all__ = ["trend"]
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+#: How many times the largest departure of the points from their plane the surface may show away from them.
+TIMES = 2.0
+#: A place is away from the points beyond so many times their mean spacing.
+AWAY = 2.0
+#: Fewest points of a trend; of more than the most a part tells it, and how far away a place is.
+FEWEST, MOST = 10, 20_000
+ROUNDS = 10
+#: Points whose extent across is below this share of that along lie in a line, and tell no slope across it.
+LINE = 1e-3
+#: Residuals beyond so many standard deviations (by the median) count less in the plane (Huber 1964).
+HUBER = 1.5
+NAMED = 20
+
+
+def trend(surface: HorizonSurface, parts: Sequence[Lattice], honoured: Bools) -> Check | None:
+    """Hold the surface where no point is near against the robust plane of the points.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        The surface.
+    parts : sequence of Lattice
+        Its places.
+    honoured : (n,) array of bool
+        Points that conflicts left.
+
+    Returns
+    -------
+    Check or None
+        Largest departure from the plane (m) against twice the largest that the points show, or epsilon. None
+        with fewer than ten points or all in a line, for a fold (it has no plane), and where no place is away from
+        the points.
+    """
+    points = surface.points.xyz[honoured] - surface.origin
+    if len(points) < FEWEST or surface.fit.get("frame") == "sections":
+        return None
+    where, normal = places(parts)
+    if not len(where):
+        return None
+    axes = np.eye(3) if surface.fit.get("frame") == "map" else _plane_axes(points, normal)
+    if len(points) > MOST:
+        points = points[np.sort(np.random.default_rng(0).choice(len(points), MOST, replace=False))]
+    local, there = points @ axes.T, where @ axes.T
+    centre, size = local[:, :2].mean(axis=0), np.maximum(np.ptp(local[:, :2], axis=0), 1e-9)
+    along, across = np.linalg.svd(local[:, :2] - centre, compute_uv=False)
+    if across <= LINE * along:
+        return None
+    spacing = float(np.sqrt(size.prod() / len(points)))
+    away = np.asarray(cKDTree(local[:, :2]).query(there[:, :2])[0]) > AWAY * spacing
+    if not away.any():
+        return None
+    design = _design((local[:, :2] - centre) / size)
+    plane = _robust_plane(design, local[:, 2])
+    shown = float(np.abs(local[:, 2] - design @ plane).max())
+    off = np.abs(there[away, 2] - _design((there[away, :2] - centre) / size) @ plane)
+    limit = max(TIMES * shown, surface.settings.epsilon)
+    worst = np.argsort(-off, kind="stable")
+    value = float(off[worst[0]])
+    place = where[away][worst] + surface.origin
+    figures = {"value": value, "shown": shown, "x": place[0, 0], "y": place[0, 1]}
+    if value <= limit:
+        text = said(
+            "away from the points the surface departs from their plane by {value:.1f} m, the points themselves by "
+            "{shown:.1f} m",
+            **figures,
+        )
+        return Check("trend", True, value, limit, "m", text)
+    text = said(
+        "the surface runs away where no point holds it: {value:.1f} m off the regional trend at {x:.0f}, {y:.0f}, "
+        "where the points depart from it by {shown:.1f} m at most; do not use it there without further points",
+        **figures,
+    )
+    named = tuple((float(a), float(b), float(c)) for a, b, c in place[off[worst] > limit][:NAMED])
+    return Check("trend", False, value, limit, "m", text, named)
+
+
+def _plane_axes(points: Floats, normal: Floats) -> Floats:
+    """Rows: two axes in the points' plane, and its normal; over the map where the surface is no steeper than 55."""
+    mean = normal.mean(axis=0)
+    if abs(mean[2]) > np.cos(np.radians(55.0)) * max(float(np.linalg.norm(mean)), 1e-300):
+        return np.eye(3)
+    return np.asarray(np.linalg.svd(points - points.mean(axis=0), full_matrices=False)[2])
+
+
+def _design(plan: Floats) -> Floats:
+    return np.column_stack([np.ones(len(plan)), plan])
+
+
+def _robust_plane(design: Floats, height: Floats) -> Floats:
+    """Least squares reweighted by Huber's function."""
+    weight = np.ones(len(height))
+    for _ in range(ROUNDS):
+        plane = np.linalg.lstsq(design * weight[:, None], height * weight, rcond=None)[0]
+        off = np.abs(height - design @ plane)
+        spread = max(1.4826 * float(np.median(off)), 1e-9)
+        weight = np.sqrt(np.minimum(1.0, HUBER * spread / np.maximum(off, 1e-300)))
+    return np.asarray(plane)

@@ -1,0 +1,233 @@
+"""Faces of a file that end at curves within their patches: the distance ends there too.
+
+The patch of a trimmed face reaches beyond the face. A point whose foot on the patch lies outside the loops is
+measured again, to the loops themselves and to the feet that lie inside them, whichever is nearest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from geofit.geometry.cells import Cells, Place, descend, tabulate
+from geofit.geometry.distance import project
+from geofit.geometry.facets import ASIDE, Nearest
+from geofit.surface import HorizonSurface, Patch
+
+__all__ = ["Loops", "TrimmedSurface", "nearest"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+#: Loops of each patch in its parameters, (k, 2) each, not closed; none where the patch is whole.
+Loops = tuple[tuple[Floats, ...], ...]
+
+#: A place within this share of the patch beyond a loop is on it.
+ON = 1e-9
+#: Places in a patch that searches start from, along each side, and about so many along all loops of a patch.
+LATTICE, AROUND = 60, 2000
+#: Starts of each point on the loops and inside them, and steps of the golden section along a loop.
+STARTS, STEPS = 4, 60
+
+
+@dataclass(frozen=True, eq=False)
+class TrimmedSurface(HorizonSurface):
+    """A surface of a file some of whose patches are cut by ``loops``, so that it is smaller than its patches."""
+
+    loops: Loops = ()
+
+    def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
+        """Return the height at map coordinates in metres, nan outside and where a loop leaves a hole."""
+        height = super().elevation(x, y)
+        if self.outline is not None:  # one loop around all patches: they are cut along it already
+            return height
+        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        known = np.isfinite(height)
+        place = np.stack([x[known], y[known], height[known]], axis=1)
+        gone = np.abs(self.distance(place)) > ASIDE
+        height[known] = np.where(gone, np.nan, height[known])
+        return height
+
+    def distance(self, xyz: ArrayLike) -> Floats:
+        """Return the signed distance of (n, 3) map coordinates to the trimmed patches, metres, positive above."""
+        local = np.atleast_2d(np.asarray(xyz, float)) - self.origin
+        return nearest(self.patches, local, self.loops).distance
+
+
+def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Nearest:
+    """Find the nearest place of trimmed patches to each point.
+
+    Parameters
+    ----------
+    patches : sequence of Patch
+        The surface.
+    xyz : (n, 3) array_like
+        Points in the patches' coordinates, metres.
+    loops : Loops
+        Loops of each patch; what they enclose (even-odd) is the face.
+
+    Returns
+    -------
+    Nearest
+        ``part`` is the patch; ``beyond`` marks points beside the surface, whose foot is its outer edge.
+        A loop that is curved in the parameters is the polygon that was sampled along it.
+    """
+    target = np.asarray(xyz, float).reshape(-1, 3)
+    found = project(patches, target)
+    distance, foot, part = found.distance.copy(), found.foot.copy(), found.patch.copy()
+    uv = np.stack([found.u, found.v], axis=1)
+    beyond = _beside(patches, target, foot, part, uv)
+    if any(loops):
+        inside = np.ones(len(target), bool)
+        for k in range(len(patches)):
+            own = part == k
+            inside[own] = _inside(patches[k], loops[k], found.u[own], found.v[own])
+        again = np.flatnonzero(~inside)
+        if again.size:
+            rim = _rim_feet(patches, loops, target[again])
+            face = _inner_feet(patches, loops, target[again])
+            on_rim = rim.distance <= face.distance
+            assert rim.uv is not None
+            assert face.uv is not None
+            uv[again] = np.where(on_rim[:, None], rim.uv, face.uv)
+            foot[again] = np.where(on_rim[:, None], rim.foot, face.foot)
+            part[again] = np.where(on_rim, rim.part, face.part)
+            distance[again] = np.copysign(np.minimum(rim.distance, face.distance), distance[again])
+            beyond[again] = on_rim
+    return Nearest(distance, foot, part, beyond, uv)
+
+
+def _beside(patches: Sequence[Patch], target: Floats, foot: Floats, part: Ints, uv: Floats) -> Bools:
+    """Mark points whose foot is on an outer edge of the patches, and not straight below them."""
+    result = np.zeros(len(target), bool)
+    for k, patch in enumerate(patches):
+        own = np.flatnonzero(part == k)
+        low, high = np.array(patch.domain).reshape(2, 2).T
+        at = uv[own]
+        own = own[((at - low <= ON * (high - low)) | (high - at <= ON * (high - low))).any(axis=1)]
+        if not own.size:
+            continue
+        u, v = uv[own].T
+        cross = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1))
+        normal = cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-300)[:, None]
+        away = target[own] - foot[own]
+        aside = away - np.einsum("nk,nk->n", away, normal)[:, None] * normal
+        own = own[np.linalg.norm(aside, axis=1) > ASIDE]
+        others = [other for j, other in enumerate(patches) if j != k]
+        if own.size and others:
+            own = own[np.abs(project(others, foot[own]).distance) > ASIDE]
+        result[own] = True
+    return result
+
+
+def _region(patch: Patch, loops: tuple[Floats, ...]) -> Any:
+    """Return what the loops enclose, in the patch's parameters stretched to a unit square."""
+    import shapely
+
+    low, high = np.array(patch.domain).reshape(2, 2).T
+    region: Any = shapely.Polygon()
+    for loop in loops:
+        region = region.symmetric_difference(shapely.make_valid(shapely.Polygon((loop - low) / (high - low))))
+    return region.buffer(ON, join_style="mitre")
+
+
+def _inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Bools:
+    import shapely
+
+    if not loops:
+        return np.ones(np.shape(u), bool)
+    region = _region(patch, loops)
+    shapely.prepare(region)
+    u0, u1, v0, v1 = patch.domain
+    return np.asarray(shapely.intersects_xy(region, (u - u0) / (u1 - u0), (v - v0) / (v1 - v0)))
+
+
+def _rim_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Nearest:
+    """Return the nearest places on the loops: a golden section along the pieces beside the nearest samples."""
+    starts, ways, places, owner = [], [], [], []
+    for k, patch in enumerate(patches):
+        for loop in loops[k]:
+            ends = np.roll(loop, -1, axis=0)
+            count = max(2, -(-AROUND // sum(map(len, loops[k]))))
+            share = np.arange(count) / count
+            start = (loop[:, None] + share[:, None] * (ends - loop)[:, None]).reshape(-1, 2)
+            starts.append(start)
+            ways.append(np.repeat((ends - loop) / count, count, axis=0))
+            places.append(patch.evaluate(*(start + ways[-1] / 2).T))
+            owner.append(np.full(len(start), k))
+    start, way, part = np.concatenate(starts), np.concatenate(ways), np.concatenate(owner)
+    count = min(2 * STARTS, len(start))
+    piece = np.asarray(cKDTree(np.concatenate(places)).query(target, k=np.arange(1, count + 1))[1]).ravel()
+    point = np.repeat(np.arange(len(target)), count)
+
+    def at(t: Floats) -> Floats:
+        result = np.empty((len(t), 3))
+        for k in np.unique(part[piece]):
+            own = part[piece] == k
+            result[own] = patches[k].evaluate(*(start[piece[own]] + t[own, None] * way[piece[own]]).T)
+        return result
+
+    def far(t: Floats) -> Floats:
+        return np.asarray(np.linalg.norm(at(t) - target[point], axis=1))
+
+    t = _golden(far, len(piece))
+    distance = far(t)
+    best = np.lexsort((distance, point))[::count]
+    uv = (start[piece] + t[:, None] * way[piece])[best]
+    return Nearest(distance[best], at(t)[best], part[piece[best]], np.ones(len(target), bool), uv)
+
+
+def _golden(value: Any, count: int) -> Floats:
+    """Return where each of ``count`` functions of one variable is least in 0 to 1 (golden section)."""
+    ratio = (np.sqrt(5) - 1) / 2
+    low, high = np.zeros(count), np.ones(count)
+    a, b = 1 - ratio * np.ones(count), ratio * np.ones(count)
+    at_a, at_b = value(a), value(b)
+    for _ in range(STEPS):
+        left = at_a <= at_b
+        low, high = np.where(left, low, a), np.where(left, b, high)
+        a, b = high - ratio * (high - low), low + ratio * (high - low)
+        at_a, at_b = value(a), value(b)
+    middle = (low + high) / 2
+    ends = np.stack([np.zeros(count), middle, np.ones(count)])
+    values = np.stack([value(t) for t in ends])
+    return np.asarray(np.take_along_axis(ends, values.argmin(axis=0)[None], axis=0)[0])
+
+
+def _inner_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Nearest:
+    """Return the nearest feet inside the loops, infinitely far where there is none."""
+    cells, tree, place = _lattice(patches, loops)
+    count = min(STARTS, tree.n)
+    start = np.asarray(tree.query(target, k=np.arange(1, count + 1))[1]).ravel()
+    point = np.repeat(np.arange(len(target)), count)
+    end = descend(cells, place[start], np.ascontiguousarray(target[point].T))
+    (u, v), part = cells.parameters(end), cells.patch[end.cell]
+    foot = np.ascontiguousarray(cells.points(end).T)
+    distance = np.linalg.norm(foot - target[point], axis=1)
+    for k, patch in enumerate(patches):
+        own = np.flatnonzero(part == k)
+        distance[own[~_inside(patch, loops[k], u[own], v[own])]] = np.inf
+    best = np.lexsort((distance, point))[::count]
+    uv = np.stack([u, v], axis=1)[best]
+    return Nearest(distance[best], foot[best], part[best], np.zeros(len(target), bool), uv)
+
+
+def _lattice(patches: Sequence[Patch], loops: Loops) -> tuple[Cells, cKDTree, Place]:
+    """Return places inside the loops with a tree of them; one at least of each patch."""
+    cells = tabulate(patches)
+    parts = []
+    for k, patch in enumerate(patches):
+        u0, u1, v0, v1 = patch.domain
+        u, v = (a.ravel() for a in np.meshgrid(np.linspace(u0, u1, LATTICE), np.linspace(v0, v1, LATTICE)))
+        held = _inside(patch, loops[k], u, v)
+        if not held.any():  # a sliver between the lattice's places
+            some = _region(patch, loops[k]).representative_point()
+            u, v, held = np.array([u0 + some.x * (u1 - u0)]), np.array([v0 + some.y * (v1 - v0)]), np.ones(1, bool)
+        parts.append(cells.locate(k, u[held], v[held]))
+    place = Place(np.concatenate([p.cell for p in parts]), np.concatenate([p.local for p in parts], axis=1))
+    return cells, cKDTree(cells.points(place).T), place

@@ -1,0 +1,325 @@
+"""Triangles of a surface: within a chordal tolerance, without cracks at the seams, trimmed to the outline."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.errors import SettingsError
+from geofit.geometry.clip import clip
+from geofit.geometry.elevation import plan_map
+from geofit.surface import HorizonSurface, Patch
+
+__all__ = ["Mesh", "MeshSurface", "triangulate"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Corners and edges of patches nearer than this (metres) are one, as in the sewn shell.
+WELD = 1e-6
+#: No span is cut into more pieces than this.
+FINEST = 400
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles of one surface.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Vertices in metres, relative to ``origin``.
+    triangles : (m, 3) array of int
+        Vertices of each triangle; its normal is on the side of S_u x S_v.
+    patch : (m,) array of int
+        Which patch of the surface a triangle belongs to.
+    uv : (m, 3, 2) array
+        Parameters, in that patch, of each corner.
+    origin : (3,) array
+        Offset that turns the vertices into map coordinates, metres.
+    names : tuple of str
+        Names of the patches.
+    """
+
+    points: Floats
+    triangles: Ints
+    patch: Ints
+    uv: Floats
+    origin: Floats
+    names: tuple[str, ...]
+
+    @property
+    def xyz(self) -> Floats:
+        """Vertices in map coordinates, metres."""
+        return self.points + self.origin
+
+
+@dataclass(frozen=True, eq=False)
+class MeshSurface(HorizonSurface):
+    """A surface of a file that is triangles itself, so that it has no patches; ``mesh`` holds them."""
+
+    mesh: Mesh = field(kw_only=True)
+
+    def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
+        """Return the height at map coordinates in metres, nan outside, the highest of several; arrays broadcast."""
+        from geofit.geometry.facets import elevation
+
+        return elevation(self.mesh, x, y)
+
+    def distance(self, xyz: ArrayLike) -> Floats:
+        """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""
+        from geofit.geometry.facets import nearest
+
+        return nearest(self.mesh, np.atleast_2d(np.asarray(xyz, float)) - self.mesh.origin).distance
+
+
+def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
+    """Return triangles of a surface, trimmed to its outline.
+
+    Every knot span is cut so finely that a triangle leaves the surface by about ``tolerance`` at most; spans
+    that bend little stay whole. Neighbouring patches that share an edge curve share its vertices, so seams
+    are closed exactly. On the outline the vertices of a height field lie on the surface, those of any other
+    surface on the triangle that was cut.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        Any patches, steep and overturned ones included.
+    tolerance : float
+        Largest distance between triangle and surface in metres.
+
+    Raises
+    ------
+    SettingsError
+        If the tolerance is not above 0.
+
+    Notes
+    -----
+    A triangle with sides h_u, h_v in the parameters leaves the surface by at most
+    (h_u^2 |S_uu.n| + 2 h_u h_v |S_uv.n| + h_v^2 |S_vv.n|) / 8 (Filip, Magedson, Markot 1986, "Surface
+    algorithms using bounds on derivatives"). Second derivatives of a cubic are largest at the ends of spans.
+    """
+    if not (tolerance > 0 and math.isfinite(tolerance)):
+        raise SettingsError(f"The chordal tolerance is {tolerance}; give metres above 0.")
+    if isinstance(surface, MeshSurface):
+        return surface.mesh
+    lines = [_lines(patch, tolerance) for patch in surface.patches]
+    table = _Vertices()
+    edges = _shared_edges(surface.patches, lines)
+    parts = [_patch_triangles(patch, lines[k], edges[k], table) for k, patch in enumerate(surface.patches)]
+    mesh = Mesh(
+        points=np.concatenate(table.points),
+        triangles=np.concatenate([triangles for triangles, _ in parts]),
+        patch=np.repeat(np.arange(len(parts)), [len(triangles) for triangles, _ in parts]),
+        uv=np.concatenate([uv for _, uv in parts]),
+        origin=np.asarray(surface.origin, float),
+        names=tuple(patch.name for patch in surface.patches),
+    )
+    t = mesh.triangles
+    mesh = _select(mesh, (t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0]))
+    return mesh if surface.outline is None else _trim(mesh, surface)
+
+
+def _lines(patch: Patch, tolerance: float) -> tuple[Floats, Floats]:
+    """Choose the parameter lines in u and v: every knot, and as many between as the curvature asks."""
+    breaks = np.unique(patch.knots_u), np.unique(patch.knots_v)
+    # Both ends of each span, from its inside: at double knots the second derivative jumps.
+    u, v = (np.stack([b[:-1] + 1e-9 * np.diff(b), b[1:] - 1e-9 * np.diff(b)], axis=1).ravel() for b in breaks)
+    u, v = u[:, None], v[None, :]
+    su, sv = patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1)
+    cross = np.cross(su, sv)
+    normal = cross / np.maximum(np.linalg.norm(cross, axis=-1, keepdims=True), 1e-300)
+    uu, uv, vv = (
+        np.abs(np.einsum("abk,abk->ab", patch.evaluate(u, v, *order), normal)) for order in ((2, 0), (1, 1), (0, 2))
+    )
+    length_u, length_v = (np.maximum(np.linalg.norm(s, axis=-1), 1e-300) for s in (su, sv))
+    along_u = (uu + uv * length_u / length_v).max(axis=1).reshape(-1, 2).max(axis=1)
+    along_v = (vv + uv * length_v / length_u).max(axis=0).reshape(-1, 2).max(axis=1)
+    return _cut(breaks[0], along_u, tolerance), _cut(breaks[1], along_v, tolerance)
+
+
+def _cut(breaks: Floats, bend: Floats, tolerance: float) -> Floats:
+    pieces = np.ceil(np.diff(breaks) * np.sqrt(bend / (4 * tolerance))).clip(1, FINEST).astype(int)
+    if pieces.sum() == 1:
+        pieces[0] = 2  # the triangles between edge and inside need one line inside
+    spans = zip(breaks[:-1], breaks[1:], pieces, strict=True)
+    return np.append(np.concatenate([np.linspace(a, b, n, endpoint=False) for a, b, n in spans]), breaks[-1])
+
+
+class _Vertices:
+    """Vertices as they are made, by number."""
+
+    def __init__(self) -> None:
+        self.points: list[Floats] = []
+        self.count = 0
+        self._corners: list[tuple[Floats, int]] = []
+
+    def add(self, points: Floats) -> Ints:
+        self.points.append(points)
+        self.count += len(points)
+        return np.arange(self.count - len(points), self.count)
+
+    def corner(self, point: Floats) -> int:
+        for known, number in self._corners:
+            if np.abs(known - point).max() <= WELD:
+                return number
+        number = int(self.add(point[None])[0])
+        self._corners.append((point, number))
+        return number
+
+
+@dataclass(eq=False)
+class _Curve:
+    """One edge curve: its parameters, and its vertices once the first patch has made them."""
+
+    t: Floats
+    inner: Ints | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Edge:
+    """A patch's edge on a curve; ``flip`` if it runs against it."""
+
+    curve: _Curve
+    flip: bool
+
+
+def _shared_edges(patches: tuple[Patch, ...], lines: list[tuple[Floats, Floats]]) -> list[list[_Edge]]:
+    """Give each patch its edges south, east, north, west; edges with one curve share their parameters."""
+    known: list[tuple[Floats, Floats, _Curve]] = []
+    result = []
+    for patch, (u, v) in zip(patches, lines, strict=True):
+        edges = []
+        for side, t in enumerate((u, v, u, v)):
+            poles, knots = _edge_curve(patch, side)
+            share = (t - t[0]) / (t[-1] - t[0])
+            for other, other_knots, curve in known:
+                flip = _same(poles, knots, other, other_knots)
+                if flip is not None:
+                    curve.t = _union(curve.t, 1 - share[::-1] if flip else share)
+                    edges.append(_Edge(curve, flip))
+                    break
+            else:
+                curve = _Curve(share)
+                known.append((poles, knots, curve))
+                edges.append(_Edge(curve, False))
+        result.append(edges)
+    return result
+
+
+def _edge_curve(patch: Patch, side: int) -> tuple[Floats, Floats]:
+    """Return control points (with weights) and knots, scaled to 0..1, of an edge in ascending u or v."""
+    weights = np.ones(patch.control.shape[:2]) if patch.weights is None else patch.weights
+    poles = np.concatenate([patch.control, weights[..., None]], axis=2)
+    poles = (poles[:, 0], poles[-1], poles[:, -1], poles[0])[side]
+    knots = patch.knots_u if side % 2 == 0 else patch.knots_v
+    return poles, (knots - knots[0]) / (knots[-1] - knots[0])
+
+
+def _same(poles: Floats, knots: Floats, other: Floats, other_knots: Floats) -> bool | None:
+    """Whether two curves are one: False as they stand, True if one is reversed, None if they are not."""
+    if poles.shape != other.shape or knots.shape != other_knots.shape:
+        return None
+    for flip in (False, True):
+        turned, scale = (poles[::-1], 1 - knots[::-1]) if flip else (poles, knots)
+        if np.abs(turned - other).max() <= WELD and np.abs(scale - other_knots).max() <= 1e-9:
+            return flip
+    return None
+
+
+def _union(first: Floats, second: Floats) -> Floats:
+    both = np.sort(np.concatenate([first, second]))
+    merged = both[np.append(np.diff(both) > 1e-9, True)]
+    merged[0], merged[-1] = 0.0, 1.0
+    return np.asarray(merged)
+
+
+def _patch_triangles(
+    patch: Patch, lines: tuple[Floats, Floats], edges: list[_Edge], table: _Vertices
+) -> tuple[Ints, Floats]:
+    """Triangulate a patch: a grid inside, and four strips that join it to the edges' own vertices."""
+    u, v = lines
+    inside = table.add(patch.evaluate(u[1:-1, None], v[None, 1:-1]).reshape(-1, 3)).reshape(len(u) - 2, len(v) - 2)
+    where = {}
+    grid_uv = np.stack(np.meshgrid(u[1:-1], v[1:-1], indexing="ij"), axis=-1)
+    a, b, c, d = inside[:-1, :-1], inside[1:, :-1], inside[1:, 1:], inside[:-1, 1:]
+    pa, pb, pc, pd = grid_uv[:-1, :-1], grid_uv[1:, :-1], grid_uv[1:, 1:], grid_uv[:-1, 1:]
+    triangles = [np.stack(t, axis=-1).reshape(-1, 3) for t in ((a, b, c), (a, c, d))]
+    uvs = [np.stack(t, axis=-2).reshape(-1, 3, 2) for t in ((pa, pb, pc), (pa, pc, pd))]
+    for side, edge in enumerate(edges):
+        where[side] = _edge_vertices(patch, side, edge, table)
+    # Counter-clockwise around the patch: the edge outside on the right hand, the grid on the left.
+    inner = (
+        (inside[:, 0], grid_uv[:, 0], u[1:-1]),
+        (inside[-1], grid_uv[-1], v[1:-1]),
+        (inside[::-1, -1], grid_uv[::-1, -1], -u[-2:0:-1]),
+        (inside[0, ::-1], grid_uv[0, ::-1], -v[-2:0:-1]),
+    )
+    for side, (numbers, places, t) in enumerate(inner):
+        outer_numbers, outer_places = where[side]
+        outer_t = outer_places[:, side % 2]
+        if side >= 2:
+            outer_numbers, outer_places, outer_t = outer_numbers[::-1], outer_places[::-1], -outer_t[::-1]
+        strip, strip_uv = _strip(outer_numbers, outer_places, outer_t, numbers, places, t)
+        triangles.append(strip)
+        uvs.append(strip_uv)
+    return np.concatenate(triangles), np.concatenate(uvs)
+
+
+def _edge_vertices(patch: Patch, side: int, edge: _Edge, table: _Vertices) -> tuple[Ints, Floats]:
+    """Return numbers and parameters of an edge's vertices in ascending u or v; make them if they are new."""
+    u0, u1, v0, v1 = patch.domain
+    share = 1 - edge.curve.t[::-1] if edge.flip else edge.curve.t
+    start, end = (u0, u1) if side % 2 == 0 else (v0, v1)
+    t = start + share * (end - start)
+    t[-1] = end
+    fixed = np.full_like(t, (v0, u1, v1, u0)[side])
+    uv = np.stack([t, fixed] if side % 2 == 0 else [fixed, t], axis=-1)
+    ends = patch.evaluate(uv[[0, -1], 0], uv[[0, -1], 1])
+    first, last = table.corner(ends[0]), table.corner(ends[1])
+    if edge.curve.inner is None:
+        numbers = table.add(patch.evaluate(uv[1:-1, 0], uv[1:-1, 1]))
+        edge.curve.inner = numbers[::-1] if edge.flip else numbers
+    inner = edge.curve.inner[::-1] if edge.flip else edge.curve.inner
+    return np.concatenate([[first], inner, [last]]), uv
+
+
+def _strip(
+    outer: Ints, outer_uv: Floats, outer_t: Floats, inner: Ints, inner_uv: Floats, inner_t: Floats
+) -> tuple[Ints, Floats]:
+    """Join two chains that run side by side, outer to the right: always advance where the next middle is first."""
+    steps_o, steps_i = len(outer) - 1, len(inner) - 1
+    middle = np.concatenate([(outer_t[:-1] + outer_t[1:]) / 2, (inner_t[:-1] + inner_t[1:]) / 2])
+    order = np.argsort(middle, kind="stable")
+    of_outer = order < steps_o
+    at_o: Ints = np.cumsum(of_outer) - of_outer
+    at_i: Ints = np.cumsum(~of_outer) - ~of_outer
+    corner = np.where(of_outer, at_o + 1, at_i + 1)
+    numbers = np.where(of_outer, outer[corner.clip(0, steps_o)], inner[corner.clip(0, steps_i)])
+    places = np.where(of_outer[:, None], outer_uv[corner.clip(0, steps_o)], inner_uv[corner.clip(0, steps_i)])
+    triangles = np.stack([outer[at_o], numbers, inner[at_i]], axis=-1)
+    return triangles, np.stack([outer_uv[at_o], places, inner_uv[at_i]], axis=1)
+
+
+def _select(mesh: Mesh, keep: NDArray[np.bool_]) -> Mesh:
+    """Keep some triangles, and the vertices that they use."""
+    triangles = mesh.triangles[keep]
+    used, numbers = np.unique(triangles, return_inverse=True)
+    return Mesh(mesh.points[used], numbers.reshape(-1, 3), mesh.patch[keep], mesh.uv[keep], mesh.origin, mesh.names)
+
+
+def _trim(mesh: Mesh, surface: HorizonSurface) -> Mesh:
+    assert surface.outline is not None
+    before = len(mesh.points)
+    outline = np.asarray(surface.outline, float) - surface.origin[:2]
+    points, triangles, parent, uv = clip(mesh.points, mesh.triangles, mesh.uv, outline)
+    patch = mesh.patch[parent]
+    for k, one in enumerate(surface.patches):
+        if plan_map(one) is not None:
+            corner = (triangles >= before) & (patch == k)[:, None]
+            points[triangles[corner], 2] = one.evaluate(uv[corner][:, 0], uv[corner][:, 1])[:, 2]
+    whole = Mesh(points, triangles, patch, uv, mesh.origin, mesh.names)
+    return _select(whole, np.ones(len(triangles), bool))

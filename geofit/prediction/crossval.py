@@ -1,0 +1,181 @@
+"""Cross-validation: holes, sections and blocks left out, beside what other methods say on the same folds."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.model import Model
+from geofit.offdata import LeftOut, Scheme
+from geofit.prediction.calibration import FEWEST, SHARE, Calibration, LeftOutPoints, calibrate, factor_for, share_inside
+from geofit.prediction.deletion import LinearFit, Prediction
+from geofit.prediction.folds import beyond_hull, block_labels, groups_of, hole_labels
+from geofit.prediction.kriging import krige_left_out
+from geofit.prediction.posterior import Posterior
+from geofit.prediction.thinplate import thin_plate_left_out
+from geofit.words import Said, said
+
+__all__ = ["BLOCK", "Fold", "about_the_hull", "calibrated", "common_factor", "folds_of", "left_out", "one_by_one"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Width of the blocks, in units of the spacing of the sparse points; and of those that only calibrate.
+BLOCK, SMALL_BLOCK = 3.0, 1.5
+
+
+@dataclass(frozen=True, eq=False)
+class Fold:
+    """One scheme: the (n,) label of each honoured point, the groups, and what the fit predicts without each."""
+
+    scheme: Scheme
+    label: NDArray[np.str_]
+    groups: list[Ints]
+    predicted: Prediction
+
+
+def folds_of(model: Model, fit: LinearFit) -> list[Fold]:
+    """Leave out every hole, every section and every block of a height field in turn."""
+    given = fit.posterior
+    points = model.problem.points[given.kept]
+    labels: list[tuple[Scheme, NDArray[np.str_]]] = [
+        ("hole", hole_labels(points)),
+        ("section", model.problem.chart.section[given.kept]),
+        ("block", block_labels(given.plane, BLOCK)),
+    ]
+    folds = []
+    for scheme, label in labels:
+        groups = groups_of(label)
+        if len(groups) >= 2:
+            folds.append(Fold(scheme, label, groups, fit.without(groups)))
+    return folds
+
+
+def one_by_one(model: Model, given: Posterior) -> list[Fold]:
+    """Leave out point by point, of the field alone: what many points allow, e = r / (1 - h)."""
+    held = 1 - given.leverage
+    known = held > 1e-9
+    safe = np.where(known, held, 1.0)
+    error = np.where(known, given.residual / safe, np.nan)
+    variance = np.where(known, given.noise**2 * given.leverage / given.weight / safe, np.nan)
+    label = hole_labels(model.problem.points[given.kept].with_(hole="", section=""))
+    return [Fold("hole", label, groups_of(label), Prediction(error, error, variance))]
+
+
+def calibrated(fit: LinearFit, folds: list[Fold], places: Floats, variance: Floats) -> Calibration:
+    """Hold the standard deviation to the errors of all schemes (:func:`geofit.prediction.calibration.calibrate`).
+
+    ``places`` (k, 2) lie all over the surface, ``variance`` (k,) is what the fit expects there, m^2.
+    """
+    given = fit.posterior
+    alone = fit.without([np.array([k]) for k in range(len(given.value))])
+    small = fit.without(groups_of(block_labels(given.plane, SMALL_BLOCK)))
+
+    def by(scheme: Scheme) -> list[Prediction]:
+        return [fold.predicted for fold in folds if fold.scheme == scheme]
+
+    near = _gathered(given, [alone, small, *by("section")])
+    blocks, holes = _gathered(given, by("block")), _gathered(given, by("hole"))
+    return calibrate(given.plane, near, blocks, holes, places, variance)
+
+
+def common_factor(fit: LinearFit, judged: NDArray[np.bool_]) -> float:
+    """Return the factor of the standard deviation that holds 90 % of the judged points, each left out alone."""
+    alone = fit.without([np.array([k]) for k in np.flatnonzero(judged)])
+    left = _gathered(fit.posterior, [alone])
+    return factor_for(left, 1.0, np.ones(len(left.point)), SHARE) if len(left.point) >= FEWEST else 1.0
+
+
+def _gathered(given: Posterior, predictions: list[Prediction]) -> LeftOutPoints:
+    """Put the errors of several predictions one after another, without the points that were not left out."""
+    noise = (given.noise * given.noise_ratio) ** 2
+    point = np.tile(np.arange(len(given.value)), len(predictions))
+    error = np.concatenate([np.empty(0), *(one.error for one in predictions)])
+    variance = np.concatenate([np.empty(0), *(_variance(one) for one in predictions)])
+    known = np.isfinite(error)
+    return LeftOutPoints(point[known], error[known], variance[known], noise[point[known]])
+
+
+def left_out(model: Model, given: Posterior, fold: Fold, calibration: Calibration, plate: Floats | None) -> LeftOut:
+    """Return the figures of one scheme over all points of the horizon.
+
+    Parameters
+    ----------
+    model : Model
+        The fit.
+    given : Posterior
+        Its field.
+    fold : Fold
+        The scheme.
+    calibration : Calibration
+        Factors of the standard deviation.
+    plate : (n, n) array or None
+        Inverse of the thin-plate spline (:func:`geofit.prediction.thinplate.thin_plate_inverse`) with which it and
+        kriging predict the same folds; None: no other method is compared.
+    """
+    error = fold.predicted.error
+    variance, noise = _variance(fold.predicted), (given.noise * given.noise_ratio) ** 2
+    widened = calibration.at(given.plane) ** 2 * variance + noise
+    known = np.isfinite(error)
+    others: dict[str, float] = {}
+    if plate is not None and known.any():
+        z = model.problem.chart.values[given.kept]
+        others["thin plate"] = _rms((z - thin_plate_left_out(given.plane, z, fold.groups, plate))[known])
+        others["kriging"] = _rms((z - krige_left_out(given.plane, z, fold.groups))[known])
+    count = len(model.problem.points)
+    label = np.zeros(count, dtype=fold.label.dtype)
+    label[given.kept[known]] = fold.label[known]
+    return LeftOut(
+        scheme=fold.scheme,
+        groups=len(np.unique(fold.label[known])),
+        group=label,
+        error=_over_all(count, given.kept, error),
+        sd=_over_all(count, given.kept, np.where(known, np.sqrt(widened), np.nan)),
+        rms=_rms(error),
+        mean_abs=_mean(np.abs(error)),
+        bias=_mean(error),
+        max_abs=float(np.abs(error[known]).max()) if known.any() else float("nan"),
+        inside=share_inside(error, widened),
+        inside_raw=share_inside(error, variance + noise),
+        peers=others,
+    )
+
+
+def about_the_hull(given: Posterior, fold: Fold) -> Said | None:
+    """Say how much of the error comes from points beyond the hull of the others, where every method extrapolates."""
+    beyond = beyond_hull(given.plane, fold.groups) & np.isfinite(fold.predicted.error)
+    within = ~beyond & np.isfinite(fold.predicted.error)
+    if not beyond.any() or not within.any():
+        return None
+    return said(
+        "{beyond} of {total} points left out by {scheme} lie beyond the hull of the others, where every method "
+        "extrapolates: error {outer:.3g} m there, {inner:.3g} m within",
+        beyond=int(beyond.sum()),
+        total=int(beyond.sum() + within.sum()),
+        scheme=said(fold.scheme),
+        outer=_rms(fold.predicted.error[beyond]),
+        inner=_rms(fold.predicted.error[within]),
+    )
+
+
+def _variance(predicted: Prediction) -> Floats:
+    """Mean square error of the surface at a point left out: the field's, and the surface's departure from the field."""
+    return np.asarray(predicted.variance + (predicted.error - predicted.field_error) ** 2)
+
+
+def _over_all(count: int, kept: Ints, values: Floats) -> Floats:
+    full = np.full(count, np.nan)
+    full[kept] = values
+    return full
+
+
+def _rms(error: Floats) -> float:
+    known = error[np.isfinite(error)]
+    return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
+
+
+def _mean(values: Floats) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if len(known) else float("nan")

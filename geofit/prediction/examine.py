@@ -1,0 +1,129 @@
+"""examine: how far the rock may lie from the surface where nobody drilled."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from geofit.errors import FitError
+from geofit.model import Model
+from geofit.offdata import LeftOut, OffData, Outlier
+from geofit.prediction.calibration import uncalibrated
+from geofit.prediction.crossval import about_the_hull, calibrated, folds_of, left_out, one_by_one
+from geofit.prediction.deletion import linear_fit
+from geofit.prediction.drilling import suggest_holes
+from geofit.prediction.outliers import find_outliers
+from geofit.prediction.posterior import posterior
+from geofit.prediction.refits import sections_by_refit
+from geofit.prediction.spread import Spread, grid_over, uncertainty_on
+from geofit.prediction.thinplate import thin_plate_inverse
+from geofit.progress import Progress, tell
+from geofit.surface import HorizonSurface
+from geofit.words import said
+
+__all__ = ["MOST", "examine"]
+
+Floats = NDArray[np.float64]
+
+#: More points than these are left out one by one only: the covariance of all of them would not fit.
+MOST = 4_000
+#: Shares of left-out points inside the 90 % band between which the band counts as held.
+HELD = (0.85, 0.95)
+
+
+def examine(surface: HorizonSurface, progress: Progress | None = None) -> OffData:
+    """Examine a fit away from its data.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        A fit; of an imported surface nothing can be said, and the notes say so.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``; returning False stops.
+
+    Returns
+    -------
+    OffData
+        Errors at holes, sections and blocks left out (no refit: :mod:`geofit.prediction.deletion`) beside the
+        thin-plate spline and kriging on the same folds; standard deviation on a grid, held to those errors; the next
+        holes; outliers.
+
+    Raises
+    ------
+    Cancelled
+        If ``progress`` returned False.
+    """
+    model = surface.model
+    if model is None:
+        return _nothing(said("'{name}' was not fitted here: no point can be left out of it", name=surface.name))
+    with threadpool_limits(limits=1):
+        if model.problem.chart.parametric:
+            return sections_by_refit(surface, model, progress)
+        try:
+            return _examine(surface, model, progress)
+        except FitError as error:
+            return _nothing(said("the error off the data cannot be told: {reason}", reason=str(error)))
+
+
+def _examine(surface: HorizonSurface, model: Model, progress: Progress | None) -> OffData:
+    notes: list[str] = []
+    tell(progress, "uncertainty", 0.0)
+    given = posterior(model)
+    grid = grid_over(surface)
+    many = len(given.value) > MOST
+    calibration = uncalibrated()
+    outliers: tuple[Outlier, ...] = ()
+    tell(progress, "cross-validation", 0.2)
+    if many:
+        folds = one_by_one(model, given)
+        notes.append(
+            said(
+                "{count} points are too many to leave out in groups: each is left out alone, of the regional field, "
+                "and no other method is compared",
+                count=len(given.value),
+            )
+        )
+    else:
+        fit = linear_fit(model, given)
+        folds = folds_of(model, fit)
+        tell(progress, "calibration", 0.5)
+        calibration = calibrated(fit, folds, grid.plane, Spread(model, given, calibration).variance(grid.plane))
+        outliers = find_outliers(fit, calibration.at(given.plane))
+        if not given.exact_net:
+            notes.append(said("so many control points: the regional field alone is left out, on a coarser net"))
+    if model.net.lines is not None:
+        notes.append(said("the core is linear across its sections; its left-out errors are those of a cubic one"))
+    tell(progress, "other methods", 0.65)
+    plate = None if many else thin_plate_inverse(given.plane)
+    results = []
+    for fold in folds:
+        results.append(left_out(model, given, fold, calibration, plate))
+        beyond = about_the_hull(given, fold) if not many else None
+        notes += [beyond] if beyond else []
+        notes += _not_held(results[-1])
+    tell(progress, "next holes", 0.8)
+    spread = Spread(model, given, calibration)
+    suggestions = suggest_holes(grid, spread) if len(grid.plane) else ()
+    uncertainty = uncertainty_on(grid, spread) if len(grid.plane) else None
+    tell(progress, "done", 1.0)
+    return OffData(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
+
+
+def _not_held(found: LeftOut) -> list[str]:
+    low, high = HELD
+    if not np.isfinite(found.inside) or low <= round(found.inside, 2) <= high:
+        return []
+    return [
+        said(
+            "{share:.0%} of the points left out by {scheme} lie inside the 90 % band ({raw:.0%} before it was held to "
+            "the places between the data)",
+            share=found.inside,
+            scheme=said(found.scheme),
+            raw=found.inside_raw,
+        )
+    ]
+
+
+def _nothing(note: str) -> OffData:
+    return OffData((), None, (), (), (note,))

@@ -1,0 +1,69 @@
+"""Sections of a folded surface left out by new fits: it is no height field, and no linear algebra spares them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from geofit.errors import GeofitError
+from geofit.model import Model
+from geofit.offdata import LeftOut, OffData
+from geofit.pipeline import fit_horizon
+from geofit.prediction.folds import groups_of
+from geofit.progress import Progress, tell
+from geofit.surface import HorizonSurface
+from geofit.words import said
+
+__all__ = ["sections_by_refit"]
+
+#: More sections than these would take too long.
+MOST_SECTIONS = 40
+
+
+def sections_by_refit(surface: HorizonSurface, model: Model, progress: Progress | None) -> OffData:
+    """Leave out each inner section of a parametric surface, and measure its orthogonal distance from the rest's fit.
+
+    The first and the last section are never left out: no surface reaches them without their points.
+    """
+    points, chart = surface.points, model.problem.chart
+    groups = [group for group in groups_of(chart.section) if model.problem.kept[group].any()]
+    groups.sort(key=lambda group: float(np.median(chart.plane[group, 0])))
+    error = np.full(len(points), np.nan)
+    label = np.zeros(len(points), dtype=chart.section.dtype)
+    notes = [said("a folded surface has no standard deviation: leaving out its sections is all that can be said")]
+    inner = groups[1:-1]
+    if len(inner) > MOST_SECTIONS:
+        notes.append(said("{count} sections are too many to leave out by new fits", count=len(inner)))
+        inner = []
+    failed = 0
+    for k, group in enumerate(inner):
+        tell(progress, "cross-validation", k / len(inner))
+        rest = np.setdiff1d(np.arange(len(points)), group)
+        try:
+            without = fit_horizon(points[rest], surface.settings, model.problem.boundary, name=surface.name)
+        except GeofitError:
+            failed += 1
+            continue
+        error[group] = without.distance(points.xyz[group])
+        label[group] = chart.section[group]
+    tell(progress, "done", 1.0)
+    if failed:
+        notes.append(said("without {failed} of the sections no surface can be laid", failed=failed))
+    known = error[np.isfinite(error)]
+    if not len(known):
+        return OffData((), None, (), (), tuple(notes))
+    notes.append(said("errors are distances from the surface through the other sections; the outermost two stay"))
+    found = LeftOut(
+        scheme="section",
+        groups=len(np.unique(label[label != ""])),
+        group=label,
+        error=error,
+        sd=np.full(len(points), np.nan),
+        rms=float(np.sqrt(np.mean(known**2))),
+        mean_abs=float(np.abs(known).mean()),
+        bias=float(known.mean()),
+        max_abs=float(np.abs(known).max()),
+        inside=float("nan"),
+        inside_raw=float("nan"),
+        peers={},
+    )
+    return OffData((found,), None, (), (), tuple(notes))

@@ -1,0 +1,1 @@
+"""B-spline bases and their sparse systems. Pure functions over arrays."""

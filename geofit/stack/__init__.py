@@ -1,0 +1,1 @@
+"""Several horizons together: their order, where they cross, blocks between faults, a whole site."""

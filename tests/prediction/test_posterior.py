@@ -1,0 +1,241 @@
+"""Variances, left-out errors, bands and next holes against dense algebra and brute force."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from truth import Truth, paper_arrangement
+
+from geofit import FitSettings, PointSet, fit_horizon
+from geofit.errors import FitError, SettingsError
+from geofit.prediction.calibration import uncalibrated
+from geofit.prediction.deletion import LinearFit, linear_fit
+from geofit.prediction.drilling import greedy_holes, suggest_holes
+from geofit.prediction.posterior import posterior
+from geofit.prediction.spread import Spread, band, grid_over, sd_at, uncertainty_on
+from geofit.splines import bspline
+from geofit.splines.blocks import BlockFactor
+from geofit.splines.tensor import RIDGES, TensorSpace
+from geofit.steps.field import energy_band
+from geofit.surface import HorizonSurface
+
+
+def dense(band: np.ndarray) -> np.ndarray:
+    full = np.zeros((band.shape[1],) * 2)
+    for k, row in enumerate(band):
+        j = np.arange(band.shape[1] - k)
+        full[j + k, j] = full[j, j + k] = row[: len(j)]
+    return full
+
+
+@cache
+def system() -> tuple[TensorSpace, np.ndarray, np.ndarray]:
+    """A space of 13 x 9 control points, 60 places, and a band of data and energy."""
+    breaks = np.linspace(0, 1, 11), np.linspace(0, 1, 7)
+    space = TensorSpace(*(bspline.clamped_knots(along, 3) for along in breaks))
+    plane = np.random.default_rng(4).uniform(size=(60, 2))
+    data, _ = space.normal_equations(plane, np.zeros(60), np.linspace(0.5, 2, 60))
+    return space, plane, data + 1e-5 * energy_band(space, "smooth")
+
+
+def test_block_factor_agrees_with_dense_algebra():
+    space, plane, system_band = system()
+    factor, inverse = BlockFactor(system_band), np.linalg.inv(dense(system_band))
+    matrix = space.matrix(plane)
+    rows = matrix.toarray()
+    expected = rows @ inverse @ rows.T
+    assert np.allclose(factor.gram(matrix), expected, rtol=1e-7, atol=1e-9 * expected.max())
+    assert np.allclose(factor.inverse().quadratic(*space.rows(plane)), np.diag(expected), rtol=1e-7)
+    assert np.allclose(dense(system_band) @ factor.solve(rows.T), rows.T, atol=1e-7)
+
+
+def test_a_band_that_holds_nothing_is_refused():
+    space, plane, _ = system()
+    data, _ = space.normal_equations(plane[:5], np.zeros(5), np.ones(5))
+    with pytest.raises(FitError, match="held by nothing"):
+        BlockFactor(data)
+
+
+@cache
+def small_truth() -> Truth:
+    return paper_arrangement(3, section_points=12, periphery=60)
+
+
+@cache
+def small_surface(**settings: str | float) -> HorizonSurface:
+    truth = small_truth()
+    return fit_horizon(truth.points, FitSettings(**settings), boundary=truth.boundary)
+
+
+def linear(surface: HorizonSurface) -> LinearFit:
+    return linear_fit(surface.model, posterior(surface.model))
+
+
+def brute_force(surface: HorizonSurface, fit: LinearFit, group: np.ndarray) -> np.ndarray:
+    """Errors of the same three steps, solved anew from the points that are left."""
+    given = fit.posterior
+    keep = np.setdiff1d(np.arange(len(given.value)), group)
+    total = given.value + np.column_stack([np.ones(len(given.value)), given.plane]) @ given.trend
+    basis = np.column_stack([np.ones(len(given.value)), given.plane])
+    trend = np.linalg.lstsq(basis[keep], total[keep], rcond=None)[0]
+    value = total - basis @ trend
+    a = given.matrix(given.plane).toarray()
+    energy = dense(energy_band(given.space, surface.model.net.field.energy)) * surface.model.net.field.smoothing
+    k = a[keep].T @ (a[keep] * given.weight[keep, None]) + energy
+    # The ridge of the factor that the fit is solved with: K of all points has it.
+    k += RIDGES[0] * np.diag(np.diag(a.T @ (a * given.weight[:, None]) + energy))
+    c = np.linalg.solve(k, a[keep].T @ (given.weight[keep] * value[keep]))
+    for step in fit.corrections:
+        mine = np.intersect1d(step.points, keep)
+        wanted = value[mine] - a[mine] @ c
+        if step.slack:
+            wanted = np.sign(wanted) * np.maximum(np.abs(wanted) - step.slack, 0)
+        # The kernel's own inverse tells its nugget.
+        place = {p: i for i, p in enumerate(step.points)}
+        index = [place[p] for p in mine]
+        among = np.linalg.inv(step.inverse)[np.ix_(index, index)]
+        multiplier = np.linalg.solve(among, wanted)
+        free = np.ones(a.shape[1])
+        if step.slack:
+            frozen = surface.model.net.frozen.reshape(surface.model.net.space.shape)
+            free = (~(frozen.T if given.turned else frozen)).ravel().astype(float)
+        c = c + free * (a[mine].T @ multiplier)
+    return value[group] - a[group] @ c
+
+
+@pytest.mark.parametrize(
+    ("settings", "digits"),
+    [
+        ({"smoothing": 0.01}, 1e-8),
+        # The likelihood's smoothing leaves systems that lose more digits, on both sides.
+        ({}, 1e-4),
+        ({"core": "none"}, 1e-4),
+        ({"core": "all"}, 1e-4),
+        ({"interior_tolerance": 0.01}, 1e-4),
+    ],
+)
+def test_leaving_out_is_the_same_as_solving_anew(settings, digits):
+    surface = small_surface(**settings)
+    fit = linear(surface)
+    section = surface.points.section
+    groups = [np.array([3]), np.flatnonzero(section == "S05"), np.array([20, 150, 170])]
+    predicted = fit.without(groups)
+    for group in groups:
+        expected = brute_force(surface, fit, group)
+        assert predicted.error[group] == pytest.approx(expected, rel=digits, abs=digits)
+    untouched = np.setdiff1d(np.arange(len(section)), np.concatenate(groups))
+    assert np.isnan(predicted.error[untouched]).all()
+
+
+def test_variance_at_points_left_out():
+    surface = small_surface()
+    fit = linear(surface)
+    given = fit.posterior
+    group = np.array([5, 6, 140])
+    keep = np.setdiff1d(np.arange(len(given.value)), group)
+    a = given.matrix(given.plane).toarray()
+    energy = dense(energy_band(given.space, surface.model.net.field.energy)) * surface.model.net.field.smoothing
+    inverse = np.linalg.inv(a[keep].T @ (a[keep] * given.weight[keep, None]) + energy)
+    variance = given.noise**2 * np.diag(a[group] @ inverse @ a[group].T)
+    assert fit.without([group]).variance[group] == pytest.approx(variance, rel=1e-6)
+
+
+def test_a_hole_left_out_is_close_to_a_new_fit_without_it():
+    """Knots, smoothing and pulls are chosen anew by the new fit: within a twentieth of the error's own sd."""
+    surface, truth = small_surface(), small_truth()
+    fit = linear(surface)
+    predicted = fit.without([np.array([k]) for k in range(len(truth.points))])
+    for hole in ("B004", "B023", "B047"):
+        left = truth.points.hole == hole
+        refit = fit_horizon(truth.points[~left], boundary=truth.boundary)
+        x, y, z = truth.points.xyz[left].T
+        assert abs(predicted.error[left] - (z - refit.elevation(x, y)))[0] < 0.1 * np.sqrt(predicted.variance[left][0])
+
+
+def test_standard_deviation_grows_away_from_the_points():
+    surface = small_surface()
+    spread = Spread(surface.model, posterior(surface.model), uncalibrated())
+    grid = grid_over(surface)
+    uncertainty = uncertainty_on(grid, spread)
+    assert uncertainty.sd.shape == (len(uncertainty.y), len(uncertainty.x))
+    assert np.isfinite(uncertainty.sd).all()
+    x, y = np.meshgrid(uncertainty.x, uncertainty.y)
+    nodes = np.column_stack([x.ravel(), y.ravel()])
+    distance = np.linalg.norm(nodes[:, None] - surface.points.xyz[None, :, :2], axis=2).min(axis=1)
+    far, close = distance > np.quantile(distance, 0.9), distance < np.quantile(distance, 0.1)
+    assert np.median(uncertainty.sd.ravel()[far]) > 5 * np.median(uncertainty.sd.ravel()[close])
+    at = sd_at(surface, uncertainty, nodes[::500])
+    assert at == pytest.approx(uncertainty.sd.ravel()[::500], rel=1e-6)
+
+
+def test_band_lies_z_times_sd_above_and_below_and_keeps_its_seams():
+    surface = small_surface()
+    spread = Spread(surface.model, posterior(surface.model), uncalibrated())
+    uncertainty = uncertainty_on(grid_over(surface), spread)
+    upper, lower = band(surface, uncertainty, 0.9)
+    x, y = small_truth().places(400).T
+    sd = sd_at(surface, uncertainty, np.column_stack([x, y]))
+    middle = surface.elevation(x, y)
+    assert (upper.elevation(x, y) > middle).all()
+    assert upper.elevation(x, y) - middle == pytest.approx(middle - lower.elevation(x, y), abs=1e-6)
+    ratio = (upper.elevation(x, y) - middle) / (1.6449 * sd)
+    assert 0.9 < np.median(ratio) < 1.3
+    from geofit.checks.seams import seams
+
+    assert all(seam.gap < 1e-9 and seam.angle < 0.1 for seam in seams(upper.patches))
+    with pytest.raises(SettingsError, match="probability"):
+        band(surface, uncertainty, 1.0)
+    with pytest.raises(FitError, match="not fitted here"):
+        band(surface.with_(model=None), uncertainty)
+
+
+def test_greedy_holes_against_trying_every_place():
+    rng = np.random.default_rng(8)
+    root = rng.normal(size=(25, 6)) * np.geomspace(1, 0.1, 6)
+    covariance, rest, noise = root @ root.T + 0.01 * np.eye(25), rng.uniform(0, 0.1, 25), 0.04
+    plan = greedy_holes(covariance, rest, noise, 3)
+    chosen: list[int] = []
+    for step in range(3):
+        means = []
+        for candidate in range(25):
+            holes = [*chosen, candidate]
+            among = covariance[np.ix_(holes, holes)] + noise * np.eye(len(holes))
+            gain = covariance[:, holes] @ np.linalg.solve(among, covariance[holes])
+            means.append(np.sqrt(np.diag(covariance - gain) + rest).mean())
+        means = np.array(means)
+        means[chosen] = np.inf
+        assert plan.chosen[step] == np.argmin(means)
+        assert plan.mean_after[step] == pytest.approx(means.min(), rel=1e-9)
+        chosen.append(int(np.argmin(means)))
+
+
+def test_a_suggested_hole_lowers_the_deviation_as_promised():
+    """The promise for the first hole, against a posterior with that hole among the points."""
+    surface = small_surface(core="none", max_iterations=0)
+    model = surface.model
+    given = posterior(model)
+    spread, grid = Spread(model, given, uncalibrated()), grid_over(surface)
+    holes = suggest_holes(grid, spread, 4)
+    before = np.sqrt(spread.variance(grid.plane)).mean()
+    assert before > holes[0].mean_after > holes[1].mean_after > holes[3].mean_after
+    node = grid.plane[np.argmin(np.linalg.norm(grid.places(model)[:, :2] - (holes[0].x, holes[0].y), axis=1))]
+    at = np.vstack([given.plane, node])
+    system_band, _ = given.space.normal_equations(
+        at[:, ::-1] if given.turned else at, np.zeros(len(at)), np.append(given.weight, 1.0)
+    )
+    energy = model.net.field.smoothing * energy_band(given.space, model.net.field.energy)
+    inverse = BlockFactor(system_band + energy).inverse()
+    lowered = given.noise**2 * inverse.quadratic(*given.rows(grid.plane))
+    departure = spread.variance(grid.plane) - given.variance(grid.plane)
+    assert holes[0].mean_after == pytest.approx(np.sqrt(lowered + departure).mean(), rel=1e-6)
+    apart = np.array([[h.x, h.y] for h in holes])
+    assert np.linalg.norm(apart[:, None] - apart[None], axis=2)[np.triu_indices(4, 1)].min() > 100
+
+
+def test_points_without_a_model_or_a_height_have_no_posterior():
+    xyz = np.random.default_rng(1).uniform(size=(30, 3)) * (100, 100, 1)
+    surface = fit_horizon(PointSet(xyz))
+    with pytest.raises(FitError):
+        grid_over(surface.with_(model=None))
