@@ -20,10 +20,10 @@ if TYPE_CHECKING:
     from geofit.offdata import OffData
     from geofit.report.accuracy_report import AccuracyReport
     from geofit.report.pictures import Pictures
-    from geofit.stack.faults import FaultCut
     from geofit.stack.order import Order
     from geofit.stack.repair import Contradiction
     from geofit.stack.sitefit import SiteFit
+    from geofit.stack.throw import FaultCut
     from geofit.surface import HorizonSurface
 
 __all__ = ["Delivery", "Form", "Reports", "deliver", "write_reports"]
@@ -367,8 +367,8 @@ def _chosen(site: Site, horizons: Sequence[str]) -> list[str]:
     unknown = [name for name in horizons if name not in site.horizons]
     if unknown:
         raise InputError(
-            f"There is no horizon '{unknown[0]}'",
-            f"The horizons are: {', '.join(site.horizons)}.",
+            said("There is no horizon '{name}'", name=unknown[0]),
+            said("The horizons are: {names}.", names=", ".join(site.horizons)),
             file=site.name,
         )
     return [name for name in site.horizons if not horizons or name in horizons]
@@ -379,7 +379,7 @@ def _make(out: Path) -> None:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            f"The folder cannot be made: {error.strerror or error}",
+            said("The folder cannot be made: {error}", error=error.strerror or str(error)),
             "Name another one with --out.",
             file=str(out),
         ) from None

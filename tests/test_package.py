@@ -22,7 +22,10 @@ FLOORS = (
     ("geometry.frame", "prediction.folds", "prediction.kriging", "prediction.thinplate", "splines"),
     ("surface",),
     ("geometry.cells", "geometry.distance", "geometry.elevation"),
-    ("check", "checks", "geometry", "occ", "stack.overlap", "stack.relief", "stack.zero_lines", "trim"),
+    (
+        "check", "checks", "geometry", "occ", "stack.fault", "stack.overlap", "stack.relief", "stack.throw",
+        "stack.zero_lines", "trim",
+    ),
     ("stack.order",),
     ("steps",),
     ("model", "steps.stitch"),
@@ -36,7 +39,7 @@ FLOORS = (
     ("deliver", "describing", "exporting", "importing"),
     ("cli", "console"),
     ("__main__", "gui"),
-)
+)  # fmt: skip
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
 #: Methods of Site and HorizonSurface that lead upwards, lazily, by design of the public interface; `geofit gui`.
 UPWARDS = {

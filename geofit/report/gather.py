@@ -41,7 +41,7 @@ from geofit.report.result import HorizonResult, sigma_of
 from geofit.site import Site
 
 if TYPE_CHECKING:
-    from geofit.stack.faults import FaultCut
+    from geofit.stack.throw import FaultCut
     from geofit.stack.order import Order
     from geofit.stack.repair import Contradiction
 
@@ -85,7 +85,7 @@ def accuracy_report(
     orders : sequence of Order, optional
         What :func:`geofit.stack.order.orders` found; None: not examined.
     cuts : sequence of FaultCut
-        What faults displace, by :func:`geofit.stack.faults.fit_blocks`.
+        What faults displace, by :func:`geofit.stack.throw.throws`.
     contradictions : sequence of Contradiction
         What :func:`geofit.stack.repair.repair` could not mend.
     failures : mapping of str to str, optional

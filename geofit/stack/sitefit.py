@@ -14,9 +14,10 @@ from geofit.pipeline import fit_horizon
 from geofit.progress import Progress, tell
 from geofit.settings import FitSettings
 from geofit.site import Site
-from geofit.stack.faults import FaultCut, fit_blocks
+from geofit.stack.faults import fit_blocks
 from geofit.stack.order import Order, order_of
 from geofit.stack.repair import Contradiction, repair
+from geofit.stack.throw import FaultCut
 from geofit.surface import HorizonSurface
 from geofit.words import said
 
