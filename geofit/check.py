@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 from geofit.accuracy import Accuracy, Check, Conflict, Group, Seam
 from geofit.checks.lattice import lattices
 from geofit.checks.oscillation import oscillation
-from geofit.checks.residual_tests import residual_checks
+from geofit.checks.residual_tests import by_label, residual_checks
 from geofit.checks.seams import seams
 from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
@@ -26,6 +26,8 @@ Floats = NDArray[np.float64]
 
 #: Limits that a sound surface keeps (METHOD, sec. 4 to 7).
 CORE_LIMIT, GAP_LIMIT, ANGLE_LIMIT = 1e-6, 1e-6, 0.1
+#: Points with the largest distances that are named.
+WORST = 20
 
 
 def sigma(residuals: Floats) -> float:
@@ -100,7 +102,7 @@ def check(
         by_hole=_groups(d, points.hole),
         by_section=_groups(d, points.section),
         over=over,
-        worst=tuple(int(i) for i in np.argsort(-magnitude, kind="stable")[:20]),
+        worst=_worst(magnitude),
         seams=found,
         checks=tuple(checks),
         conflicts=tuple(conflicts),
@@ -109,12 +111,18 @@ def check(
 
 
 def _groups(d: Floats, labels: NDArray[np.str_]) -> dict[str, Group]:
-    groups = {}
-    for label in dict.fromkeys(labels.tolist()):
-        if label:
-            part = d[labels == label]
-            groups[label] = Group(len(part), sigma(part), float(np.abs(part).max()), float(part.mean()))
-    return groups
+    return {
+        label: Group(len(part), sigma(part), float(np.abs(part).max()), float(part.mean()))
+        for label, part in by_label(d, labels).items()
+        if label
+    }
+
+
+def _worst(magnitude: Floats) -> tuple[int, ...]:
+    """Return the points with the largest distances, the largest first, equal ones in their order."""
+    least = np.partition(magnitude, -WORST)[-WORST] if len(magnitude) > WORST else 0.0
+    some = np.flatnonzero(magnitude >= least)
+    return tuple(some[np.argsort(-magnitude[some], kind="stable")[:WORST]].tolist())
 
 
 def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool_]) -> list[Check]:
@@ -122,7 +130,7 @@ def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool
     checks, tolerance = [], surface.settings.interior_tolerance
     if exact.any():
         worst = float(np.abs(d[exact]).max())
-        text = said("{count} core points on the surface", count=int(exact.sum()))
+        text = said("core points on the surface: {count}", count=int(exact.sum()))
         checks.append(Check("core", worst <= CORE_LIMIT, worst, CORE_LIMIT, "m", text))
     loose = ~exact
     if loose.any():
@@ -141,7 +149,7 @@ def _seam_checks(surface: HorizonSurface, found: tuple[Seam, ...]) -> list[Check
     gap, angle = max(seam.gap for seam in found), max(seam.angle for seam in found)
     limit = min(GAP_LIMIT, surface.settings.boundary_tolerance)
     tangent = surface.settings.seam == "tangent"
-    gaps = said("largest gap of {count} seams", count=len(found))
+    gaps = said("largest gap of the seams ({count})", count=len(found))
     angles = said("largest angle at a seam") if tangent else said("largest angle at a seam (breaks are allowed)")
     return [
         Check("seam gap", gap <= limit, gap, limit, "m", gaps),
@@ -155,8 +163,9 @@ def _residual_checks(
     """Test the residuals of the approximated points: a core's are zero by construction."""
     if not loose.any():
         return []
-    xyz = surface.points.xyz[loose] - surface.origin
-    return residual_checks(xyz, d[loose], patch[loose], surface.settings.interior_tolerance)
+    some = slice(None) if loose.all() else loose
+    xyz = surface.points.xyz[some] - surface.origin
+    return residual_checks(xyz, d[some], patch[some], surface.settings.interior_tolerance)
 
 
 def _surface_checks(surface: HorizonSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:

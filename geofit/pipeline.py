@@ -158,16 +158,14 @@ def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
         if accuracy.passed:
             if step:
                 surface = _with_note(
-                    surface, said("sigma came below epsilon after {step} local adjustments", step=step)
+                    surface, said("local adjustments until sigma came below epsilon: {step}", step=step)
                 )
             break
         better = adjust(model.net, given.chart, given.kept & ~surface.core, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else tried.surface()
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
-            words = said(
-                "sigma stays above epsilon: after {step} local adjustments no further step lowers it", step=step
-            )
+            words = said("sigma stays above epsilon: no further local adjustment lowers it (made: {step})", step=step)
             surface = _with_note(surface, words)
             break
         assert tried is not None
@@ -192,7 +190,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
             given=given,
         )
         raise PointsError(text)
-    if np.ptp(points.xyz[:, :2], axis=0).max() == 0 and np.ptp(points.xyz[:, 2]) == 0:
+    if all(np.ptp(axis) == 0 for axis in points.xyz.T):
         raise PointsError(
             said("All {count} points stand at one place; at least 3 places are needed.", count=len(points))
         )

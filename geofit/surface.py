@@ -56,12 +56,18 @@ class Patch:
 
     def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> Floats:
         """Return points, or partial derivatives, at parameters; arrays broadcast to shape (..., 3)."""
-        u, v = np.broadcast_arrays(np.asarray(u, float), np.asarray(v, float))
+        u, v = np.asarray(u, float), np.asarray(v, float)
         if self.weights is None:
             return self._sum(self.control, u, v, du, dv)
         return self._rational(u, v, du, dv)
 
     def _sum(self, control: Floats, u: Floats, v: Floats, du: int, dv: int) -> Floats:
+        if u.ndim == v.ndim == 2 and u.shape[1] == v.shape[0] == 1:
+            # A grid, one axis after the other.
+            along = bspline.collocation(self.knots_u, self.degree[0], u[:, 0], du)
+            across = bspline.collocation(self.knots_v, self.degree[1], v[0], dv)
+            return np.asarray(across @ np.tensordot(along, control, axes=1))
+        u, v = np.broadcast_arrays(u, v)
         iu, nu = bspline.basis(self.knots_u, self.degree[0], u.ravel(), du)
         iv, nv = bspline.basis(self.knots_v, self.degree[1], v.ravel(), dv)
         rows = iu[:, None] + np.arange(self.degree[0] + 1)

@@ -21,7 +21,7 @@ FLOORS = (
     ("accuracy", "errors", "files", "offdata", "points", "progress", "settings", "site", "words"),
     ("geometry.frame", "prediction.folds", "prediction.kriging", "prediction.thinplate", "splines"),
     ("surface",),
-    ("geometry.cells", "geometry.distance", "geometry.elevation"),
+    ("geometry.cells", "geometry.distance", "geometry.elevation", "geometry.feet"),
     (
         "check", "checks", "geometry", "occ", "stack.fault", "stack.overlap", "stack.relief", "stack.throw",
         "stack.zero_lines", "trim",

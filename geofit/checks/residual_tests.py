@@ -14,7 +14,7 @@ from scipy.special import binom, ndtri
 from geofit.accuracy import Check
 from geofit.words import said
 
-__all__ = ["residual_checks"]
+__all__ = ["by_label", "residual_checks"]
 
 Floats = NDArray[np.float64]
 
@@ -55,11 +55,24 @@ def residual_checks(xyz: Floats, d: Floats, patch: NDArray[np.str_], tolerance: 
     place = _thinned(len(d))
     checks = [_bias(d, patch, tolerance)]
     for test in (_clustering(xyz[place], d[place], tolerance), _normality(d[place], tolerance)):
-        if len(place) < len(d):
-            part = said("{text}; {part} of {n} points looked at", text=test.text, part=len(place), n=len(d))
-            test = Check(test.name, test.passed, test.value, test.limit, test.unit, part)
-        checks.append(test)
+        text = partly(test.text, len(place), len(d))
+        checks.append(Check(test.name, test.passed, test.value, test.limit, test.unit, text))
     return checks
+
+
+def partly(text: str, part: int, n: int) -> str:
+    """Return a check's sentence with how many of ``n`` points it looked at, where these are not all."""
+    return text if part == n else said("{text}; {part} of {n} points looked at", text=text, part=part, n=n)
+
+
+def by_label(d: Floats, labels: NDArray[np.str_]) -> dict[str, Floats]:
+    """Return the distances of each label, labels and distances in their order."""
+    if len(labels) and (labels == labels[0]).all():
+        return {str(labels[0]): d}
+    numbers: dict[str, int] = {}
+    number = np.array([numbers.setdefault(label, len(numbers)) for label in labels.tolist()], dtype=np.int64)
+    parts = np.split(d[np.argsort(number, kind="stable")], np.cumsum(np.bincount(number))[:-1])
+    return dict(zip(numbers, parts, strict=False))
 
 
 def _thinned(n: int) -> NDArray[np.int64]:
@@ -71,8 +84,7 @@ def _thinned(n: int) -> NDArray[np.int64]:
 
 def _bias(d: Floats, patch: NDArray[np.str_], tolerance: float) -> Check:
     """Whether a patch lies to one side of its points: Student's t and the sign test, held against the tolerance."""
-    rows = {str(name): d[patch == name] for name in dict.fromkeys(patch.tolist())}
-    rows = {name: part for name, part in rows.items() if len(part) >= FEW}
+    rows = {name: part for name, part in by_label(d, patch).items() if len(part) >= FEW}
     if not rows:
         text = said("not judged: no patch has {few} approximated points", few=FEW)
         return Check("bias", None, 0.0, SHARE * tolerance, "m", text)
@@ -83,7 +95,9 @@ def _bias(d: Floats, patch: NDArray[np.str_], tolerance: float) -> Check:
     side = float(np.mean(np.sign(rows[name]) == np.sign(mean)))
     if passed:
         text = said(
-            "no patch lies to one side of its points; largest mean {mean:+.3f} m, {patch}", mean=mean, patch=name
+            "no patch lies to one side of its points; largest mean {mean:+.3f} m, {patch}",
+            mean=round(mean, 3) + 0.0,  # no -0.000
+            patch=name,
         )
     elif mean > 0:
         text = said(
@@ -128,7 +142,7 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
     n, name = len(d), "clustering"
     spread = float(d.std()) if n else 0.0
     if n < FEWEST or spread == 0:
-        text = said("not judged: {n} approximated points, {few} are needed", n=n, few=FEWEST)
+        text = said("not judged: too few approximated points, {n} where {few} are needed", n=n, few=FEWEST)
         if n >= FEWEST:
             text = said("not judged: all residuals are equal")
         return Check(name, None, 0.0, SHARE * tolerance, "m", text)
@@ -174,7 +188,7 @@ def _normality(d: Floats, tolerance: float) -> Check:
     """Shapiro-Francia: how straight the normal plot is, with Royston's (1993) distribution of it."""
     n, name = len(d), "normality"
     if n < FEWEST:
-        text = said("not judged: {n} approximated points, {few} are needed", n=n, few=FEWEST)
+        text = said("not judged: too few approximated points, {n} where {few} are needed", n=n, few=FEWEST)
         return Check(name, None, 0.0, CROOKED, "", text)
     worst = float(np.abs(d).max())
     if worst <= tolerance:
@@ -202,8 +216,8 @@ def _normality(d: Floats, tolerance: float) -> Check:
         squares = np.sort(d**2)[::-1]
         few = max(n // 50, 1)
         text = said(
-            "the residuals are not noise: the normal plot leaves its line by {off:.0%}, and {few} of {n} points make "
-            "{share:.0%} of the sum of squares; look at the worst points first",
+            "the residuals are not noise: the normal plot leaves its line by {off:.0%}, with {share:.0%} of the "
+            "sum of squares from {few} of {n} points; look at the worst points first",
             off=off,
             few=few,
             n=n,

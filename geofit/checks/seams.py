@@ -44,15 +44,18 @@ def seams(surface: HorizonSurface | Sequence[Patch], samples: int = SAMPLES) -> 
     """
     patches = surface.patches if isinstance(surface, HorizonSurface) else tuple(surface)
     edges = [(index, edge) for index in range(len(patches)) for edge in EDGES]
-    marks = [_edge(patches[index], edge, np.linspace(0, 1, 5)) for index, edge in edges]
-    widths = [_width(patches[index], edge) for index, edge in edges]
+    marks = np.array([_edge(patches[index], edge, np.linspace(0, 1, 5)) for index, edge in edges]).reshape(-1, 5, 3)
+    # How far a patch reaches away from its edge: from one middle to the other.
+    middle = marks[:, 2].reshape(-1, 2, 2, 3)
+    width = np.repeat(np.linalg.norm(middle[:, :, 0] - middle[:, :, 1], axis=-1).ravel(), 2)
+    reach = TOGETHER * np.minimum(width[:, None], width)
+    apart = np.linalg.norm(marks[:, None, [0, -1]] - marks[:, [0, -1]], axis=-1).max(axis=-1)
+    turned = np.linalg.norm(marks[:, None, [0, -1]] - marks[:, [-1, 0]], axis=-1).max(axis=-1)
     found = []
-    for a, (first, edge_a) in enumerate(edges):
-        for b in range(a + 1, len(edges)):
-            second, edge_b = edges[b]
-            reach = TOGETHER * min(widths[a], widths[b])
-            if second != first and (turned := _together(marks[a], marks[b], reach)) is not None:
-                found.append(_measure(patches[first], edge_a, patches[second], edge_b, turned, samples))
+    for a, b in np.argwhere(np.triu(np.minimum(apart, turned) <= reach, 1)):
+        (first, edge_a), (second, edge_b) = edges[a], edges[b]
+        if second != first and (way := _together(marks[a], marks[b], reach[a, b])) is not None:
+            found.append(_measure(patches[first], edge_a, patches[second], edge_b, way, samples))
     return tuple(found)
 
 
@@ -70,18 +73,13 @@ def _together(a: Floats, b: Floats, reach: float) -> bool | None:
     return None
 
 
-def _width(patch: Patch, edge: str) -> float:
-    """Return how far the patch reaches away from its edge."""
-    opposite = {"u0": "u1", "u1": "u0", "v0": "v1", "v1": "v0"}[edge]
-    middle = np.array([0.5])
-    return float(np.linalg.norm(_edge(patch, edge, middle) - _edge(patch, opposite, middle)))
-
-
 def _edge(patch: Patch, edge: str, share: Floats, du: int = 0, dv: int = 0) -> Floats:
     u0, u1, v0, v1 = patch.domain
     if edge[0] == "u":
-        return patch.evaluate(u0 if edge == "u0" else u1, v0 + share * (v1 - v0), du, dv)
-    return patch.evaluate(u0 + share * (u1 - u0), v0 if edge == "v0" else v1, du, dv)
+        grid = patch.evaluate([[u0 if edge == "u0" else u1]], (v0 + share * (v1 - v0))[None], du, dv)
+    else:
+        grid = patch.evaluate((u0 + share * (u1 - u0))[:, None], [[v0 if edge == "v0" else v1]], du, dv)
+    return grid.reshape(-1, 3)
 
 
 def _measure(first: Patch, edge_a: str, second: Patch, edge_b: str, turned: bool, samples: int) -> Seam:

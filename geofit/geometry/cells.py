@@ -8,7 +8,7 @@ recurrences. A cell has local coordinates s, t in [-1, 1]; all patches of a surf
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import factorial
 
 import numpy as np
@@ -69,6 +69,11 @@ class Cells:
         u, v = self.centre[:, place.cell] + self.half[:, place.cell] * place.local
         return u, v
 
+    def coordinate(self, axis: int) -> Cells:
+        """Return the cells of one coordinate alone, of patches that are not rational; its jets are (1, n)."""
+        one = np.ascontiguousarray(self.coefficients[:, axis :: self.dimension])
+        return replace(self, coefficients=one, dimension=1)
+
     def points(self, place: Place) -> Floats:
         """Return positions (3, n) at places."""
         parts = [self._jet(place[k : k + BATCH], 0)[0] for k in range(0, max(len(place.cell), 1), BATCH)]
@@ -90,7 +95,7 @@ class Cells:
             value, ds, dss = _horner(rows[0], s, 2)
             dt, dst, _ = _horner(rows[1], s, 2)
             jet = [value, ds, dt, dss, dst, _horner(rows[2], s, 0)[0]]
-        return jet if d == 3 else _quotients(jet)
+        return _quotients(jet) if d == 4 else jet
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,10 +1,10 @@
 """Orthogonal distance from points to a surface of many patches (the d_i of eq. 3).
 
-A KD-tree of places on the surface gives the starts, :func:`geofit.geometry.cells.descend` walks down from them. The
-nearest place of the tree need not lie in the basin of the nearest foot: a foot at distance d with a tree
-place e metres from it has that place within sqrt(d^2 + e^2 (1 + d kappa)) of the point, kappa the curvature
-there. So every tree place within that reach, and not beside a foot that is known already, starts another
-walk.
+Points near to a height field have feet that need no search (:mod:`geofit.geometry.feet`). For the others a KD-tree
+of places on the surface gives the starts, :func:`geofit.geometry.cells.descend` walks down from them. The nearest
+place of the tree need not lie in the basin of the nearest foot: a foot at distance d with a tree place e metres from
+it has that place within sqrt(d^2 + e^2 (1 + d kappa)) of the point, kappa the curvature there. So every tree place
+within that reach, and not beside a foot that is known already, starts another walk.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 
 from geofit.geometry.cells import Cells, Place, descend, tabulate
 from geofit.geometry.elevation import elevation, plan_map
+from geofit.geometry.feet import Projection, feet_over_plan
 from geofit.surface import Patch
 
 __all__ = ["Projection", "elevation", "project"]
@@ -36,22 +37,6 @@ BESIDE = 1.6
 MOST_WALKS = 24
 #: Points that are searched for together (memory).
 CHUNK = 20_000
-
-
-@dataclass(frozen=True, eq=False)
-class Projection:
-    """Nearest places of a surface to n points.
-
-    ``distance`` (n,) metres, signed: positive on the upper side. ``foot`` (n, 3) metres, ``patch`` (n,) index
-    of the patch, ``u``, ``v`` (n,) its parameters, ``converged`` (n,) bool.
-    """
-
-    distance: Floats
-    foot: Floats
-    patch: Ints
-    u: Floats
-    v: Floats
-    converged: Bools
 
 
 def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
@@ -82,6 +67,15 @@ def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
     some millimetres farther may be returned (3 of 100,000 points at three times that radius).
     """
     target = np.asarray(xyz, float).reshape(-1, 3)
+    found = feet_over_plan(patches, target)
+    rest = np.flatnonzero(~found.converged)
+    if len(rest):
+        found.fill(rest, _searched(patches, target[rest]))
+    return found
+
+
+def _searched(patches: Sequence[Patch], target: Floats) -> Projection:
+    """Find the nearest places by walks from all places that may lead to them."""
     surface = _prepare(tuple(patches))
     feet = Place.join([_nearest(surface, target[k : k + CHUNK]) for k in range(0, max(len(target), 1), CHUNK)])
     feet = _no_farther_than_below(patches, surface.cells, target, feet)

@@ -98,6 +98,6 @@ def best_plane_frame(points: PointSet) -> Frame:
 
 def _origin(xyz: Floats) -> Floats:
     """Whole metres near the centre: exact in the STEP file, and easy to read there."""
-    low, high = xyz.min(axis=0), xyz.max(axis=0)
-    middle: Floats = np.round((low + high) / 2)
+    # Column by column: along the short rows of a million points it takes five times as long.
+    middle: Floats = np.round([(column.min() + column.max()) / 2 for column in xyz.T])
     return middle

@@ -9,7 +9,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["basis", "clamped_knots", "collocation", "energy_matrix", "greville", "insertion_matrix", "spans"]
+__all__ = [
+    "basis",
+    "clamped_knots",
+    "collocation",
+    "energy_matrix",
+    "greville",
+    "insertion_matrix",
+    "intervals",
+    "spans",
+]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,6 +50,23 @@ def spans(knots: Floats, degree: int, x: Floats) -> Ints:
     """Return the index k of the span with knots[k] <= x < knots[k + 1]; the last span holds its right end."""
     count = len(knots) - degree - 1
     return np.clip(np.searchsorted(knots, x, side="right") - 1, degree, count - 1).astype(np.int64)
+
+
+def intervals(breaks: Floats, x: Floats) -> Ints:
+    """Return the index k with breaks[k] <= x < breaks[k + 1]; the first and the last hold what lies beyond.
+
+    For many places a table of even bins says which interval begins there, or a rounding error before; each bin is
+    shorter than half an interval, so a look at the next break settles the rest in half a search's time.
+    """
+    count, length = len(breaks) - 1, float(breaks[-1] - breaks[0])
+    bins = int(np.ceil(2 * length / np.diff(breaks).min()))
+    if len(x) < 16 * bins:
+        return np.asarray(np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, count - 1), np.int64)
+    starts = np.linspace(breaks[0], breaks[-1], bins + 1) - 1e-6 * length / bins
+    before = np.clip(np.searchsorted(breaks, starts, side="right") - 1, 0, count - 1)
+    found = before.take(((x - breaks[0]) * (bins / length)).clip(0, bins).astype(np.intp))
+    found = found + (x >= np.append(breaks[1:-1], np.inf).take(found))
+    return np.asarray(found, np.int64)
 
 
 def basis(knots: Floats, degree: int, x: ArrayLike, derivative: int = 0) -> tuple[Ints, Floats]:
@@ -75,8 +101,8 @@ def basis(knots: Floats, degree: int, x: ArrayLike, derivative: int = 0) -> tupl
     values = np.ones((len(x), 1))
     for p in range(1, degree + 1):
         # One degree up: N_{i,p} from N_{i,p-1}; i runs over the p + 1 functions of the span.
-        left = np.stack([knots[span + 1 + j - p] for j in range(p)], axis=1)
-        right = np.stack([knots[span + 1 + j] for j in range(p)], axis=1)
+        at = span[:, None] + np.arange(1, p + 1)
+        left, right = knots[at - p], knots[at]
         width = right - left
         ratio = np.divide(values, width, out=np.zeros_like(values), where=width > 0)
         raised = np.zeros((len(x), p + 1))

@@ -9,18 +9,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from math import comb
 
 import numpy as np
-from numpy.polynomial import legendre
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse import csr_array
 
 from geofit.errors import FitError
 from geofit.splines import bspline
+from geofit.splines.sums import CellSums, cell_sums
+from geofit.words import said
 
-__all__ = ["Factor", "TensorSpace", "band_times", "values_at"]
+__all__ = ["Factor", "TensorSpace", "band_times"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,7 +33,6 @@ CELLWISE = 20_000
 #: Added to a unit diagonal, more where rounding has made a system indefinite: it settles what neither data nor
 #: energy hold by the trend, far below any noise.
 RIDGES = (1e-13, 1e-12, 1e-10)
-_CHUNK = 65_536
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,6 +66,11 @@ class TensorSpace:
         """Half width of the band of its matrices."""
         return self.degree * self.shape[1] + self.degree
 
+    @property
+    def turned(self) -> TensorSpace:
+        """The space with u and v exchanged: its band is the narrower one if v has the more control points."""
+        return TensorSpace(self.knots_v, self.knots_u, self.degree)
+
     def rows(self, plane: Floats) -> tuple[Ints, Floats]:
         """Return the coefficients that act at (n, 2) places and their basis values, both (n, (degree + 1)^2)."""
         iu, bu = bspline.basis(self.knots_u, self.degree, plane[:, 0])
@@ -83,7 +90,7 @@ class TensorSpace:
         """Return the band of X' W X, (bandwidth + 1, size), and X' W z, (size,) or (size, k)."""
         if len(plane) < CELLWISE or z.ndim > 1:
             return self._by_points(plane, z, weight)
-        return self._by_cells(plane, z, weight)
+        return self.equations(self.sums(plane, z, weight))
 
     def _by_points(self, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
         index, values = self.rows(plane)
@@ -100,52 +107,13 @@ class TensorSpace:
         band = _sums(place, blocks[lower], (self.bandwidth + 1) * self.size)
         return band.reshape(self.bandwidth + 1, self.size)
 
-    def _by_cells(self, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
-        """Sum Legendre moments in each cell, then turn them into the normal equations.
+    def sums(self, plane: Floats, z: Floats, weight: Floats) -> CellSums:
+        """Return what (n,) heights at (n, 2) places say, summed by cells."""
+        return cell_sums(self.knots_u, self.knots_v, self.degree, plane, z, weight)
 
-        On one cell each product of two basis functions is a polynomial of degree 2p in u and in v, so
-        (2p + 1)^2 moments hold all that n points have to say: the state does not grow with n.
-        """
-        p = self.degree
-        cells_u, cells_v = _cells(self.knots_u), _cells(self.knots_v)
-        count = (len(cells_u) - 1) * (len(cells_v) - 1)
-        moments = np.zeros(((2 * p + 1) ** 2, count))
-        right = np.zeros(((p + 1) ** 2, count))
-        u, v = plane.T
-        for start in range(0, len(plane), _CHUNK):
-            part = slice(start, start + _CHUNK)
-            cu, pu = _legendre(cells_u, u[part], 2 * p)
-            cv, pv = _legendre(cells_v, v[part], 2 * p)
-            cell = cu * (len(cells_v) - 1) + cv
-            w, wz = weight[part], weight[part] * z[part]
-            for k in range(2 * p + 1):
-                wk, zk = w * pu[k], wz * pu[k]
-                for m in range(2 * p + 1):
-                    moments[k * (2 * p + 1) + m] += np.bincount(cell, wk * pv[m], minlength=count)
-                    if k <= p and m <= p:
-                        right[k * (p + 1) + m] += np.bincount(cell, zk * pv[m], minlength=count)
-        lu, lv = _local_polynomials(self.knots_u, p, cells_u), _local_polynomials(self.knots_v, p, cells_v)
-        return self._from_moments(moments, right, lu, lv, cells_u, cells_v)
-
-    def _from_moments(
-        self, moments: Floats, right: Floats, lu: Floats, lv: Floats, cells_u: Floats, cells_v: Floats
-    ) -> tuple[Floats, Floats]:
-        p = self.degree
-        product = _legendre_products(p)
-        qu = np.einsum("cai,cbj,ijk->cabk", lu, lu, product)
-        qv = np.einsum("cai,cbj,ijk->cabk", lv, lv, product)
-        shape = (len(cells_u) - 1, len(cells_v) - 1)
-        grid = moments.reshape(2 * p + 1, 2 * p + 1, *shape)
-        half = np.einsum("cabk,klcd->cdabl", qu, grid, optimize=True)
-        blocks = np.einsum("cdabl,defl->cdaebf", half, qv, optimize=True)
-        sums = np.einsum("cai,dej,ijcd->cdae", lu, lv, right.reshape(p + 1, p + 1, *shape), optimize=True)
-        fu = bspline.spans(self.knots_u, p, (cells_u[1:] + cells_u[:-1]) / 2) - p
-        fv = bspline.spans(self.knots_v, p, (cells_v[1:] + cells_v[:-1]) / 2) - p
-        step = np.arange(p + 1)
-        index = ((fu[:, None] + step)[:, None, :, None] * self.shape[1]) + (fv[:, None] + step)[None, :, None, :]
-        index = index.reshape(-1, (p + 1) ** 2)
-        band = self._scatter(index, blocks.reshape(-1, (p + 1) ** 2, (p + 1) ** 2))
-        return band, _sums(index, sums, self.size)
+    def equations(self, sums: CellSums) -> tuple[Floats, Floats]:
+        """Return the normal equations of points that were summed on this space."""
+        return self._scatter(sums.index, sums.blocks), _sums(sums.index, sums.right, self.size)
 
     def energy(self, order: int) -> Floats:
         """Return the band of the energy of all derivatives of one order.
@@ -155,13 +123,13 @@ class TensorSpace:
         """
         terms = [(comb(order, k), self._grams_u[order - k], self._grams_v[k]) for k in range(order + 1)]
         nu, nv = self.shape
+        below = range(-self.degree, self.degree + 1)
+        along = {a: np.stack([factor * _diagonal(gu, a) for factor, gu, _ in terms]) for a in below if a >= 0}
+        across = {b: np.stack([_diagonal(gv, b) for _, _, gv in terms]) for b in below}
         band = np.zeros((self.bandwidth + 1, nu, nv))
-        for a in range(self.degree + 1):
-            for b in range(-self.degree, self.degree + 1):
-                if a * nv + b >= 0:
-                    band[a * nv + b] += sum(
-                        factor * np.outer(_diagonal(gu, a), _diagonal(gv, b)) for factor, gu, gv in terms
-                    )
+        for a, b in product(along, across):
+            if a * nv + b >= 0:
+                band[a * nv + b] += along[a].T @ across[b]
         return band.reshape(self.bandwidth + 1, self.size)
 
     @cached_property
@@ -188,14 +156,14 @@ class Factor:
         diagonal = band[0]
         if not (diagonal > 0).all():
             raise FitError(
-                f"{int((diagonal <= 0).sum())} control points are held by neither data nor energy. "
-                "Use fewer knots, or a larger smoothing."
+                said(
+                    "Control points held by neither data nor energy: {count}. Use fewer knots, or a larger smoothing.",
+                    count=int((diagonal <= 0).sum()),
+                )
             )
         self._scale = 1 / np.sqrt(diagonal)
-        scaled = band * self._scale
-        size = band.shape[1]
-        for k in range(len(band)):
-            scaled[k, : size - k] *= self._scale[k:]
+        beyond = np.concatenate([self._scale, np.zeros(len(band) - 1)])
+        scaled = band * self._scale * sliding_window_view(beyond, band.shape[1])
         for ridge in RIDGES:
             scaled[0] += ridge
             try:
@@ -218,31 +186,6 @@ class Factor:
     def logdet(self) -> float:
         """Logarithm of the determinant of the matrix."""
         return float(2 * np.log(self._band[0]).sum() - 2 * np.log(self._scale).sum())
-
-
-def values_at(space: TensorSpace, coefficients: Floats, plane: Floats) -> Floats:
-    """Return the (n,) values of a spline at (n, 2) places, cell polynomials evaluated in chunks."""
-    p = space.degree
-    cells_u, cells_v = _cells(space.knots_u), _cells(space.knots_v)
-    lu = _local_polynomials(space.knots_u, p, cells_u)
-    lv = _local_polynomials(space.knots_v, p, cells_v)
-    fu = bspline.spans(space.knots_u, p, (cells_u[1:] + cells_u[:-1]) / 2) - p
-    fv = bspline.spans(space.knots_v, p, (cells_v[1:] + cells_v[:-1]) / 2) - p
-    step = np.arange(p + 1)
-    net = coefficients.reshape(space.shape)[
-        (fu[:, None] + step)[:, None, :, None], (fv[:, None] + step)[None, :, None, :]
-    ]
-    local = np.einsum("cai,cdab,dbj->ijcd", lu, net, lv, optimize=True).reshape((p + 1) ** 2, -1)
-    result = np.empty(len(plane))
-    for start in range(0, len(plane), _CHUNK):
-        part = slice(start, start + _CHUNK)
-        cu, pu = _legendre(cells_u, plane[part, 0], p)
-        cv, pv = _legendre(cells_v, plane[part, 1], p)
-        cell = cu * (len(cells_v) - 1) + cv
-        result[part] = sum(
-            pu[i] * sum(local[i * (p + 1) + j][cell] * pv[j] for j in range(p + 1)) for i in range(p + 1)
-        )
-    return result
 
 
 def band_times(band: Floats, x: Floats) -> Floats:
@@ -268,38 +211,3 @@ def _diagonal(matrix: Floats, below: int) -> Floats:
     diagonal = np.diagonal(matrix, -below)
     pad = np.zeros(abs(below))
     return np.concatenate([diagonal, pad] if below >= 0 else [pad, diagonal])
-
-
-def _cells(knots: Floats) -> Floats:
-    return np.unique(knots)
-
-
-def _legendre(cells: Floats, x: Floats, degree: int) -> tuple[Ints, Floats]:
-    cell = np.clip(np.searchsorted(cells, x, side="right") - 1, 0, len(cells) - 2)
-    left = cells[cell]
-    t = 2 * (x - left) / (cells[cell + 1] - left) - 1
-    return cell, np.ascontiguousarray(legendre.legvander(t, degree).T)
-
-
-def _local_polynomials(knots: Floats, degree: int, cells: Floats) -> Floats:
-    """Return (cells, degree + 1, degree + 1): Legendre coefficients of each basis function on each cell."""
-    nodes = legendre.leggauss(degree + 1)[0]
-    inverse = np.linalg.inv(legendre.legvander(nodes, degree))
-    half = np.diff(cells) / 2
-    x = cells[:-1, None] + half[:, None] * (1 + nodes)
-    _, values = bspline.basis(knots, degree, x.ravel())
-    at_nodes = values.reshape(len(half), degree + 1, degree + 1)
-    local: Floats = np.einsum("kq,cqa->cak", inverse, at_nodes)
-    return local
-
-
-def _legendre_products(degree: int) -> Floats:
-    """Return L with P_i P_j = sum_k L[i, j, k] P_k."""
-    size = degree + 1
-    table = np.zeros((size, size, 2 * degree + 1))
-    unit = np.eye(size)
-    for i in range(size):
-        for j in range(size):
-            product = legendre.legmul(unit[i], unit[j])
-            table[i, j, : len(product)] = product
-    return table

@@ -96,11 +96,11 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
     if boundary is not None and kind == "map":
         corners = frame.plan(boundary)
         low, high = corners.min(axis=0), corners.max(axis=0)
-        beyond = ((local[:, :2] < low - 1e-9) | (local[:, :2] > high + 1e-9)).any(axis=1)
+        beyond = np.logical_or(*((x < a - 1e-9) | (x > b + 1e-9) for x, a, b in zip(local.T, low, high, strict=False)))
         if beyond.any():
             count = int(beyond.sum())
             notes.append(
-                said("{count} points lie beyond the study area; the surface is widened to hold them", count=count)
+                said("points beyond the study area: {count}; the surface is widened to hold them", count=count)
             )
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)
@@ -111,11 +111,11 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, str]:
     if settings.frame != "auto":
         return settings.frame, said("frame '{frame}' as asked", frame=settings.frame)
     plane = best_plane_frame(points)
-    extent = np.ptp(plane.to_local(points.xyz), axis=0)
     dip = _dip(points, plane)
     over_map = backtracking(points, map_frame(points))
     if dip < STEEP and over_map <= OVERTURNED:
         return "map", said("height field over the map (mean dip {dip:.0f} degrees)", dip=dip)
+    extent = np.ptp(plane.to_local(points.xyz), axis=0)
     thin = extent[2] <= PLANAR * max(extent[0], extent[1])
     over_plane = backtracking(points, plane)
     steep = said("height field over its best plane: it dips {dip:.0f} degrees", dip=dip)
@@ -138,7 +138,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, str]:
 def _dip(points: PointSet, plane: Frame) -> float:
     """Return the mean dip in degrees; of points in one line in plan, the dip along that line."""
     xyz = points.xyz - points.xyz.mean(axis=0)
-    moments, axes = np.linalg.eigh(xyz[:, :2].T @ xyz[:, :2])
+    moments, axes = np.linalg.eigh((xyz.T @ xyz)[:2, :2])
     if moments[0] < 0.02**2 * moments[1]:
         along = xyz[:, :2] @ axes[:, 1]
         rise = np.abs(np.diff(xyz[np.argsort(along, kind="stable"), 2])).sum()
@@ -184,7 +184,7 @@ def _section_chart(points: PointSet, reason: str) -> Chart:
 
 
 def _box(plane: Floats) -> Rectangle:
-    low, high = plane.min(axis=0), plane.max(axis=0)
+    low, high = (np.array([end(axis) for axis in plane.T]) for end in (np.min, np.max))
     # A line of points still needs a strip to stand on.
     short = 0.05 * max(float((high - low).max()), 1.0)
     pad = np.where(high - low < short, short, 0.0)

@@ -96,7 +96,7 @@ def fit_with_core(
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
     space = TensorSpace(knots[0], knots[1], degree)
     weight = cell_weights(space, data.plane, data.accuracy)
-    smoothed, _ = smooth(space, field, data.plane, data.value, weight)
+    smoothed = smooth(space, field, data.plane, data.value, weight)
     rule = None
     if linear:
         within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
@@ -168,7 +168,7 @@ def _breaks(
             break
         stretch *= 1.15
     weight = cell_weights(coarse, data.plane, data.accuracy)
-    trial, _ = smooth(coarse, field, data.plane, data.value, weight)
+    trial = smooth(coarse, field, data.plane, data.value, weight)
     misfit = data.value[inside] - coarse.matrix(plane) @ trial
 
     def counted(shape: tuple[int, int]) -> bool:

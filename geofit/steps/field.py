@@ -83,10 +83,10 @@ def plane_trend(plane: Floats, z: Floats, weight: Floats) -> Floats:
 
     Collinear points leave the slope across them at zero.
     """
-    root = np.sqrt(weight)[:, None]
-    centre = np.average(plane, axis=0, weights=weight)
-    matrix = np.column_stack([np.ones(len(plane)), plane - centre]) * root
-    solution: Floats = np.linalg.lstsq(matrix, z.reshape(len(z), -1) * root, rcond=1e-9)[0]
+    root = np.sqrt(weight)
+    centre = weight @ plane / weight.sum()
+    matrix = np.stack([root, *(root * (plane - centre).T)]).T
+    solution: Floats = np.linalg.lstsq(matrix, z.reshape(len(z), -1) * root[:, None], rcond=1e-9)[0]
     solution[0] -= centre @ solution[1:]
     return solution.reshape(3, *z.shape[1:])
 
@@ -134,6 +134,8 @@ def choose(
     FitError
         If no lambda gives a solvable system.
     """
+    if space.shape[1] > space.shape[0]:
+        space, plane = space.turned, plane[:, ::-1]
     band, right = space.normal_equations(plane, z, weight)
     square = float((weight @ (z.reshape(len(z), -1) ** 2)).sum())
     names = {3: ("smooth", "plate"), 2: ("plate",)}.get(space.degree, ("flat",))
@@ -166,7 +168,7 @@ def _in_line(plane: Floats) -> bool:
 
 
 class _Likelihood:
-    """Restricted likelihood of lambda for one energy; each value costs one factorisation."""
+    """Restricted likelihood of lambda for one energy; each new value costs one factorisation."""
 
     def __init__(
         self, space: TensorSpace, name: str, band: Floats, right: Floats, square: float, n: int, weight: float
@@ -178,23 +180,25 @@ class _Likelihood:
         self.n, self.free = n, ENERGIES[name][1]
         self.weight = weight
         self.floor = n * self.columns * _FINEST**2
+        self.known: dict[float, tuple[float, float]] = {}
 
-    def _solve(self, log: float) -> tuple[Factor, Floats, float]:
-        factor = Factor(self.band + 10.0**log * self.energy)
-        coefficients = factor.solve(self.right)
-        penalised = self.square - float((coefficients * self.right).sum())
-        return factor, coefficients, max(penalised, self.floor)
-
-    def __call__(self, log: float) -> float:
-        """Return -2 log of the restricted likelihood, but for a constant of the data."""
+    def _solve(self, log: float) -> tuple[float, float]:
+        """Return the value, and the penalised sum of squares."""
         try:
-            factor, _, penalised = self._solve(log)
+            factor = Factor(self.band + 10.0**log * self.energy)
         except FitError:
-            return _UNSOLVABLE
+            return _UNSOLVABLE, math.nan
+        penalised = max(self.square - float((factor.solve(self.right) * self.right).sum()), self.floor)
         degrees = max(self.n - self.free, 1)
         misfit = self.columns * degrees * math.log(penalised / (degrees * self.columns))
         prior = self.determinant + (self.space.size - self.free) * log * math.log(10)
-        return misfit + self.columns * (factor.logdet - prior)
+        return misfit + self.columns * (factor.logdet - prior), penalised
+
+    def __call__(self, log: float) -> float:
+        """Return -2 log of the restricted likelihood, but for a constant of the data."""
+        if log not in self.known:
+            self.known[log] = self._solve(log)
+        return self.known[log][0]
 
     def best(self) -> float:
         """Search log10 lambda: a coarse scan, then Brent's method between the neighbours of its best."""
@@ -209,7 +213,7 @@ class _Likelihood:
 
     def noise(self, log: float) -> float:
         """Return the likeliest noise of a point, metres."""
-        _, _, penalised = self._solve(log)
+        penalised = self.known[log][1]
         share = self.n / (max(self.n - self.free, 1) * self.columns * self.weight)
         return math.sqrt(penalised * share)
 
@@ -222,16 +226,10 @@ def _log_pseudo_determinant(energy: Floats, free: int) -> float:
     return Factor(held).logdet - free * math.log(ridge)
 
 
-def smooth(space: TensorSpace, field: Field, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
-    """Solve for the coefficients of a chosen field on any space.
-
-    Returns
-    -------
-    coefficients : (size,) or (size, k) array
-        Heights of the control points, metres.
-    energy : (bandwidth + 1, size) array
-        Band of lambda times the energy, for what follows on the same space.
-    """
-    band, right = space.normal_equations(plane, z, weight)
-    energy = field.smoothing * energy_band(space, field.energy)
-    return Factor(band + energy).solve(right), energy
+def smooth(space: TensorSpace, field: Field, plane: Floats, z: Floats, weight: Floats) -> Floats:
+    """Return the coefficients of a chosen field on any space, (size,) or (size, k): heights, metres."""
+    turned = space.turned if space.shape[1] > space.shape[0] else space
+    band, right = turned.normal_equations(plane if turned is space else plane[:, ::-1], z, weight)
+    solution = Factor(band + field.smoothing * energy_band(turned, field.energy)).solve(right)
+    net = solution.reshape(*turned.shape, *solution.shape[1:])
+    return (net if turned is space else np.swapaxes(net, 0, 1)).reshape(solution.shape)

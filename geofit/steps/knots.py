@@ -64,13 +64,14 @@ def graded_breaks(required: ArrayLike, largest: float, sizes: Floats) -> Floats:
     step = x[1] - x[0]
     size = np.full(_SAMPLES, largest)
     middle = (x[1:] + x[:-1]) / 2
-    for low, high, limit in sizes:
-        first, last = np.searchsorted(middle, (low, high))
-        size[max(first - 1, 0) : last + 1] = np.minimum(size[max(first - 1, 0) : last + 1], limit)
-    for i in range(1, _SAMPLES):
-        size[i] = min(size[i], size[i - 1] + GROWTH * step)
-    for i in range(_SAMPLES - 2, -1, -1):
-        size[i] = min(size[i], size[i + 1] + GROWTH * step)
+    first = np.maximum(np.searchsorted(middle, sizes[:, 0]) - 1, 0).tolist()
+    last = np.searchsorted(middle, sizes[:, 1]).tolist()
+    for low, high, limit in zip(first, last, sizes[:, 2].tolist(), strict=True):
+        part = size[low : high + 1]
+        np.minimum(part, limit, out=part)
+    grown = GROWTH * step * np.arange(_SAMPLES)
+    size = np.minimum.accumulate(size - grown) + grown
+    size = (np.minimum.accumulate((size - grown[::-1])[::-1]) + grown)[::-1]
     spent = np.concatenate([[0.0], np.cumsum(step / size)])
     breaks = [required[:1]]
     for low, high in itertools.pairwise(required):

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from geofit.points import PointSet
 from geofit.settings import FitSettings
 from geofit.splines import bspline
-from geofit.splines.tensor import CELLWISE, TensorSpace, values_at
+from geofit.splines.tensor import CELLWISE, Factor, TensorSpace
 from geofit.steps.assemble import multiply_knots
 from geofit.steps.chart import Chart
-from geofit.steps.field import ENOUGH, Field, cell_weights, choose, energy_band, plane_trend, smooth
+from geofit.steps.field import ENOUGH, Field, cell_weights, choose, energy_band, plane_trend
 from geofit.steps.partition import Split
 from geofit.steps.periphery import approximate, borrowed
 from geofit.words import said
@@ -104,7 +104,7 @@ def gather(points: PointSet, chart: Chart, kept: NDArray[np.bool_], split: Split
     unit = float(np.sqrt(size / n))
     plane, value = chart.plane[kept] / unit, chart.values[kept]
     trend = plane_trend(plane, value, np.ones(len(plane)))
-    base = np.column_stack([np.ones(len(plane)), plane]) @ trend
+    base = trend[0] + plane @ trend[1:]
     scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
     return Data(plane, value - base, points.accuracy[kept], scaled, unit, trend)
 
@@ -159,7 +159,7 @@ def approximate_all(
     n, degree = len(data.plane), degree_for(len(data.plane))
     most = cap_for(settings, n)
     stage("field", 0.25)
-    if n >= CELLWISE:
+    if n >= CELLWISE and not chart.parametric:
         return _approximate_many(data, settings, most)
     space = even_space(data.area, EVEN, degree, most)
     field = choose_field(data, space, settings)
@@ -267,7 +267,7 @@ class Periphery:
         elif self.settings.smoothing != "auto":
             reason = said("the smoothing is given")
         note = said(
-            "interior tolerance {tolerance:g} m not met at {count} points, worst {worst:.3f} m: {reason}",
+            "interior tolerance {tolerance:g} m not met, points: {count}, worst {worst:.3f} m: {reason}",
             tolerance=self.settings.interior_tolerance,
             count=count,
             worst=float(excess.max()),
@@ -292,9 +292,10 @@ def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:
         if best is not None and count > min(most, n / 3):
             break
         space = even_space(data.area, EVEN, 3, count)
-        coefficients, _ = smooth(space, field, data.plane, data.value, weight)
-        misfit = data.value - values_at(space, coefficients, data.plane)
-        score = float(np.sqrt(np.square(misfit).sum() * n)) / max(n - space.size, 1)
+        sums = space.sums(data.plane, data.value, weight)
+        band, right = space.equations(sums)
+        coefficients = Factor(band + field.smoothing * energy_band(space, field.energy)).solve(right)
+        score = float(np.sqrt(sums.misfit(coefficients) * n)) / max(n - space.size, 1)
         if best is not None and score > 0.99 * best[0]:
             break
         best = (score, space, coefficients)

@@ -16,6 +16,7 @@ from geofit.errors import StitchError
 from geofit.occ import explore, faces_of, free_loops, placement, to_geom
 from geofit.splines import bspline
 from geofit.surface import HorizonSurface, Patch
+from geofit.words import listed, said
 
 if TYPE_CHECKING:
     from cadquery import Shell
@@ -56,7 +57,7 @@ def shell(surface: HorizonSurface) -> Any:
     from OCP.TopoDS import TopoDS
 
     if not surface.patches:
-        raise StitchError(f"'{surface.name}' has no patch; a surface needs at least one.")
+        raise StitchError(said("'{name}' has no patch; a surface needs at least one.", name=surface.name))
     sewing = BRepBuilderAPI_Sewing(SEWING)
     outline = trim.needed(surface, TRIM)
     exact = trim.is_height_field(surface)
@@ -72,7 +73,9 @@ def shell(surface: HorizonSurface) -> Any:
     if outline is not None and not exact:
         sewn = trim.cut(sewn, outline)
     if sewn.IsNull():
-        raise StitchError(f"'{surface.name}' does not reach into its outline; give an outline that it covers.")
+        raise StitchError(
+            said("'{name}' does not reach into its outline; give an outline that it covers.", name=surface.name)
+        )
     faces = faces_of(sewn)
     shells = [TopoDS.Shell_s(part) for part in explore(sewn, TopAbs_SHELL)]
     if len(faces) == 1 and not shells:
@@ -83,13 +86,21 @@ def shell(surface: HorizonSurface) -> Any:
     result = shells[0]
     if (loops := free_loops(result)) != 1:
         raise StitchError(
-            f"'{surface.name}': the free edges of the sewn shell make {loops} loops; the outer boundary "
-            f"alone makes one. {_why_loose(surface, 1)}"
+            said(
+                "'{name}': the free edges of the sewn shell make {loops} loops; the outer boundary alone makes "
+                "one. {reason}",
+                name=surface.name,
+                loops=loops,
+                reason=_why_loose(surface, 1),
+            )
         )
     if not BRepCheck_Analyzer(result).IsValid():
         raise StitchError(
-            f"OpenCASCADE finds the sewn shell of '{surface.name}' invalid (BRepCheck). Look for collapsed "
-            "edges or patches folded onto themselves; fit again with fewer control points or another frame."
+            said(
+                "OpenCASCADE finds the sewn shell of '{name}' invalid (BRepCheck). Look for collapsed edges or "
+                "patches folded onto themselves; fit again with fewer control points or another frame.",
+                name=surface.name,
+            )
         )
     return result
 
@@ -107,15 +118,23 @@ def _shell_of(face: Any) -> Any:
 def _why_loose(surface: HorizonSurface, shells: int) -> str:
     open_seams = [seam for seam in seams(surface) if seam.gap > SEWING]
     if open_seams:
-        places = "; ".join(f"{s.first} and {s.second} gape by {s.gap:.3g} m" for s in open_seams)
-        return (
-            f"Patches of '{surface.name}' do not share their edges: {places}. At most {SEWING:g} m is "
-            "needed: give neighbours the same edge row of control points."
+        places = listed(
+            said("{first} and {second} gape by {gap:.3g} m", first=s.first, second=s.second, gap=s.gap)
+            for s in open_seams
         )
-    names = ", ".join(patch.name for patch in surface.patches)
-    return (
-        f"The patches of '{surface.name}' ({names}) make {shells} separate pieces; one connected surface is "
-        "needed. Check the outline, and that neighbours run along whole edges."
+        return said(
+            "Patches of '{name}' do not share their edges: {places}. At most {limit:g} m is needed: give neighbours "
+            "the same edge row of control points.",
+            name=surface.name,
+            places=places,
+            limit=SEWING,
+        )
+    return said(
+        "The patches of '{name}' ({names}) make {shells} separate pieces; one connected surface is needed. Check the "
+        "outline, and that neighbours run along whole edges.",
+        name=surface.name,
+        names=listed(patch.name for patch in surface.patches),
+        shells=shells,
     )
 
 
@@ -140,10 +159,16 @@ def one_surface(surface: HorizonSurface) -> Patch:
     ranges_v = sorted({patch.domain[2:] for patch in patches})
     grid = {(patch.domain[:2], patch.domain[2:]): patch for patch in patches}
     if len(grid) != len(ranges_u) * len(ranges_v) or len(grid) != len(patches) or len({p.degree for p in patches}) > 1:
-        names = ", ".join(f"{p.name} {p.domain} degree {p.degree}" for p in patches)
+        names = listed(
+            said("{name} {domain} degree {degree}", name=p.name, domain=p.domain, degree=p.degree) for p in patches
+        )
         raise StitchError(
-            f"The patches of '{surface.name}' make no full grid of parameter ranges with one degree: "
-            f"{names}. Use the sewn shell instead."
+            said(
+                "The patches of '{name}' make no full grid of parameter ranges with one degree: {names}. Use the "
+                "sewn shell instead.",
+                name=surface.name,
+                names=names,
+            )
         )
     rational = any(patch.weights is not None for patch in patches)
     rows = []
@@ -175,11 +200,21 @@ def _join(strip: list[tuple[Floats, Floats, Floats]], degree: int) -> tuple[Floa
     for following, further, other in strip[1:]:
         if knots[-1] != further[0] or not np.array_equal(across, other):
             raise StitchError(
-                f"Neighbouring patches differ in their knots (one ends at {knots[-1]:g}, the next starts at "
-                f"{further[0]:g}). Only restrictions of one tensor-product surface can be merged."
+                said(
+                    "Neighbouring patches differ in their knots (one ends at {end:g}, the next starts at {start:g}). "
+                    "Only restrictions of one tensor-product surface can be merged.",
+                    end=knots[-1],
+                    start=further[0],
+                )
             )
         if (apart := np.abs(control[-1] - following[0]).max()) > SEWING:
-            raise StitchError(f"Neighbouring patches gape by {apart:.3g} m; at most {SEWING:g} m can be merged.")
+            raise StitchError(
+                said(
+                    "Neighbouring patches gape by {apart:.3g} m; at most {limit:g} m can be merged.",
+                    apart=apart,
+                    limit=SEWING,
+                )
+            )
         control = np.concatenate([control, following[1:]])
         knots = np.concatenate([knots[:-1], further[degree + 1 :]])
     return control, knots, across

@@ -159,3 +159,14 @@ def test_inserted_control_points_are_averages(case):
 def test_inserting_nothing_changes_nothing():
     knots = bspline.clamped_knots([0, 1, 2, 5], 3)
     np.testing.assert_array_equal(bspline.insertion_matrix(knots, knots, 3), np.eye(6))
+
+
+@pytest.mark.parametrize("even", [True, False])
+def test_intervals_are_those_of_a_search_however_many_places(even):
+    rng = np.random.default_rng(3)
+    for count in (2, 3, 30):
+        breaks = np.linspace(-1.7, 33.3, count) if even else np.sort(rng.uniform(-5, 90, count))
+        ends = np.concatenate([breaks, np.nextafter(breaks, np.inf), np.nextafter(breaks, -np.inf)])
+        for x in (ends, np.concatenate([np.tile(ends, 50), rng.uniform(-10, 100, 100_000)])):
+            wanted = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, count - 2)
+            np.testing.assert_array_equal(bspline.intervals(breaks, x), wanted)

@@ -79,7 +79,7 @@ def stiff_cloud(n=120, spikes=4, seed=0):
 def test_a_fit_above_epsilon_is_adjusted_until_it_passes_and_says_so():
     surface = fit_horizon(stiff_cloud(), FitSettings(core="none", smoothing=100.0, epsilon=0.5))
     assert surface.accuracy.passed
-    assert any("sigma came below epsilon after" in note for note in surface.accuracy.notes)
+    assert any("until sigma came below epsilon" in note for note in surface.accuracy.notes)
 
 
 def test_without_iterations_it_stays_above_epsilon_and_says_so():

@@ -5,10 +5,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from scipy.spatial import KDTree
 from scipy.spatial.distance import pdist
 
 from geofit import PointSet
-from geofit.steps.conflicts import settle
+from geofit.steps.conflicts import _near_pairs, settle
 
 
 def settled(xyz, distance=0.01, **columns):
@@ -116,3 +117,18 @@ def test_kept_points_are_apart_and_each_other_one_is_listed_once(grid, seed):
         assert kept[c.kept]
         assert np.hypot(*(xyz[c.kept] - xyz[c.dropped])[:2]) <= 0.01 + 1e-8
         assert c.difference == xyz[c.dropped, 2] - xyz[c.kept, 2]
+
+
+@pytest.mark.parametrize(("n", "size", "columns"), [(3000, 20.0, 2), (3000, 20.0, 3), (3000, 0.3, 2), (50, 0.05, 2)])
+def test_pairs_are_those_of_a_tree(n, size, columns):
+    place = np.random.default_rng(n).uniform(0, size, (n, columns)) + np.array([3e6, 5e5, 100.0])[:columns]
+    for distance in (0.01, 0.3):
+        wanted = KDTree(place).query_pairs(distance, output_type="ndarray")
+        found = _near_pairs(place, distance)
+        assert {tuple(pair) for pair in found.tolist()} == {tuple(pair) for pair in wanted.tolist()}
+        assert len(found) == len(wanted)
+
+
+def test_places_in_one_line_are_paired_across_the_borders_of_strips():
+    place = np.column_stack([np.zeros(500), np.arange(500) * 0.009])
+    assert len(_near_pairs(place, 0.01)) == 499
