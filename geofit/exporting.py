@@ -20,6 +20,7 @@ from geofit.geometry.loops import TrimmedSurface
 from geofit.geometry.mesh import MeshSurface, triangulate
 from geofit.geometry.sampling import deviation_grid, elevation_grid, thickness_grid
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 if TYPE_CHECKING:
     from geofit.points import PointSet
@@ -103,7 +104,9 @@ def export(surfaces: Surfaces, to: str, out: Path, request: Request | None = Non
         If the format needs a package that is not installed; the message holds the install line.
     """
     if to not in FORMATS:
-        raise InputError(f"There is no format '{to}'", f"Choose one of: {', '.join(FORMATS)}.")
+        raise InputError(
+            said("There is no format '{to}'", to=to), said("Choose one of: {names}.", names=", ".join(FORMATS))
+        )
     if not surfaces:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(out))
     chosen, wanted = FORMATS[to], request or Request()
@@ -175,7 +178,11 @@ def section(
     cuts = {name: cut(surface, corners, tolerance=tolerance) for name, surface in surfaces.items()}
     if not any(cuts.values()):
         raise InputError(
-            f"The section line from {corners[0].tolist()} to {corners[-1].tolist()} meets no horizon",
+            said(
+                "The section line from {first} to {last} meets no horizon",
+                first=corners[0].tolist(),
+                last=corners[-1].tolist(),
+            ),
             "Give it in the surfaces' map coordinates, metres.",
         )
     out.mkdir(parents=True, exist_ok=True)
@@ -202,7 +209,7 @@ def read_line(text: str) -> Floats:
         return _line_file(Path(text))
     if len(values) < 4 or len(values) % 2 or not all(map(math.isfinite, values)):
         raise InputError(
-            f"The section line has {len(values)} numbers",
+            said("Numbers given for the section line: {count}", count=len(values)),
             "Give x0,y0,x1,y1, metres; further corners add two numbers each.",
             value=text,
         )
@@ -227,10 +234,12 @@ def _line_file(path: Path) -> Floats:
     return np.asarray(corners[:, :2])
 
 
-def uncut(surfaces: Surfaces) -> list[str]:
-    """Return a sentence for each surface whose trimming no exporter follows: it has holes, or stands upright."""
+def uncut(surfaces: Surfaces, to: str) -> list[str]:
+    """Return a sentence for each surface whose faces end at loops that a format's NURBS patches do not follow."""
+    if to not in FORMATS or FORMATS[to].takes not in ("surfaces", "site"):
+        return []
     return [
-        f"{name}: its faces are trimmed in a way that exports and sections do not follow; they show the faces whole"
+        f"{name}: its faces end at holes or curves that {to} does not follow here; it holds the patches whole"
         for name, surface in surfaces.items()
         if isinstance(surface, TrimmedSurface) and surface.outline is None
     ]
@@ -242,8 +251,12 @@ def _need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
     if meshes:
         others = [name for name, one in FORMATS.items() if one.takes not in ("surfaces", "site")]
         raise InputError(
-            f"'{meshes[0]}' is a triangle mesh; {to} holds NURBS surfaces, which would have to be fitted",
-            f"Fit its vertices (geofit fit), or choose one of: {', '.join(others)}.",
+            said(
+                "'{name}' is a triangle mesh; {to} holds NURBS surfaces, which would have to be fitted",
+                name=meshes[0],
+                to=to,
+            ),
+            said("Fit its vertices (geofit fit), or choose one of: {names}.", names=", ".join(others)),
             file=str(out),
         )
 
@@ -267,7 +280,7 @@ def _grids(surfaces: Surfaces, out: Path, request: Request) -> list[tuple[Path, 
     if request.value == "thickness":
         if len(surfaces) != 2:
             raise InputError(
-                f"Thickness lies between two horizons; {len(surfaces)} are given",
+                said("Thickness lies between two horizons; given: {count}", count=len(surfaces)),
                 "Name the upper one, then the lower.",
             )
         upper, lower = surfaces.values()
@@ -276,9 +289,11 @@ def _grids(surfaces: Surfaces, out: Path, request: Request) -> list[tuple[Path, 
     if request.value == "elevation":
         return [(files[name], elevation_grid(surface, request.cell)) for name, surface in surfaces.items()]
     if request.value != "deviation":
-        raise SettingsError(f"A grid of '{request.value}' is unknown; choose elevation, deviation or thickness.")
+        raise SettingsError(
+            said("A grid of '{kind}' is unknown; choose elevation, deviation or thickness.", kind=request.value)
+        )
     data = dict(_points(surfaces, request))
     missing = [name for name in surfaces if name not in data]
     if missing:
-        raise InputError(f"There are no points of '{missing[0]}'", "Give them with --points.")
+        raise InputError(said("There are no points of '{name}'", name=missing[0]), "Give them with --points.")
     return [(files[name], deviation_grid(surfaces[name], data[name], request.cell)) for name in surfaces]

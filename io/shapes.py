@@ -24,7 +24,7 @@ __all__ = ["FileShape", "document", "products", "quiet", "surface_of", "unique_n
 Floats = NDArray[np.float64]
 
 #: Samples along a curved edge of a shape's outline, and along one of a face's loops in its parameters.
-ALONG, AROUND = 24, 64
+ALONG, AROUND = 24, 128
 #: A file's face that fills its parameter rectangle to this share is not cut down to it.
 FULL = 1e-9
 #: A face this near to upright (cosine) is not told from an overturned one.

@@ -80,3 +80,32 @@ def nine():
     whole = height_field()
     u, v = np.unique(whole.knots_u), np.unique(whole.knots_v)
     return whole, split(whole, [u[6], u[15]], [v[4], v[11]])
+
+
+def bored(path, patches):
+    """Write patches of 1,000 by 700 m as BREP, bored from above in three places, one of them on the rim.
+
+    Return the area (OpenCASCADE's own) and the length of the rim in plan.
+    """
+    import cadquery as cq
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+    from OCP.BRepGProp import BRepGProp
+    from OCP.BRepTools import BRepTools
+    from OCP.GProp import GProp_GProps
+    from OCP.TopLoc import TopLoc_Location
+
+    from geofit.steps.stitch import shell
+
+    shape = shell(horizon(patches)).Located(TopLoc_Location())
+    for x, y, radius in ((500, 350, 120), (250, 180, 60), (700, 700, 90)):
+        drill = cq.Solid.makeCylinder(radius, 1000, cq.Vector(x, y, -500)).wrapped
+        shape = BRepAlgoAPI_Cut(shape, drill).Shape()
+    BRepTools.Write_s(shape, str(path))
+    figures = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(shape, figures, 1e-9)
+    return figures.Mass(), 3400 + 2 * np.pi * (120 + 60) + (np.pi - 2) * 90
+
+
+def area(corners):
+    """Area of triangles (m, 3, 3)."""
+    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1).sum() / 2

@@ -136,7 +136,7 @@ def test_tails_of_a_few_points_are_found(sample_surfaces):
     rows = loose(surface)[::25]
     found = moved(surface, rows, np.where(np.arange(len(rows)) % 2, 1.5, -1.5))
     assert "normality" in failing(found)
-    assert "make" in named(found)["normality"].text
+    assert "of the sum of squares from" in named(found)["normality"].text
 
 
 # Geometry.
@@ -389,8 +389,23 @@ def test_many_points_are_thinned_and_it_is_said():
     points[:, 2] += np.random.default_rng(1).normal(0, 0.05, len(points))
     found = named(check(horizon([patch], points).with_(fit={"frame": "map"})))
     assert found["clustering"].text.endswith("5000 of 12000 points looked at")
+    assert found["oscillation"].text.endswith("; 5000 of 12000 points looked at")
     assert found["clustering"].passed
     assert found["bias"].passed
+
+
+def test_the_trend_of_many_points_says_how_many_it_looked_at():
+    """What the points show is the most that any of them shows, not only those of the part."""
+    patch = height_field(8, 8, z=lambda x, y: 0 * x)
+    plan = np.random.default_rng(0).uniform((0, 0), (500, 700), (30_000, 2))
+    points = np.column_stack([plan, np.random.default_rng(1).normal(0, 0.05, 30_000)]) + ORIGIN
+    left_out = np.setdiff1d(np.arange(30_000), np.random.default_rng(0).choice(30_000, 20_000, replace=False))
+    points[left_out[0], 2] += 7.0
+    found = named(check(horizon([patch], points).with_(fit={"frame": "map"})))["trend"]
+    assert found.text.endswith("; 20000 of 30000 points looked at")
+    assert found.limit == pytest.approx(14.0, abs=0.5)
+    fewer = named(check(horizon([patch], points[:400]).with_(fit={"frame": "map"})))
+    assert not any("looked at" in one.text for one in fewer.values())
 
 
 def test_few_points_are_not_judged():

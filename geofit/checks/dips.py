@@ -105,15 +105,15 @@ def _check(deviations: tuple[DipDeviation, ...], orientations: Orientations) -> 
     beyond = [one for one in worst if one.angle > LIMIT]
     if not beyond:
         text = said(
-            "{n} measured dips agree with the surface, the worst by {angle:.0f} degrees",
+            "the measured dips ({n}) agree with the surface, the worst by {angle:.0f} degrees",
             n=len(worst),
             angle=first.angle,
         )
         return Check("dips", True, first.angle, LIMIT, "deg", text)
     text = said(
-        "{count} of {n} measured dips contradict the surface: the worst is {azimuth:.0f}/{dip:.0f} where the surface "
-        "dips {surface_azimuth:.0f}/{surface_dip:.0f} ({angle:.0f} degrees between the planes); the measurement "
-        "belongs to another structure, or the surface is wrong there",
+        "measured dips that contradict the surface: {count} of {n}, the worst is {azimuth:.0f}/{dip:.0f} where "
+        "the surface dips {surface_azimuth:.0f}/{surface_dip:.0f} ({angle:.0f} degrees between the planes); the "
+        "measurement belongs to another structure, or the surface is wrong there",
         count=len(beyond),
         n=len(worst),
         azimuth=first.azimuth,

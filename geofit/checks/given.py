@@ -13,7 +13,7 @@ from geofit.checks.shape import RANGE_SHARE
 from geofit.geometry.distance import Projection
 from geofit.geometry.facets import Nearest
 from geofit.geometry.facets import nearest as nearest_triangle
-from geofit.geometry.loops import TrimmedSurface
+from geofit.geometry.loops import loops_of
 from geofit.geometry.loops import nearest as nearest_place
 from geofit.geometry.mesh import MeshSurface
 from geofit.points import PointSet
@@ -41,7 +41,7 @@ def check_given(surface: HorizonSurface, points: PointSet, settings: FitSettings
         accuracy = replace(accuracy, checks=(*accuracy.checks, *_mesh_checks(surface, points)))
         text = said("A triangle mesh: seams, control points and the tangent plane do not apply.")
         return judged.with_(accuracy=_with_beyond(accuracy, points, found, (text,)))
-    found = nearest_place(surface.patches, xyz, surface.loops if isinstance(surface, TrimmedSurface) else ())
+    found = nearest_place(surface.patches, xyz, loops_of(surface))
     accuracy = check(judged, projection=_projection(found, found.part))
     return judged.with_(accuracy=_with_beyond(accuracy, points, found, accuracy.notes))
 
@@ -56,14 +56,14 @@ def _with_beyond(accuracy: Accuracy, points: PointSet, found: Nearest, notes: tu
     """Add the points beside the surface, each with its place in a file."""
     beside = np.flatnonzero(found.beyond)
     text = said(
-        "{count} of {total} points lie beyond the surface's edge and are measured to the edge",
+        "points beyond the surface's edge, measured to the edge: {count} of {total}",
         count=beside.size,
         total=accuracy.n,
     )
     added = Check("beyond the surface", None, float(beside.size), 0.0, "points", text)
     named = [said("beyond the surface: {point}", point=points.describe(int(i))) for i in beside[:NAMED].tolist()]
     if beside.size > NAMED:
-        named.append(said("beyond the surface: {count} more points", count=beside.size - NAMED))
+        named.append(said("beyond the surface: further points, {count}", count=beside.size - NAMED))
     told = (text, *named) if beside.size else ()
     return replace(accuracy, checks=(*accuracy.checks, added), notes=(*notes, *told))
 

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.geometry.clip import inside
+from geofit.geometry.loops import inside as inside_loops
+from geofit.geometry.loops import loops_of
 from geofit.splines.bspline import collocation
 from geofit.surface import HorizonSurface, Patch
 
@@ -16,10 +18,13 @@ __all__ = ["Lattice", "lattices", "places"]
 
 Floats = NDArray[np.float64]
 
+#: Fewest spans along each side of a patch that loops cut: a plane has one, which they may miss.
+LOOPED = 24
+
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """One patch: ``points`` (a, b, 3) about the origin, ``normal`` (a, b, 3), ``within`` (a, b) the outline.
+    """One patch: ``points`` (a, b, 3) about the origin, ``normal`` (a, b, 3), ``within`` (a, b) outline and loops.
 
     A normal is as long as the sine of the angle between S_u and S_v: 0 where the patch is degenerate. Places with
     two odd indices are the middles of spans.
@@ -37,28 +42,31 @@ class Lattice:
 
 def lattices(surface: HorizonSurface) -> tuple[Lattice, ...]:
     """Lay a lattice over each patch, fine enough that no wiggle of one control point falls between its places."""
-    return tuple(_lattice(surface, patch) for patch in surface.patches)
+    each = zip(surface.patches, loops_of(surface), strict=True)
+    return tuple(_lattice(surface, patch, loops) for patch, loops in each)
 
 
 def places(parts: Sequence[Lattice]) -> tuple[Floats, Floats]:
-    """Return points (n, 3) and normals (n, 3) of all places within the outline."""
+    """Return points (n, 3) and normals (n, 3) of all places within the outline and the loops."""
     return np.concatenate([p.points[p.within] for p in parts]), np.concatenate([p.normal[p.within] for p in parts])
 
 
-def _lattice(surface: HorizonSurface, patch: Patch) -> Lattice:
-    points, su, sv = _grid(patch)
+def _lattice(surface: HorizonSurface, patch: Patch, loops: tuple[Floats, ...]) -> Lattice:
+    u, v = (_ends_and_middles(knots, LOOPED if loops else 1) for knots in (patch.knots_u, patch.knots_v))
+    points, su, sv = _grid(patch, u, v)
     lengths = np.linalg.norm(su, axis=-1) * np.linalg.norm(sv, axis=-1)
     normal = np.cross(su, sv) / np.maximum(lengths, 1e-300)[..., None]
     within = np.ones(points.shape[:2], bool)
     if surface.outline is not None:
         outline = surface.outline - surface.origin[:2]
         within = inside(outline, points[..., :2].reshape(-1, 2)).reshape(within.shape)
+    if loops:
+        within &= inside_loops(patch, loops, *np.meshgrid(u, v, indexing="ij"))
     return Lattice(points, normal, within)
 
 
-def _grid(patch: Patch) -> tuple[Floats, Floats, Floats]:
+def _grid(patch: Patch, u: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
     """Points and first derivatives on the lattice, each (a, b, 3)."""
-    u, v = _ends_and_middles(patch.knots_u), _ends_and_middles(patch.knots_v)
     if patch.weights is not None:
         grid = u[:, None], v[None, :]
         return patch.evaluate(*grid), patch.evaluate(*grid, 1, 0), patch.evaluate(*grid, 0, 1)
@@ -69,6 +77,10 @@ def _grid(patch: Patch) -> tuple[Floats, Floats, Floats]:
     return across @ rows, across @ rows_du, across_dv @ rows
 
 
-def _ends_and_middles(knots: Floats) -> Floats:
+def _ends_and_middles(knots: Floats, fewest: int) -> Floats:
+    """Return the ends and middles of the spans, each of them cut until there are ``fewest`` at least."""
     breaks = np.unique(knots)
+    pieces = -(-fewest // (len(breaks) - 1))
+    cuts = breaks[:-1, None] + np.arange(pieces) / pieces * np.diff(breaks)[:, None]
+    breaks = np.append(cuts.ravel(), breaks[-1])
     return np.sort(np.concatenate([breaks, (breaks[1:] + breaks[:-1]) / 2]))

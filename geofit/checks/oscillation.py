@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 
 from geofit.accuracy import Check
 from geofit.checks.lattice import Lattice
+from geofit.checks.residual_tests import partly
 from geofit.geometry.distance import Projection
 from geofit.surface import HorizonSurface
 from geofit.words import said
@@ -68,9 +69,10 @@ def oscillation(
         The largest departure, metres, against what is allowed at that place; None with fewer than 20 points.
     """
     chosen = np.flatnonzero(honoured)
-    if len(chosen) < FEWEST:
+    given = len(chosen)
+    if given < FEWEST:
         return None
-    if len(chosen) > MOST:
+    if given > MOST:
         chosen = np.sort(np.random.default_rng(0).choice(chosen, MOST, replace=False))
     points = surface.points.xyz[chosen] - surface.origin
     feet, normals = projection.foot[chosen], _normals(surface, projection, chosen)
@@ -97,7 +99,7 @@ def oscillation(
             "m are allowed, at {x:.0f}, {y:.0f}",
             **figures,
         )
-        return Check("oscillation", True, value, limit, "m", text)
+        return Check("oscillation", True, value, limit, "m", partly(text, len(chosen), given))
     text = said(
         "the surface swings between the points: at {x:.0f}, {y:.0f} by {value:.1f} m from what those around support "
         "({limit:.1f} m allowed), and so at {count} of {n} places; a point there may be wrong, or the tolerance finer "
@@ -107,7 +109,7 @@ def oscillation(
         **figures,
     )
     named = tuple((float(a), float(b), float(c)) for a, b, c in where[beyond[:NAMED]])
-    return Check("oscillation", False, value, limit, "m", text, named)
+    return Check("oscillation", False, value, limit, "m", partly(text, len(chosen), given), named)
 
 
 def _normals(surface: HorizonSurface, projection: Projection, chosen: Ints) -> Floats:

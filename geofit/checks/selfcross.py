@@ -42,13 +42,14 @@ def self_crossing(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check:
         text = said("a height field over its best plane stands once over each place: it cannot cross itself")
         return Check("self-intersection", True, 0, 0, "places", text)
     triangles = _triangles(parts)
-    crossed, where = _crossings(triangles)
+    crossed, where = _crossings(triangles) if len(triangles) else (0, triangles)
     if not crossed:
         text = said("no two of {n} triangles between the ends and middles of its spans cross", n=len(triangles))
         return Check("self-intersection", True, 0, 0, "places", text)
     place = where[0] + surface.origin
     text = said(
-        "the surface passes through itself: {crossed} pairs of {n} triangles cross, one at {x:.1f}, {y:.1f}, {z:.1f}",
+        "the surface passes through itself: crossing pairs of triangles: {crossed} (triangles: {n}), one at "
+        "{x:.1f}, {y:.1f}, {z:.1f}",
         crossed=crossed,
         n=len(triangles),
         x=place[0],
@@ -60,7 +61,7 @@ def self_crossing(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check:
 
 
 def _triangles(parts: Sequence[Lattice]) -> Floats:
-    """Corners (m, 3, 3) of two triangles a cell of the lattices."""
+    """Corners (m, 3, 3) of two triangles a cell of the lattices that the outline and the loops leave."""
     step = 1
     while sum(2 * (p.points.shape[0] // step) * (p.points.shape[1] // step) for p in parts) > MOST:
         step += 1
@@ -70,7 +71,9 @@ def _triangles(parts: Sequence[Lattice]) -> Floats:
         rows, columns = (np.unique(np.append(np.arange(0, n, step), n - 1)) for n in grid.shape[:2])
         grid = grid[np.ix_(rows, columns)]
         a, b, c, d = grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]
-        found += [np.stack(t, axis=-2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))]
+        within = part.within[np.ix_(rows, columns)]
+        held = within[:-1, :-1] | within[1:, :-1] | within[1:, 1:] | within[:-1, 1:]
+        found += [np.stack(t, axis=-2)[held] for t in ((a, b, c), (a, c, d))]
     return np.concatenate(found)
 
 

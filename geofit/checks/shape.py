@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,10 @@ from numpy.typing import NDArray
 from geofit.accuracy import Check
 from geofit.checks.lattice import Lattice, places
 from geofit.geometry.elevation import plan_map
+from geofit.geometry.loops import inside, loops_of
+from geofit.splines.bspline import greville
 from geofit.surface import HorizonSurface, Patch
-from geofit.words import said
+from geofit.words import listed, said
 
 __all__ = ["shape_checks"]
 
@@ -29,6 +32,8 @@ FLAT = 0.0087
 BACK = -0.9
 #: Places that a check names.
 NAMED = 20
+#: Pieces of each side of a face's rim, seen from above.
+PIECES = 100
 
 
 def shape_checks(surface: HorizonSurface, parts: Sequence[Lattice]) -> list[Check]:
@@ -43,8 +48,10 @@ def shape_checks(surface: HorizonSurface, parts: Sequence[Lattice]) -> list[Chec
 
 def _normals(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check:
     """Folds and flipped normals: a fold that is meant turns its normals; any other surface's look to one side."""
-    points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
-    normal = np.concatenate([p.normal.reshape(-1, 3) for p in parts])
+    points, normal = places(parts)
+    if not len(points):
+        points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
+        normal = np.concatenate([p.normal.reshape(-1, 3) for p in parts])
     turned = np.linalg.norm(normal, axis=1) < 1e-9
     frame = surface.fit.get("frame")
     if frame != "sections":
@@ -74,32 +81,36 @@ def _majority(normal: Floats) -> Floats:
 def _patches(surface: HorizonSurface) -> Check:
     """Edges without length, corners without an angle, control points that run back over their neighbours."""
     faults: list[tuple[str, Floats]] = []
-    for patch in surface.patches:
-        faults += [(patch.name, place) for place in _collapsed(patch)]
+    for patch, loops in zip(surface.patches, loops_of(surface), strict=True):
+        faults += [(patch.name, place) for place in _collapsed(patch, loops)]
         if surface.fit.get("frame") != "best-plane" and plan_map(patch) is None:
             # A height field's control points stand in order by construction.
-            faults += [(patch.name, place) for place in _out_of_order(patch)]
+            faults += [(patch.name, place) for place in _out_of_order(patch, loops)]
     count = len(faults)
     if not count:
-        text = said("no edge, corner or control point of {n} patches has collapsed", n=len(surface.patches))
+        text = said("no edge, corner or control point of the patches ({n}) has collapsed", n=len(surface.patches))
         return Check("patches", True, 0, 0, "places", text)
-    names = ", ".join(dict.fromkeys(name for name, _ in faults))
+    names = listed(dict.fromkeys(name for name, _ in faults))
     text = said(
-        "{count} places where patches are degenerate (an edge without length, a corner without an angle, control "
-        "points that run back): {names}; other programs may refuse such a face",
+        "places where patches are degenerate (an edge without length, a corner without an angle, control points "
+        "that run back): {count}, in {names}; other programs may refuse such a face",
         count=count,
         names=names,
     )
     return Check("patches", False, count, 0, "places", text, _named(np.array([p for _, p in faults]) + surface.origin))
 
 
-def _collapsed(patch: Patch) -> list[Floats]:
+def _collapsed(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
     net = patch.control
     size = float(np.linalg.norm(np.ptp(net.reshape(-1, 3), axis=0)))
-    edges = (net[:, 0], net[:, -1], net[0], net[-1])
-    found = [edge[0] for edge in edges if np.linalg.norm(np.diff(edge, axis=0), axis=1).sum() <= SHORT * size]
+    held = _held(patch, loops)
+    edges = ((net[:, 0], held[:, 0]), (net[:, -1], held[:, -1]), (net[0], held[0]), (net[-1], held[-1]))
+    long = [np.linalg.norm(np.diff(edge, axis=0), axis=1).sum() for edge, _ in edges]
+    found = [edge[0] for (edge, some), length in zip(edges, long, strict=True) if some.any() and length <= SHORT * size]
     for i in (0, -1):
         for j in (0, -1):
+            if not held[i, j]:
+                continue
             along = net[1 if i == 0 else -2, j] - net[i, j]
             across = net[i, 1 if j == 0 else -2] - net[i, j]
             lengths = float(np.linalg.norm(along) * np.linalg.norm(across))
@@ -108,13 +119,19 @@ def _collapsed(patch: Patch) -> list[Floats]:
     return found
 
 
-def _out_of_order(patch: Patch) -> list[Floats]:
-    found = []
-    for net in (patch.control, patch.control.transpose(1, 0, 2)):
+def _held(patch: Patch, loops: tuple[Floats, ...]) -> NDArray[np.bool_]:
+    """Which control points (nu, nv) stand inside the loops, by their Greville abscissae."""
+    u, v = greville(patch.knots_u, patch.degree[0]), greville(patch.knots_v, patch.degree[1])
+    return inside(patch, loops, *np.meshgrid(u, v, indexing="ij"))
+
+
+def _out_of_order(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
+    found, held = [], _held(patch, loops)
+    for net, some in ((patch.control, held), (patch.control.transpose(1, 0, 2), held.T)):
         legs = np.diff(net, axis=0)
         lengths = np.linalg.norm(legs, axis=2)
         cosine = (legs[1:] * legs[:-1]).sum(axis=2) / np.maximum(lengths[1:] * lengths[:-1], 1e-300)
-        found.append(net[1:-1][cosine < BACK])
+        found.append(net[1:-1][(cosine < BACK) & some[1:-1]])
     return list(np.concatenate(found))
 
 
@@ -136,7 +153,7 @@ def _area(surface: HorizonSurface) -> Check:
     assert surface.outline is not None
     outline = surface.outline - surface.origin[:2]
     wanted = abs(_signed_area(outline))
-    covered = _covered(surface.patches, outline)
+    covered = _covered(surface, outline)
     off = 100.0 * abs(covered / wanted - 1.0)
     figures = {"covered": covered, "wanted": wanted, "off": off}
     if off <= UNCOVERED:
@@ -154,21 +171,29 @@ def _area(surface: HorizonSurface) -> Check:
     return Check("area", off <= UNCOVERED, off, UNCOVERED, "%", text)
 
 
-def _covered(patches: Sequence[Patch], outline: Floats) -> float:
-    if all(plan_map(patch) is not None for patch in patches):
-        corners = [patch.control[[0, -1, -1, 0], [0, 0, -1, -1], :2] for patch in patches]
+def _covered(surface: HorizonSurface, outline: Floats) -> float:
+    faces = list(zip(surface.patches, loops_of(surface), strict=True))
+    if all(not loops and plan_map(patch) is not None for patch, loops in faces):
+        corners = [patch.control[[0, -1, -1, 0], [0, 0, -1, -1], :2] for patch, _ in faces]
         return sum(abs(_signed_area(_clipped(outline, quad))) for quad in corners)
     import shapely
 
-    rims = []
-    for patch in patches:
-        u0, u1, v0, v1 = patch.domain
-        t = np.linspace(0, 1, 100)
-        along, across = u0 + t * (u1 - u0), v0 + t * (v1 - v0)
-        sides = ((along, v0), (u1, across), (along[::-1], v1), (u0, across[::-1]))
-        ring = np.concatenate([patch.evaluate(u, v)[:-1, :2] for u, v in sides])
-        rims.append(shapely.make_valid(shapely.Polygon(ring)))
+    rims = [_plan(patch, loops) for patch, loops in faces]
     return float(shapely.intersection(shapely.union_all(rims), shapely.Polygon(outline)).area)
+
+
+def _plan(patch: Patch, loops: tuple[Floats, ...]) -> Any:
+    """Return what a face covers of the map, its rim taken in short pieces."""
+    import shapely
+
+    u0, u1, v0, v1 = patch.domain
+    region: Any = shapely.Polygon()
+    for loop in loops or (np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]]),):
+        share = np.arange(PIECES)[:, None] / PIECES
+        along = loop[:, None] + share * (np.roll(loop, -1, axis=0) - loop)[:, None]
+        ring = patch.evaluate(*along.reshape(-1, 2).T)[:, :2]
+        region = region.symmetric_difference(shapely.make_valid(shapely.Polygon(ring)))
+    return region
 
 
 def _clipped(polygon: Floats, convex: Floats) -> Floats:

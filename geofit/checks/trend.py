@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from geofit.accuracy import Check
 from geofit.checks.lattice import Lattice, places
+from geofit.checks.residual_tests import partly
 from geofit.surface import HorizonSurface
 from geofit.words import said
 
@@ -22,7 +23,7 @@ Bools = NDArray[np.bool_]
 TIMES = 2.0
 #: A place is away from the points beyond so many times their mean spacing.
 AWAY = 2.0
-#: Fewest points of a trend; of more than the most a part tells it, and how far away a place is.
+#: Fewest points of a trend; of more than the most a part tells the plane, and how far away a place is.
 FEWEST, MOST = 10, 20_000
 ROUNDS = 10
 #: Points whose extent across is below this share of that along lie in a line, and tell no slope across it.
@@ -58,20 +59,21 @@ def trend(surface: HorizonSurface, parts: Sequence[Lattice], honoured: Bools) ->
     if not len(where):
         return None
     axes = np.eye(3) if surface.fit.get("frame") == "map" else _plane_axes(points, normal)
-    if len(points) > MOST:
-        points = points[np.sort(np.random.default_rng(0).choice(len(points), MOST, replace=False))]
-    local, there = points @ axes.T, where @ axes.T
+    every, there = points @ axes.T, where @ axes.T
+    local = every
+    if len(every) > MOST:
+        local = every[np.sort(np.random.default_rng(0).choice(len(every), MOST, replace=False))]
     centre, size = local[:, :2].mean(axis=0), np.maximum(np.ptp(local[:, :2], axis=0), 1e-9)
     along, across = np.linalg.svd(local[:, :2] - centre, compute_uv=False)
     if across <= LINE * along:
         return None
-    spacing = float(np.sqrt(size.prod() / len(points)))
+    spacing = float(np.sqrt(size.prod() / len(local)))
     away = np.asarray(cKDTree(local[:, :2]).query(there[:, :2])[0]) > AWAY * spacing
     if not away.any():
         return None
     design = _design((local[:, :2] - centre) / size)
     plane = _robust_plane(design, local[:, 2])
-    shown = float(np.abs(local[:, 2] - design @ plane).max())
+    shown = float(np.abs(every[:, 2] - _design((every[:, :2] - centre) / size) @ plane).max())
     off = np.abs(there[away, 2] - _design((there[away, :2] - centre) / size) @ plane)
     limit = max(TIMES * shown, surface.settings.epsilon)
     worst = np.argsort(-off, kind="stable")
@@ -84,14 +86,14 @@ def trend(surface: HorizonSurface, parts: Sequence[Lattice], honoured: Bools) ->
             "{shown:.1f} m",
             **figures,
         )
-        return Check("trend", True, value, limit, "m", text)
+        return Check("trend", True, value, limit, "m", partly(text, len(local), len(every)))
     text = said(
         "the surface runs away where no point holds it: {value:.1f} m off the regional trend at {x:.0f}, {y:.0f}, "
         "where the points depart from it by {shown:.1f} m at most; do not use it there without further points",
         **figures,
     )
     named = tuple((float(a), float(b), float(c)) for a, b, c in place[off[worst] > limit][:NAMED])
-    return Check("trend", False, value, limit, "m", text, named)
+    return Check("trend", False, value, limit, "m", partly(text, len(local), len(every)), named)
 
 
 def _plane_axes(points: Floats, normal: Floats) -> Floats:

@@ -1,6 +1,8 @@
-"""Cutting triangles along a plan polygon, without cracks between neighbours."""
+"""Cutting triangles along plan polygons, without cracks between neighbours."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +16,10 @@ Ints = NDArray[np.int64]
 ON = 1e-7
 
 
-def clip(points: Floats, triangles: Ints, uv: Floats, outline: Floats) -> tuple[Floats, Ints, Ints, Floats]:
-    """Return the part of a mesh over a plan polygon.
+def clip(points: Floats, triangles: Ints, uv: Floats, *outlines: Floats) -> tuple[Floats, Ints, Ints, Floats]:
+    """Return the part of a mesh over a plan polygon, or between several: one within another is a hole.
 
-    Corners of the outline become vertices first, then each of its sides cuts the triangles that it runs
+    Corners of the outlines become vertices first, then each of their sides cuts the triangles that it runs
     through. A new vertex belongs to the edge that it divides, so both triangles at the edge get the same one.
 
     Parameters
@@ -28,39 +30,43 @@ def clip(points: Floats, triangles: Ints, uv: Floats, outline: Floats) -> tuple[
         Their numbers; several may stand over one place (an overturned fold).
     uv : (m, 3, 2) array
         Anything linear on each triangle, at its corners.
-    outline : (k, 2) array
-        Corners of a simple polygon, not closed.
+    outlines : (k, 2) arrays
+        Corners of simple polygons, not closed, of which none crosses another.
 
     Returns
     -------
     points, triangles, parent, uv
         Vertices (the old ones first), triangles, the triangle that each comes from, its corners' ``uv``.
     """
-    outline = _distinct(outline)
-    touched = _touched(points[triangles, :2], outline)
+    rings = [_distinct(outline) for outline in outlines]
+    touched = np.any([_touched(points[triangles, :2], ring) for ring in rings], axis=0)
     rest, near = np.flatnonzero(~touched), np.flatnonzero(touched)
-    # Only the triangles along the outline are worked on, with their own vertices.
+    # Only the triangles along the outlines are worked on, with their own vertices.
     used, numbers = np.unique(triangles[near], return_inverse=True)
     work = _Work(points[used], numbers.reshape(-1, 3), uv[near])
-    for corner in outline:
+    for corner in np.concatenate(rings):
         work.insert(corner)
-    for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        work.split(start, end)
+    for ring in rings:
+        for start, end in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+            work.split(start, end)
     made = len(work.points) - len(used)
     back = np.concatenate([used, len(points) + np.arange(made)])
     every = np.concatenate([points, work.points[len(used) :]])
     cut = np.concatenate([triangles[rest], back[work.triangles]]).astype(np.int64)
     parent = np.concatenate([rest, near[work.parent]])
-    keep = inside(outline, every[cut, :2].mean(axis=1))
+    middle = every[cut, :2].mean(axis=1)
+    keep = np.logical_xor.reduce([inside(ring, middle) for ring in rings])
     return every, cut[keep], parent[keep], np.concatenate([uv[rest], work.uv])[keep]
 
 
 def _touched(plan: Floats, outline: Floats) -> NDArray[np.bool_]:
     """Which triangles (m, 3, 2) a side of the outline may run through or along: some too many, never too few."""
-    low, high = plan.min(axis=1) - ON, plan.max(axis=1) + ON
+    a, b, c = plan[:, 0], plan[:, 1], plan[:, 2]
+    low, high = np.minimum(np.minimum(a, b), c) - ON, np.maximum(np.maximum(a, b), c) + ON
     touched = np.zeros(len(plan), bool)
     for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
-        box = (low <= np.maximum(start, end)).all(axis=1) & (high >= np.minimum(start, end)).all(axis=1)
+        (x0, y0), (x1, y1) = np.minimum(start, end), np.maximum(start, end)
+        box = (low[:, 0] <= x1) & (high[:, 0] >= x0) & (low[:, 1] <= y1) & (high[:, 1] >= y0)
         some = np.flatnonzero(box & ~touched)
         way = (end - start) / np.linalg.norm(end - start)
         off = (plan[some] - start) @ np.array([-way[1], way[0]])
@@ -84,13 +90,45 @@ def _distinct(outline: Floats) -> Floats:
     return np.asarray(outline[apart])
 
 
+class _Rows:
+    """An array that grows row by row, by doubling its room."""
+
+    def __init__(self, start: NDArray[Any]) -> None:
+        self._room, self._count = start.copy(), len(start)
+
+    @property
+    def filled(self) -> NDArray[Any]:
+        return self._room[: self._count]
+
+    def add(self, row: NDArray[Any]) -> None:
+        if self._count == len(self._room):
+            self._room = np.concatenate([self._room, np.empty((self._count + 1, *row.shape), self._room.dtype)])
+        self._room[self._count] = row
+        self._count += 1
+
+
 class _Work:
     """A mesh while it is being cut."""
 
     def __init__(self, points: Floats, triangles: Ints, uv: Floats) -> None:
-        self.points = points.copy()
-        self.triangles, self.uv = triangles.copy(), uv.copy()
-        self.parent = np.arange(len(triangles))
+        self._points, self._triangles, self._uv = _Rows(points), _Rows(triangles), _Rows(uv)
+        self._parent = _Rows(np.arange(len(triangles)))
+
+    @property
+    def points(self) -> Floats:
+        return self._points.filled
+
+    @property
+    def triangles(self) -> Ints:
+        return self._triangles.filled
+
+    @property
+    def uv(self) -> Floats:
+        return self._uv.filled
+
+    @property
+    def parent(self) -> Ints:
+        return self._parent.filled
 
     def insert(self, corner: Floats) -> None:
         """Make a corner of the outline a vertex of every sheet that stands over it."""
@@ -125,11 +163,13 @@ class _Work:
         off = direction[0] * plan[:, 1] - direction[1] * plan[:, 0]
         along = plan @ direction
         sign = np.where(np.abs(off) <= ON, 0, np.sign(off)).astype(int)
-        signs = sign[self.triangles]
-        crossed = np.flatnonzero((signs.min(axis=1) < 0) & (signs.max(axis=1) > 0))
+        signs, ahead = sign[self.triangles], along[self.triangles]
+        beside = (ahead.max(axis=1) <= 0) | (ahead.min(axis=1) >= length)
+        crossed = np.flatnonzero((signs.min(axis=1) < 0) & (signs.max(axis=1) > 0) & ~beside)
+        # Plain numbers from here on: one at a time, an array's elements cost several times as much.
+        off, along, sign = off.tolist(), along.tolist(), sign.tolist()
         divided: dict[tuple[int, int], tuple[int, float]] = {}
-        for k in crossed.tolist():
-            numbers = self.triangles[k].tolist()
+        for k, numbers in zip(crossed.tolist(), self.triangles[crossed].tolist(), strict=True):
             ends = [along[n] for n in numbers if sign[n] == 0]
             cuts = []
             for i in range(3):
@@ -149,16 +189,15 @@ class _Work:
                     first, second = self.points[key[0]], self.points[key[1]]
                     divided[key] = self._new(first + t * (second - first)), t
                 number, t = divided[key]
-                piece = next(h for h in halves if {a, b} <= set(self.triangles[h].tolist()))
-                at = self.triangles[piece].tolist()
-                i, j = at.index(key[0]), at.index(key[1])
-                halves.append(self._halve(piece, i, j, number, t))
+                pieces = [(h, self.triangles[h].tolist()) for h in halves]
+                piece, at = next((h, at) for h, at in pieces if a in at and b in at)
+                halves.append(self._halve(piece, at.index(key[0]), at.index(key[1]), number, t))
 
     def _new(self, point: Floats, plan: Floats | None = None) -> int:
         point = np.array(point)
         if plan is not None:
             point[:2] = plan
-        self.points = np.vstack([self.points, point])
+        self._points.add(point)
         return len(self.points) - 1
 
     def _halve(self, k: int, i: int, j: int, number: int, t: float) -> int:
@@ -180,9 +219,9 @@ class _Work:
             self.uv[place, corner] = uv
 
     def _copy(self, k: int, times: int) -> None:
-        self.triangles = np.concatenate([self.triangles, np.repeat(self.triangles[k : k + 1], times, axis=0)])
-        self.uv = np.concatenate([self.uv, np.repeat(self.uv[k : k + 1], times, axis=0)])
-        self.parent = np.concatenate([self.parent, np.repeat(self.parent[k], times)])
+        for _ in range(times):
+            for rows in (self._triangles, self._uv, self._parent):
+                rows.add(rows.filled[k])
 
 
 def _heights(triangle: Floats, place: Floats) -> tuple[Floats | None, Floats]:

@@ -12,6 +12,7 @@ from geofit.errors import SettingsError
 from geofit.geometry.isolines import plane_lines
 from geofit.geometry.mesh import Mesh, triangulate
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = ["Contour", "contours", "interval_for"]
 
@@ -67,12 +68,19 @@ def contours(
     low, high = float(z.min()), float(z.max())
     step = interval_for(low, high) if interval is None else interval
     if not (step > 0 and math.isfinite(step)):
-        raise SettingsError(f"The contour interval is {step}; give metres above 0.")
+        raise SettingsError(said("The contour interval is {step}; give metres above 0.", step=step))
     first, last = math.ceil(low / step), math.floor(high / step)
     if last - first > MOST:
         raise SettingsError(
-            f"An interval of {step:g} m makes {last - first} contours from {low:.1f} to {high:.1f} m; "
-            f"give one above {(high - low) / MOST:.2g} m."
+            said(
+                "An interval of {step:g} m makes {count} contours from {low:.1f} to {high:.1f} m; give one above "
+                "{least:.2g} m.",
+                step=step,
+                count=last - first,
+                low=low,
+                high=high,
+                least=(high - low) / MOST,
+            )
         )
     found = []
     for k in range(first, last + 1):

@@ -13,6 +13,7 @@ from geofit.geometry.distance import project
 from geofit.geometry.isolines import plane_lines
 from geofit.geometry.mesh import Mesh, triangulate
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = ["CutLine", "cut", "section_line"]
 
@@ -42,7 +43,9 @@ def section_line(line: ArrayLike) -> Floats:
     """
     corners = np.asarray(line, float)
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
-        raise SettingsError(f"The section line has shape {corners.shape}; (k, 2) finite map coordinates are needed.")
+        raise SettingsError(
+            said("The section line has shape {shape}; (k, 2) finite map coordinates are needed.", shape=corners.shape)
+        )
     apart = np.append(True, np.linalg.norm(np.diff(corners, axis=0), axis=1) > JOIN)
     if apart.sum() < 2:
         raise SettingsError("The section line has one place only; give two different ends.")

@@ -1,4 +1,4 @@
-"""Faces of a file that end at curves within their patches: the distance ends there too.
+"""Faces of a file that end at curves within their patches: distance, height and triangles end there too.
 
 The patch of a trimmed face reaches beyond the face. A point whose foot on the patch lies outside the loops is
 measured again, to the loops themselves and to the feet that lie inside them, whichever is nearest.
@@ -15,11 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from geofit.geometry.cells import Cells, Place, descend, tabulate
+from geofit.geometry.clip import clip
 from geofit.geometry.distance import project
+from geofit.geometry.elevation import plan_map
 from geofit.geometry.facets import ASIDE, Nearest
+from geofit.geometry.mesh import WELD, Mesh
 from geofit.surface import HorizonSurface, Patch
 
-__all__ = ["Loops", "TrimmedSurface", "nearest"]
+__all__ = ["Loops", "TrimmedSurface", "inside", "loops_of", "nearest", "trim"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -43,20 +46,39 @@ class TrimmedSurface(HorizonSurface):
 
     def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """Return the height at map coordinates in metres, nan outside and where a loop leaves a hole."""
-        height = super().elevation(x, y)
-        if self.outline is not None:  # one loop around all patches: they are cut along it already
-            return height
         x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        known = np.isfinite(height)
-        place = np.stack([x[known], y[known], height[known]], axis=1)
-        gone = np.abs(self.distance(place)) > ASIDE
-        height[known] = np.where(gone, np.nan, height[known])
-        return height
+        plan = np.stack([x.ravel(), y.ravel()], axis=1)
+        bare = HorizonSurface((), self.origin, self.points, outline=self.outline)
+        heights = np.stack([bare.with_(patches=(patch,)).elevation(*plan.T) for patch in self.patches])
+        uncut = _highest(heights)
+        asked = np.isfinite(heights)
+        if self.outline is not None:  # one loop around all faces: only where patches overlap is more to be asked
+            asked &= asked.sum(axis=0) > 1
+        for k in [k for k, loops in enumerate(self.loops) if loops and asked[k].any()]:
+            some = np.flatnonzero(asked[k])
+            place = np.column_stack([plan[some], heights[k, some]]) - self.origin
+            gone = np.abs(nearest(self.patches[k : k + 1], place, self.loops[k : k + 1]).distance) > ASIDE
+            heights[k, some[gone]] = np.nan
+        height = _highest(heights)
+        if self.outline is not None:  # between two faces whose common curve each follows by its own polygon
+            height = np.where(np.isnan(height), uncut, height)
+        return height.reshape(x.shape)
 
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed distance of (n, 3) map coordinates to the trimmed patches, metres, positive above."""
         local = np.atleast_2d(np.asarray(xyz, float)) - self.origin
         return nearest(self.patches, local, self.loops).distance
+
+
+def loops_of(surface: HorizonSurface) -> Loops:
+    """Return the loops of each patch of any surface."""
+    return surface.loops if isinstance(surface, TrimmedSurface) else ((),) * len(surface.patches)
+
+
+def _highest(heights: Floats) -> Floats:
+    """Return the highest of each column, nan where there is none."""
+    found = np.where(np.isfinite(heights), heights, -np.inf).max(axis=0)
+    return np.asarray(np.where(np.isneginf(found), np.nan, found))
 
 
 def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Nearest:
@@ -83,11 +105,11 @@ def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Near
     uv = np.stack([found.u, found.v], axis=1)
     beyond = _beside(patches, target, foot, part, uv)
     if any(loops):
-        inside = np.ones(len(target), bool)
+        held = np.ones(len(target), bool)
         for k in range(len(patches)):
             own = part == k
-            inside[own] = _inside(patches[k], loops[k], found.u[own], found.v[own])
-        again = np.flatnonzero(~inside)
+            held[own] = inside(patches[k], loops[k], found.u[own], found.v[own])
+        again = np.flatnonzero(~held)
         if again.size:
             rim = _rim_feet(patches, loops, target[again])
             face = _inner_feet(patches, loops, target[again])
@@ -136,7 +158,8 @@ def _region(patch: Patch, loops: tuple[Floats, ...]) -> Any:
     return region.buffer(ON, join_style="mitre")
 
 
-def _inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Bools:
+def inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Bools:
+    """Whether parameters of a patch, arrays of one shape, lie inside its loops; all do where it has none."""
     import shapely
 
     if not loops:
@@ -211,7 +234,7 @@ def _inner_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Neare
     distance = np.linalg.norm(foot - target[point], axis=1)
     for k, patch in enumerate(patches):
         own = np.flatnonzero(part == k)
-        distance[own[~_inside(patch, loops[k], u[own], v[own])]] = np.inf
+        distance[own[~inside(patch, loops[k], u[own], v[own])]] = np.inf
     best = np.lexsort((distance, point))[::count]
     uv = np.stack([u, v], axis=1)[best]
     return Nearest(distance[best], foot[best], part[best], np.zeros(len(target), bool), uv)
@@ -224,10 +247,71 @@ def _lattice(patches: Sequence[Patch], loops: Loops) -> tuple[Cells, cKDTree, Pl
     for k, patch in enumerate(patches):
         u0, u1, v0, v1 = patch.domain
         u, v = (a.ravel() for a in np.meshgrid(np.linspace(u0, u1, LATTICE), np.linspace(v0, v1, LATTICE)))
-        held = _inside(patch, loops[k], u, v)
+        held = inside(patch, loops[k], u, v)
         if not held.any():  # a sliver between the lattice's places
             some = _region(patch, loops[k]).representative_point()
             u, v, held = np.array([u0 + some.x * (u1 - u0)]), np.array([v0 + some.y * (v1 - v0)]), np.ones(1, bool)
         parts.append(cells.locate(k, u[held], v[held]))
     place = Place(np.concatenate([p.cell for p in parts]), np.concatenate([p.local for p in parts], axis=1))
     return cells, cKDTree(cells.points(place).T), place
+
+
+def trim(mesh: Mesh, patches: Sequence[Patch], loops: Loops) -> Mesh:
+    """Return the part of the patches' triangles that the loops enclose; new vertices lie on the patches.
+
+    The triangles are cut in the parameters, where the loops are. New vertices of two patches at one place are one.
+    Where parameters run so unevenly that a sliver would turn over, its vertices stay on the triangle that was cut.
+    """
+    points, triangles, uvs, owner = [mesh.points], [], [], []
+    count = len(mesh.points)
+    for k, patch in enumerate(patches):
+        own = mesh.patch == k
+        numbers, uv = mesh.triangles[own], mesh.uv[own]
+        if loops[k]:
+            stretch = _lengths(patch)
+            # A patch that closes on itself has two parameters at each vertex of the line where it does.
+            corners = np.column_stack([numbers.ravel(), uv.reshape(-1, 2)])
+            corners, local = np.unique(corners, axis=0, return_inverse=True)
+            known = corners[:, 0].astype(np.int64)
+            flat = np.column_stack([corners[:, 1:] * stretch, mesh.points[known]])
+            flat, cut, _, uv = clip(flat, local.reshape(-1, 3), uv, *(loop * stretch for loop in loops[k]))
+            made = (flat[len(known) :, :2] / stretch).clip(patch.domain[::2], patch.domain[1::2])
+            curved = np.concatenate([flat[: len(known), 2:], patch.evaluate(*made.T)])
+            if plan_map(patch) is None:
+                curved = _unturned(curved, flat[:, 2:], cut)
+            points.append(curved[len(known) :])
+            numbers = np.concatenate([known, count + np.arange(len(made))])[cut]
+            count += len(made)
+        triangles.append(numbers)
+        uvs.append(uv)
+        owner.append(np.full(len(numbers), k))
+    every = np.concatenate(points)
+    one = np.arange(count)
+    first = len(mesh.points)
+    for a, b in sorted(cKDTree(every[first:]).query_pairs(WELD)) if count > first else ():
+        one[first + b] = one[first + a]
+    t = one[np.concatenate(triangles)]
+    whole = Mesh(every, t, np.concatenate(owner), np.concatenate(uvs), mesh.origin, mesh.names)
+    return whole.only((t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0]))
+
+
+def _unturned(curved: Floats, flat: Floats, triangles: Ints) -> Floats:
+    """Return the curved places (n, 3) of vertices, but the flat ones where a triangle's normal would turn round."""
+
+    def normals(at: Floats) -> Floats:
+        a, b, c = np.moveaxis(at[triangles], 1, 0)
+        return np.cross(b - a, c - a)
+
+    facing, place = normals(flat), curved.copy()
+    while True:
+        turned = np.unique(triangles[(normals(place) * facing).sum(axis=1) <= 0])
+        if np.array_equal(place[turned], flat[turned]):
+            return place
+        place[turned] = flat[turned]
+
+
+def _lengths(patch: Patch) -> Floats:
+    """Metres for one of each parameter: mean lengths of the control net's rows."""
+    u0, u1, v0, v1 = patch.domain
+    along, across = (np.linalg.norm(np.diff(patch.control, axis=k), axis=2).sum(axis=k).mean() for k in (0, 1))
+    return np.array([along / (u1 - u0), across / (v1 - v0)])

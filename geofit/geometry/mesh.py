@@ -12,6 +12,7 @@ from geofit.errors import SettingsError
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.surface import HorizonSurface, Patch
+from geofit.words import said
 
 __all__ = ["Mesh", "MeshSurface", "triangulate"]
 
@@ -56,6 +57,12 @@ class Mesh:
         """Vertices in map coordinates, metres."""
         return self.points + self.origin
 
+    def only(self, keep: NDArray[np.bool_]) -> Mesh:
+        """Return some of the triangles, with the vertices that they use."""
+        triangles = self.triangles[keep]
+        used, numbers = np.unique(triangles, return_inverse=True)
+        return Mesh(self.points[used], numbers.reshape(-1, 3), self.patch[keep], self.uv[keep], self.origin, self.names)
+
 
 @dataclass(frozen=True, eq=False)
 class MeshSurface(HorizonSurface):
@@ -77,12 +84,13 @@ class MeshSurface(HorizonSurface):
 
 
 def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
-    """Return triangles of a surface, trimmed to its outline.
+    """Return triangles of a surface, trimmed to its outline, or along the loops of a file's faces.
 
     Every knot span is cut so finely that a triangle leaves the surface by about ``tolerance`` at most; spans
     that bend little stay whole. Neighbouring patches that share an edge curve share its vertices, so seams
     are closed exactly. On the outline the vertices of a height field lie on the surface, those of any other
-    surface on the triangle that was cut.
+    surface on the triangle that was cut; on loops all do. Two faces that meet at a loop, within their patches,
+    each keep their own vertices there: gaps between them are below the tolerance.
 
     Parameters
     ----------
@@ -103,7 +111,9 @@ def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
     algorithms using bounds on derivatives"). Second derivatives of a cubic are largest at the ends of spans.
     """
     if not (tolerance > 0 and math.isfinite(tolerance)):
-        raise SettingsError(f"The chordal tolerance is {tolerance}; give metres above 0.")
+        raise SettingsError(said("The chordal tolerance is {tolerance}; give metres above 0.", tolerance=tolerance))
+    from geofit.geometry.loops import TrimmedSurface, trim
+
     if isinstance(surface, MeshSurface):
         return surface.mesh
     lines = [_lines(patch, tolerance) for patch in surface.patches]
@@ -119,7 +129,9 @@ def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
         names=tuple(patch.name for patch in surface.patches),
     )
     t = mesh.triangles
-    mesh = _select(mesh, (t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0]))
+    mesh = mesh.only((t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0]))
+    if isinstance(surface, TrimmedSurface):
+        return trim(mesh, surface.patches, surface.loops)
     return mesh if surface.outline is None else _trim(mesh, surface)
 
 
@@ -304,13 +316,6 @@ def _strip(
     return triangles, np.stack([outer_uv[at_o], places, inner_uv[at_i]], axis=1)
 
 
-def _select(mesh: Mesh, keep: NDArray[np.bool_]) -> Mesh:
-    """Keep some triangles, and the vertices that they use."""
-    triangles = mesh.triangles[keep]
-    used, numbers = np.unique(triangles, return_inverse=True)
-    return Mesh(mesh.points[used], numbers.reshape(-1, 3), mesh.patch[keep], mesh.uv[keep], mesh.origin, mesh.names)
-
-
 def _trim(mesh: Mesh, surface: HorizonSurface) -> Mesh:
     assert surface.outline is not None
     before = len(mesh.points)
@@ -322,4 +327,4 @@ def _trim(mesh: Mesh, surface: HorizonSurface) -> Mesh:
             corner = (triangles >= before) & (patch == k)[:, None]
             points[triangles[corner], 2] = one.evaluate(uv[corner][:, 0], uv[corner][:, 1])[:, 2]
     whole = Mesh(points, triangles, patch, uv, mesh.origin, mesh.names)
-    return _select(whole, np.ones(len(triangles), bool))
+    return whole.only(np.ones(len(triangles), bool))

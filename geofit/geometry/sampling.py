@@ -14,6 +14,7 @@ from geofit.geometry.mesh import triangulate
 from geofit.points import PointSet
 from geofit.site import Ground
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = ["deviation_grid", "elevation_grid", "thickness_grid"]
 
@@ -75,12 +76,20 @@ def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Float
         raise SettingsError("The horizons do not stand over one another; there is no thickness between them.")
     step = interval_for(0.0, float((high - low).max()) * 20 / CELLS) if cell is None else cell
     if not (step > 0 and math.isfinite(step)):
-        raise SettingsError(f"The cell size is {step}; give metres above 0.")
+        raise SettingsError(said("The cell size is {step}; give metres above 0.", step=step))
     first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
     count = last - first + 1
     if count.min() < 2:
-        raise SettingsError(f"A cell of {step:g} m leaves no grid; the surface is {(high - low).min():.1f} m wide.")
+        raise SettingsError(
+            said(
+                "A cell of {step:g} m leaves no grid; the surface is {width:.1f} m wide.",
+                step=step,
+                width=(high - low).min(),
+            )
+        )
     if count.prod() > MOST_CELLS:
-        raise SettingsError(f"A cell of {step:g} m makes {count.prod():.3g} cells; give a larger one.")
+        raise SettingsError(
+            said("A cell of {step:g} m makes {count:.3g} cells; give a larger one.", step=step, count=count.prod())
+        )
     x, y = (step * (first[k] + np.arange(int(count[k]))) for k in (0, 1))
     return Ground(x, y, np.stack([value(x, np.full_like(x, north)) for north in y]))

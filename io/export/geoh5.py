@@ -19,6 +19,7 @@ from geofit.files import replacing
 from geofit.geometry.mesh import Mesh
 from geofit.io.extra import need
 from geofit.points import PointSet
+from geofit.words import said
 
 __all__ = ["write_geoh5"]
 
@@ -66,7 +67,7 @@ def write_geoh5(
     InputError
         If there is no surface.
     """
-    h5py = need("h5py", "geoh5", "Writing geoh5")
+    h5py = need("h5py", "geoh5", said("Writing {format}", format="geoh5"))
     if not meshes:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
     with replacing(path) as part, h5py.File(part, "w", track_order=False) as file:

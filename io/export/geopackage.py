@@ -12,6 +12,7 @@ from geofit.errors import InputError
 from geofit.files import replacing
 from geofit.geometry.contours import Contour
 from geofit.io.extra import need
+from geofit.words import said
 
 __all__ = ["write_contours_gpkg"]
 
@@ -35,7 +36,7 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
     InputError
         If there is no contour, or the file cannot be written.
     """
-    pyogrio = need("pyogrio", "gis", "Writing GeoPackage")
+    pyogrio = need("pyogrio", "gis", said("Writing {format}", format="GeoPackage"))
     import shapely
 
     rows = [(name, contour) for name, lines in contours.items() for contour in lines]
@@ -57,7 +58,7 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
             )  # fmt: skip
     except (pyogrio.errors.DataSourceError, pyogrio.errors.CRSError) as error:
         raise InputError(
-            f"The file cannot be written: {error}",
+            said("The file cannot be written: {error}", error=str(error)),
             "Check the path; give the system as EPSG:number, or none: --crs ''.",
             file=str(path),
         ) from None

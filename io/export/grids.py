@@ -11,6 +11,7 @@ from geofit.errors import InputError
 from geofit.files import replacing
 from geofit.io.extra import need
 from geofit.site import Ground
+from geofit.words import said
 
 __all__ = ["write_esri", "write_geotiff", "write_surfer"]
 
@@ -81,14 +82,14 @@ def write_geotiff(grid: Ground, path: str | PathLike[str], crs: str = "") -> Non
     InputError
         If the cells are not square, no cell has a value, or the coordinate system is unknown.
     """
-    rasterio = need("rasterio", "gis", "Writing GeoTIFF")
+    rasterio = need("rasterio", "gis", said("Writing {format}", format="GeoTIFF"))
     step = _square(grid, path)
     transform = rasterio.Affine(step, 0, grid.x[0] - step / 2, 0, -step, grid.y[-1] + step / 2)
     try:
         system = rasterio.crs.CRS.from_user_input(crs) if crs else None
     except rasterio.errors.CRSError as error:
         raise InputError(
-            f"The coordinate system is unknown: {error}",
+            said("The coordinate system is unknown: {error}", error=str(error)),
             "Give one as EPSG:number, or none: --crs ''.",
             file=str(path),
             value=crs,
@@ -121,7 +122,11 @@ def _square(grid: Ground, path: str | PathLike[str]) -> float:
     steps = np.concatenate([np.diff(grid.x), np.diff(grid.y)])
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise InputError(
-            f"The cells are from {steps.min():g} to {steps.max():g} m wide; the format needs square cells",
+            said(
+                "The cells are from {least:g} to {most:g} m wide; the format needs square cells",
+                least=steps.min(),
+                most=steps.max(),
+            ),
             "Sample the surface on a grid with one step.",
             file=str(path),
         )

@@ -16,6 +16,7 @@ from geofit.geometry.mesh import triangulate
 from geofit.io.extra import need
 from geofit.site import Hole
 from geofit.surface import HorizonSurface, Patch
+from geofit.words import said
 
 __all__ = ["write_ifc"]
 
@@ -64,7 +65,7 @@ def write_ifc(
     InputError
         If there is neither a surface nor a hole.
     """
-    ifcopenshell = need("ifcopenshell", "ifc", "Writing IFC")
+    ifcopenshell = need("ifcopenshell", "ifc", said("Writing {format}", format="IFC"))
     if not surfaces and not holes:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
     model = _Model(ifcopenshell, site, crs)

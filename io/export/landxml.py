@@ -13,6 +13,7 @@ from geofit import __version__
 from geofit.errors import InputError
 from geofit.files import replacing
 from geofit.geometry.mesh import Mesh
+from geofit.words import said
 
 __all__ = ["write_landxml"]
 
@@ -41,7 +42,7 @@ def write_landxml(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None
         area = ax * by - ay * bx
         if area.min() <= 0 <= area.max():
             raise InputError(
-                f"'{name}' is upright or overturned in places; a LandXML TIN has one elevation a place",
+                said("'{name}' is upright or overturned in places; a LandXML TIN has one elevation a place", name=name),
                 "Write it as STEP, OBJ or GOCAD TSurf.",
                 file=str(path),
             )

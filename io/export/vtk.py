@@ -16,6 +16,7 @@ from geofit.errors import InputError
 from geofit.files import file_stems, replacing
 from geofit.geometry.mesh import Mesh
 from geofit.points import PointSet
+from geofit.words import said
 
 __all__ = ["write_vtm", "write_vtp"]
 
@@ -46,7 +47,7 @@ def write_vtp(
     off = np.full(len(data), np.nan) if deviation is None else np.asarray(deviation, float)
     if len(off) != len(data):
         raise InputError(
-            f"There are {len(off)} deviations for {len(data)} points",
+            said("Deviations given: {count}; points: {points}", count=len(off), points=len(data)),
             "Give the deviations with their points, one for each.",
             file=str(path),
         )

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from surfaces import ORIGIN, horizon, nine
+from surfaces import ORIGIN, height_field, horizon, nine
 
 from geofit.exporting import uncut
 from geofit.geometry.loops import TrimmedSurface, nearest
+from geofit.geometry.mesh import triangulate
 from geofit.io.step import read_step, write_step
+from geofit.points import PointSet
 
 
 def faces_of_file(path, shape):
@@ -57,7 +61,8 @@ def test_a_ring_is_no_square(tmp_path):
     assert np.abs(surface.distance(target)) == pytest.approx(np.abs(found.distance))
     height = surface.elevation([0.07, 0.0, 0.098], [0.0, 0.01, 0.098])
     assert np.isnan(height).tolist() == [False, True, True]
-    assert uncut({"ring": surface})[0].startswith("ring: its faces are trimmed")
+    assert uncut({"ring": surface}, "step")[0].startswith("ring: its faces end at holes")
+    assert uncut({"ring": surface}, "obj") == []
 
 
 def test_through_a_hole_to_the_face_below(tmp_path):
@@ -95,7 +100,7 @@ def test_a_trimmed_horizon_with_a_notch(tmp_path):
     (back,) = read_step(tmp_path / "a.step").values()
     assert isinstance(back, TrimmedSurface)
     rng = np.random.default_rng(4)
-    assert uncut({"T1": back}) == []
+    assert uncut({"T1": back}, "step") == []
     target = rng.uniform([0, 0, -80], [1000, 700, 80], (120, 3))
     target[:30] = rng.uniform([460, 420, -5], [540, 640, 5], (30, 3))
     target[:30, 2] += horizon(nine()[1]).elevation(*(target[:30, :2] + ORIGIN[:2]).T) - ORIGIN[2]
@@ -134,3 +139,24 @@ def test_beside_whole_patches_but_not_over_their_seams():
     middle = surface.patches[0].evaluate(*surface.patches[0].domain[1::2])
     target = np.array([[-50, 300, 0], [500, 350, 90], [1030, 730, 0], middle + np.array([0, 0, 20])])
     assert nearest(surface.patches, target).beyond.tolist() == [True, False, True, False]
+
+
+def test_no_triangle_turns_over_where_parameters_run_unevenly():
+    """Slivers along a loop, on a patch whose parameters bend by metres from triangle to triangle."""
+    patch = height_field()
+    x, y = patch.control[..., 0], patch.control[..., 1]
+    patch = replace(patch, control=patch.control + np.stack([8 * np.sin(y / 90), 8 * np.cos(x / 80), 0 * x], axis=-1))
+    least = []
+    for seed in range(20, 25):
+        rng = np.random.default_rng(seed)
+        loops = [star(rng, 340, rng.integers(8, 60)), star(rng, 100, rng.integers(5, 40))]
+        mesh = triangulate(TrimmedSurface((patch,), ORIGIN, PointSet(np.empty((0, 3))), loops=(tuple(loops),)), 0.5)
+        a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
+        least.append(np.cross(b - a, c - a)[:, 2].min())
+    assert min(least) > 0
+
+
+def star(rng, radius, count):
+    angle = np.sort(rng.uniform(0, 2 * np.pi, count))
+    far = rng.uniform(0.4, 1, count) * radius
+    return np.array([500, 350]) + far[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])

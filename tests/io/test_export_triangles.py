@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import xml.etree.ElementTree as ET
 
 import numpy as np
@@ -99,7 +100,7 @@ def test_vtp_holds_deviation_and_patch(meshes, tmp_path):
     assert np.isnan(back["deviation"][:-5]).all()
     assert np.array_equal(back.cell_data["patch"], np.concatenate([[-1] * 5, mesh.patch]))
     assert back.field_data["patch names"].tolist() == list(mesh.names)
-    with pytest.raises(InputError, match="0 deviations for 5 points"):
+    with pytest.raises(InputError, match="given: 0; points: 5"):
         vtk.write_vtp(mesh, tmp_path / "b.vtp", data, [])
     assert not (tmp_path / "b.vtp").exists()
 
@@ -187,6 +188,78 @@ def test_landxml_follows_the_schema_and_agrees(meshes, tmp_path):
     back = np.array(faces)[..., [1, 0, 2]]
     assert np.abs(back - corners(mesh.xyz, mesh.triangles)).max() <= 5.1e-7
     assert float(definition.get("area2DSurf")) == pytest.approx(488000 + 2500, rel=0.05)
+
+
+#: What LandXML 1.2 documents of the elements that are written: needed and further attributes, and the children.
+LANDXML = {
+    "LandXML": ({"version", "date", "time"}, {"language", "readOnly"}, ["Units", "Application", "Surfaces"]),
+    "Units": (set(), set(), ["Metric"]),
+    "Metric": (
+        {"linearUnit", "areaUnit", "volumeUnit", "temperatureUnit", "pressureUnit"},
+        {"diameterUnit", "angularUnit", "directionUnit"},
+        [],
+    ),
+    "Application": ({"name"}, {"version", "desc", "manufacturer", "manufacturerURL", "timeStamp"}, []),
+    "Surfaces": (set(), {"name", "desc", "state"}, ["Surface+"]),
+    "Surface": ({"name"}, {"desc", "OID", "state"}, ["Definition"]),
+    "Definition": ({"surfType"}, {"area2DSurf", "area3DSurf", "elevMax", "elevMin"}, ["Pnts", "Faces"]),
+    "Pnts": (set(), set(), ["P+"]),
+    "P": ({"id"}, {"name", "desc", "code"}, []),
+    "Faces": (set(), set(), ["F+"]),
+    "F": (set(), {"i", "n", "b"}, []),
+}
+#: The words that its units may be.
+LANDXML_UNITS = {
+    "linearUnit": {"millimeter", "centimeter", "meter", "kilometer"},
+    "areaUnit": {"hectare", "squareMeter", "squareMillimeter", "squareCentimeter"},
+    "volumeUnit": {"cubicMeter", "liter", "hectareMeter"},
+    "temperatureUnit": {"celsius", "kelvin"},
+    "pressureUnit": {"HPA", "milliBars", "mmHG", "millimeterHG"},
+    "diameterUnit": {"millimeter", "centimeter", "meter", "kilometer"},
+}
+
+
+def landxml_faults(element):
+    """What an element and all below it have that LandXML 1.2 does not allow, or lack."""
+    name = element.tag.removeprefix("{http://www.landxml.org/schema/LandXML-1.2}")
+    if name not in LANDXML:
+        return [f"unknown {name}"]
+    needed, further, order = LANDXML[name]
+    faults = [f"{name} without {one}" for one in needed - set(element.attrib)]
+    faults += [f"{name} with {one}" for one in set(element.attrib) - needed - further]
+    children = [child.tag.rsplit("}", 1)[1] for child in element]
+    pattern = "".join(f"({one.removesuffix('+')} ){'+' if one.endswith('+') else ''}" for one in order)
+    if not re.fullmatch(pattern, "".join(f"{child} " for child in children)):
+        faults.append(f"{name} holds {children[:3]}")
+    if name == "Metric":
+        faults += [f"{key}={value}" for key, value in element.items() if value not in LANDXML_UNITS.get(key, {value})]
+    return faults + [fault for child in element for fault in landxml_faults(child)]
+
+
+def test_landxml_holds_no_element_or_attribute_that_the_schema_lacks(meshes, tmp_path):
+    mesh = meshes["T1 top"]
+    landxml.write_landxml({"one": mesh, "two": mesh}, tmp_path / "a.xml")
+    root = ET.parse(tmp_path / "a.xml").getroot()
+    assert landxml_faults(root) == []
+    assert re.fullmatch(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", f"{root.get('date')} {root.get('time')}")
+    for surface in root.findall(".//{*}Surface"):
+        definition = surface.find("{*}Definition")
+        assert definition.get("surfType") == "TIN"
+        # Ids are positive whole numbers, each once; a face names three of them, all different.
+        ids = [p.get("id") for p in surface.findall(".//{*}P")]
+        assert all(re.fullmatch("[1-9][0-9]*", one) for one in ids)
+        assert len(set(ids)) == len(ids) >= 3
+        faces = [f.text.split() for f in surface.findall(".//{*}F")]
+        assert all(len(set(face)) == 3 and set(face) <= set(ids) for face in faces)
+        # Northing, easting, elevation: the first of these is some 3,100 km, the second some 500 km.
+        place = np.array([[float(c) for c in p.text.split()] for p in surface.findall(".//{*}P")])
+        assert np.array_equal(np.round(place.mean(axis=0), -5), [3.1e6, 5e5, 0])
+        heights = float(definition.get("elevMin")), float(definition.get("elevMax"))
+        assert heights == pytest.approx((place[:, 2].min(), place[:, 2].max()), abs=1e-6)
+    # The check itself finds what is wrong.
+    definition.set("surfaceType", "TIN")
+    definition.insert(0, definition[1])
+    assert len(landxml_faults(root)) == 2
 
 
 def test_landxml_refuses_an_overturned_surface(meshes, tmp_path):
