@@ -324,9 +324,10 @@ def import_(
     from geofit.io.mapping import load_mappings
 
     mappings = load_mappings(mapping) if mapping is not None else ()
-    limits = {"base": tuple(base or ()), "top": tuple(top or ())}
     with listening() as progress:
-        found = import_files(files, site, mappings=mappings, crs=crs, progress=progress, **limits)
+        found = import_files(
+            files, site, mappings=mappings, crs=crs, base=tuple(base or ()), top=tuple(top or ()), progress=progress
+        )
     print_issues(found.issues, str(found.issue_file))
     print_counts(found.counts)
     sizes = {name: len(points) for name, points in found.site.horizons.items()}
@@ -378,7 +379,7 @@ def export(
         crs=crs if crs is not None else site.crs if site else "",
     )
     given = read_surfaces(surfaces)
-    for sentence in uncut(given):
+    for sentence in uncut(given, to):
         say(sentence)
     files = write(given, to, out, request)
     if as_json:
@@ -398,12 +399,10 @@ def section(
     as_json: _Json = False,
 ) -> int:
     """Cut every horizon along a line: drawing (DXF), table (CSV) and picture (PNG)."""
-    from geofit.exporting import read_line, read_surfaces, uncut
+    from geofit.exporting import read_line, read_surfaces
     from geofit.exporting import section as cut
 
     given = read_surfaces(surfaces)
-    for sentence in uncut(given):
-        say(sentence)
     cuts, files = cut(given, read_line(line), out, tolerance)
     rows = [(name, i, one) for name, lines in cuts.items() for i, one in enumerate(lines, 1)]
     if as_json:

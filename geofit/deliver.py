@@ -17,6 +17,7 @@ from geofit.site import Site
 from geofit.words import said
 
 if TYPE_CHECKING:
+    from geofit.checks.storage import Storage
     from geofit.offdata import OffData
     from geofit.report.accuracy_report import AccuracyReport
     from geofit.report.pictures import Pictures
@@ -118,7 +119,7 @@ def deliver(
         pdf_fonts(chinese=True)  # told before anything is fitted
     # Also when there is nothing to list: a file of an earlier run would mislead.
     _make(out)
-    _write_issues(site, out)
+    _write_issues(site, out, language)
     fits = fit_site(site, names, changes, _within(progress, 0.0, FITS), apart=apart)
     stems = file_stems(fits.surfaces)
     results: list[HorizonResult] = []
@@ -157,10 +158,11 @@ def deliver(
 
 @dataclass(frozen=True, eq=False)
 class Reports:
-    """What was written of a report, by form, and what is to be told about it."""
+    """What was written of a report, by form, what is to be told about it, and what it was made from."""
 
     files: Mapping[Form, Path]
     warnings: tuple[str, ...]
+    results: tuple[HorizonResult, ...]
 
 
 def write_reports(
@@ -172,8 +174,11 @@ def write_reports(
     forms: Sequence[Form] = ("html", "json"),
     examined: bool = False,
     date: str = "",
+    fits: SiteFit | None = None,
 ) -> Reports:
     """Write the accuracy report of surfaces that are there already; nothing else is written.
+
+    A result without ``storage`` gets one, so that the report has the chapters of :func:`deliver`'s.
 
     Parameters
     ----------
@@ -191,6 +196,8 @@ def write_reports(
         Whether surfaces without ``offdata`` are examined off their data first.
     date : str
         ISO 8601; empty: SOURCE_DATE_EPOCH, else today.
+    fits : SiteFit, optional
+        Where some of the surfaces are blocks of faulted horizons: of which, and what the faults displace.
 
     Raises
     ------
@@ -203,8 +210,10 @@ def write_reports(
     """
     from geofit.prediction.examine import examine
     from geofit.report.gather import accuracy_report
-    from geofit.report.pictures import draw, draw_site
+    from geofit.report.pictures import Pictures, draw, draw_site
+    from geofit.stack.sitefit import SiteFit
 
+    pictured = any(form != "json" for form in forms)
     if "pdf" in forms and language.code == "zh":
         from geofit.report.fonts import pdf_fonts
 
@@ -218,32 +227,32 @@ def write_reports(
         part("examination", 0.0)
         if examined and result.offdata is None:
             result = replace(result, offdata=examine(result.surface, _within(progress, low, 0.6 * high + 0.4 * low)))
-        part("pictures", 0.6)
-        images |= draw(result, language).images
+        if result.storage is None:
+            result = replace(result, storage=_storage(result.surface))
+        if pictured:
+            part("pictures", 0.6)
+            images |= draw(result, language).images
         made.append(result)
     tell(progress, "report", 0.9)
-    orders, unordered = _orders_of(made)
-    report = accuracy_report(made, orders, date=date)
-    whole, font = draw_site(made, language), _font_warning(made)
+    if fits is None:
+        surfaces = {result.name: result.surface for result in made}
+        fits = SiteFit(surfaces, {name: name for name in surfaces})
+    orders, unordered = _orders(made[0].site, fits)
+    report = accuracy_report(made, orders, cuts=fits.cuts, date=date)
+    whole, font = draw_site(made, language) if pictured else Pictures({}, None, ""), _font_warning(made)
     tell(progress, "report", 0.95)
     _write_report(report, whole, images, out, language, font, forms)
     files = {form: out / f"report.{form}" for form in forms}
-    return Reports(files, tuple(text for text in (font, unordered, whole.missing) if text))
-
-
-def _orders_of(results: Sequence[HorizonResult]) -> tuple[tuple[Order, ...] | None, str]:
-    """Compare surfaces in the order of their site; None and the reason where that is not possible."""
-    from geofit.stack.sitefit import SiteFit
-
-    surfaces = {result.name: result.surface for result in results}
-    return _orders(results[0].site, SiteFit(surfaces, {name: name for name in surfaces}))
+    return Reports(files, tuple(text for text in (font, unordered, whole.missing) if text), tuple(made))
 
 
 def _within(progress: Progress | None, low: float, high: float, name: str = "") -> Progress:
     """Return a listener for a part that takes the whole run from one share to another."""
 
     def listen(stage: str, fraction: float, /) -> None:
-        tell(progress, f"{name}: {stage}" if name else stage, low + (high - low) * fraction)
+        tell(
+            progress, said("{name}: {stage}", name=name, stage=stage) if name else stage, low + (high - low) * fraction
+        )
 
     return listen
 
@@ -261,7 +270,6 @@ def _written(
     surface: HorizonSurface, site: Site, stem: Path, progress: Progress, language: Language, fit: float, bands: bool
 ) -> _Made:
     """Examine a surface, and write what belongs to it."""
-    from geofit.checks.storage import equal_accuracy
     from geofit.io.step import write_step
     from geofit.prediction.examine import examine
     from geofit.report.pictures import draw, write_picture
@@ -277,15 +285,20 @@ def _written(
     warnings = _write_bands(surface, offdata, stem) if bands else ()
     clock.stop("STEP and read-back")
     progress("pictures", 0.7)
-    storage = equal_accuracy(surface, surface.settings.interior_tolerance)
-    result = HorizonResult(surface, site, back, storage, path.stat().st_size, offdata=offdata)
+    result = HorizonResult(surface, site, back, _storage(surface), path.stat().st_size, offdata=offdata)
     pictures = draw(result, language)
     write_picture(result, pictures, stem.with_name(stem.name + ".png"), language)
     clock.stop("pictures")
     result = replace(result, seconds=clock.seconds)
-    write_residuals(result, stem.with_name(stem.name + "_residuals.csv"))
+    write_residuals(result, stem.with_name(stem.name + "_residuals.csv"), language)
     write_json(result, stem.with_name(stem.name + ".json"))
     return _Made(result, pictures.images, warnings)
+
+
+def _storage(surface: HorizonSurface) -> Storage:
+    from geofit.checks.storage import equal_accuracy
+
+    return equal_accuracy(surface, surface.settings.interior_tolerance)
 
 
 def _write_bands(surface: HorizonSurface, offdata: OffData, stem: Path) -> tuple[str, ...]:
@@ -350,10 +363,10 @@ def _write_report(
         write_pdf(pages, pictures, out / "report.pdf")
 
 
-def _write_issues(site: Site, out: Path) -> None:
+def _write_issues(site: Site, out: Path, language: Language) -> None:
     from geofit.report.tables import write_issues
 
-    write_issues(site.issues, out / "import_issues.csv")
+    write_issues(site.issues, out / "import_issues.csv", language)
 
 
 def _font_warning(results: Sequence[HorizonResult]) -> str:

@@ -18,10 +18,10 @@ Chinese: ``str(error)`` returns it as it was given.
 
 from __future__ import annotations
 
-from functools import partial, reduce
+from functools import partial
 from typing import Any
 
-from geofit.words import Said, said
+from geofit.words import Said, Verbatim, listed, said
 
 __all__ = [
     "Cancelled",
@@ -74,21 +74,25 @@ class InputError(GeofitError):
     ) -> None:
         self.reason, self.remedy = reason, remedy
         self.file, self.row, self.column, self.value = file, row, column, value
-        place: list[str] = [file] if file else []
+        place: list[str] = [Verbatim(file)] if file else []
         place += [said("row {row}", row=row)] if row is not None else []
-        place += [said("column '{column}'", column=column)] if column is not None else []
-        place += [said("value '{value}'", value=value)] if value is not None else []
-        what = reason if isinstance(reason, Said) else reason.rstrip(".")
-        sentence = said("{reason}. {remedy}", reason=what, remedy=remedy) if remedy else said("{reason}.", reason=what)
-        if place:
-            where = reduce(lambda a, b: said("{first}, {second}", first=a, second=b), place)
-            sentence = said("{place}: {sentence}", place=where, sentence=sentence)
-        super().__init__(sentence)
+        place += [said("column '{column}'", column=Verbatim(column))] if column is not None else []
+        place += [said("value '{value}'", value=Verbatim(value))] if value is not None else []
+        sentence = _sentence(reason, remedy)
+        super().__init__(said("{place}: {sentence}", place=listed(place), sentence=sentence) if place else sentence)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what another process makes the same error from."""
         again = partial(type(self), file=self.file, row=self.row, column=self.column, value=self.value)
         return again, (self.reason, self.remedy)
+
+
+def _sentence(reason: str, remedy: str) -> str:
+    """Return reason and remedy with one full stop between them, which some reasons bring with them."""
+    what = reason if isinstance(reason, Said) else reason.rstrip(".")
+    if what.endswith("."):
+        return said("{reason} {remedy}", reason=what, remedy=remedy) if remedy else what
+    return said("{reason}. {remedy}", reason=what, remedy=remedy) if remedy else said("{reason}.", reason=what)
 
 
 class PointsError(GeofitError, ValueError):

@@ -19,7 +19,7 @@ from geofit.model import Model
 from geofit.steps.assemble import Part, divide
 from geofit.steps.skin import least_change
 from geofit.surface import HorizonSurface, Patch
-from geofit.words import Said, said
+from geofit.words import Said, listed, said
 
 __all__ = ["adjust", "pull_to", "support", "weigh"]
 
@@ -63,8 +63,15 @@ def adjust(surface: HorizonSurface, patch: str, i: int, j: int, dz: float) -> Ho
     held = _acting(model, index)
     if held.any():
         raise ExactnessError(
-            f"Control point ({i}, {j}) of patch '{patch}' acts on {held.sum()} points that are met exactly "
-            f"({_names(surface, held)}). Move one that lies farther from them, or exclude them first."
+            said(
+                "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
+                "({count}: {names}). Move one that lies farther from them, or exclude them first.",
+                i=i,
+                j=j,
+                patch=patch,
+                count=held.sum(),
+                names=_names(surface, held),
+            )
         )
     if model.net.lines is not None and model.net.frozen[index]:
         raise FitError(said("The core is straight between its section curves: its control points follow the sections."))
@@ -124,8 +131,12 @@ def pull_to(surface: HorizonSurface, point: int | ArrayLike, share: float = 1.0)
         change = least_change(system, wanted, acting)
     except ExactnessError:
         raise ExactnessError(
-            f"The surface cannot be pulled to {name}: the {fixed.shape[0]} points around it that are met exactly leave "
-            "no freedom. Exclude the one that is wrong, or fit with core='none'."
+            said(
+                "The surface cannot be pulled to {name}: the points around it that are met exactly ({count}) leave "
+                "no freedom. Exclude the one that is wrong, or fit with core='none'.",
+                name=name,
+                count=fixed.shape[0],
+            )
         ) from None
     return _changed(
         surface,
@@ -164,8 +175,15 @@ def weigh(surface: HorizonSurface, patch: str, i: int, j: int, weight: float) ->
     held = _acting(model, index)
     if held.any():
         raise ExactnessError(
-            f"Control point ({i}, {j}) of patch '{patch}' acts on {held.sum()} points that are met exactly "
-            f"({_names(surface, held)}); its weight stays 1."
+            said(
+                "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
+                "({count}: {names}); its weight stays 1.",
+                i=i,
+                j=j,
+                patch=patch,
+                count=held.sum(),
+                names=_names(surface, held),
+            )
         )
     weights = dict(model.weights)
     changed = np.array(weights.get(patch, np.ones(_shape(part))))
@@ -234,7 +252,14 @@ def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
     rows, columns = _shape(part)
     if not (0 <= i < rows and 0 <= j < columns):
         raise FitError(
-            f"Patch '{part.name}' has control points (0, 0) to ({rows - 1}, {columns - 1}); ({i}, {j}) was given."
+            said(
+                "Patch '{name}' has control points (0, 0) to ({rows}, {columns}); ({i}, {j}) was given.",
+                name=part.name,
+                rows=rows - 1,
+                columns=columns - 1,
+                i=i,
+                j=j,
+            )
         )
     given, net = model.problem, model.net
     whole = divide(net.space, net.core, given.chart.frame, given.split.core is not None)
@@ -265,7 +290,7 @@ def _touches(part: Part, weights: Floats, acting: NDArray[np.bool_], model: Mode
 def _names(surface: HorizonSurface, which: NDArray[np.bool_]) -> str:
     """Name the first of some points."""
     first = [surface.points.describe(int(i)) for i in np.flatnonzero(which)[:2]]
-    return "; ".join(first) + ("; ..." if which.sum() > 2 else "")
+    return listed([*first, "..."] if which.sum() > 2 else first)
 
 
 def _target(surface: HorizonSurface, model: Model, point: int | ArrayLike) -> tuple[Floats, Floats, str]:
@@ -273,13 +298,23 @@ def _target(surface: HorizonSurface, model: Model, point: int | ArrayLike) -> tu
     chart = model.problem.chart
     if isinstance(point, (int, np.integer)):
         if not 0 <= point < len(surface.points):
-            raise FitError(f"'{surface.name}' has points 0 to {len(surface.points) - 1}; {point} was given.")
+            raise FitError(
+                said(
+                    "'{name}' has points 0 to {last}; {point} was given.",
+                    name=surface.name,
+                    last=len(surface.points) - 1,
+                    point=point,
+                )
+            )
         only = np.array([point])
         return chart.plane[only], chart.values[only], surface.points.describe(int(point))
     xyz = np.asarray(point, float)
     if xyz.shape != (3,) or not np.isfinite(xyz).all():
         raise FitError(
-            f"The point is {point!r}; three finite map coordinates (easting, northing, elevation) are needed."
+            said(
+                "The point is {point!r}; three finite map coordinates (easting, northing, elevation) are needed.",
+                point=point,
+            )
         )
     x, y, z = xyz
     name = said("({x:.2f}, {y:.2f}, {z:.2f})", x=x, y=y, z=z)
@@ -308,4 +343,6 @@ def _changed(surface: HorizonSurface, model: Model, note: Said) -> HorizonSurfac
     assert before is not None
     assert after is not None
     figures = {**surface.fit, **result.fit, "by_hand": surface.fit.get("by_hand", 0) + 1}
-    return result.with_(fit=figures, accuracy=replace(after, notes=(*before.notes, note)))
+    # A block between faults ends at them, not where its model ends.
+    accuracy = replace(after, notes=(*before.notes, note))
+    return result.with_(fit=figures, accuracy=accuracy, outline=surface.outline)

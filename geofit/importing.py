@@ -22,8 +22,10 @@ from geofit.io.mapping import ColumnMapping, save_mappings
 from geofit.io.site_file import load_site
 from geofit.io.toml_text import toml_value
 from geofit.progress import Progress, tell
+from geofit.report.language import EN, Language
+from geofit.report.language import tell as in_words
 from geofit.site import Ground, ImportIssue, Site, TableCount
-from geofit.words import said
+from geofit.words import Verbatim, listed, said
 
 __all__ = ["Import", "import_files"]
 
@@ -63,6 +65,7 @@ def import_files(
     base: Sequence[str] = (),
     top: Sequence[str] = (),
     progress: Progress | None = None,
+    language: Language = EN,
 ) -> Import:
     """Recognise files, and write the site file, ``..._mapping.toml`` and ``..._issues.csv`` beside it.
 
@@ -80,6 +83,8 @@ def import_files(
         Codes whose base or top are horizons; without any, the base of each code that has three contacts.
     progress : callable, optional
         Called as ``progress(stage, fraction)``.
+    language : Language
+        What the base of a code is called, and the reasons in ``..._issues.csv``.
 
     Raises
     ------
@@ -100,7 +105,7 @@ def import_files(
     mapping_file = site_file.with_name(f"{site_file.stem}_mapping.toml")
     while True:
         settle(plan)
-        horizons = _horizons(plan, site_file, mapping_file, crs, base, top)
+        horizons = _horizons(plan, site_file, mapping_file, crs, base, top, language)
         _write(plan, site_file, mapping_file, crs, horizons)
         tell(progress, "read the site", 0.6)
         try:
@@ -114,7 +119,7 @@ def import_files(
     issue_file = site_file.with_name(f"{site_file.stem}_issues.csv")
     from geofit.report.tables import write_issues
 
-    write_issues(issues, issue_file)
+    write_issues(issues, issue_file, language)
     tell(progress, "imported", 1.0)
     return Import(site, site_file, mapping_file, issue_file, issues, counts)
 
@@ -124,7 +129,9 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
     notes = []
     for part in (part for parts in plan.parts.values() for part in parts):
         preview, name = part.preview, part.source.name
-        others = ", ".join(f"{kind} {merit:.2f}" for kind, merit in list(preview.kinds.items())[1:4])
+        others = listed(
+            said("{kind} {merit:.2f}", kind=kind, merit=merit) for kind, merit in list(preview.kinds.items())[1:4]
+        )
         reason = said("Taken as {kind}, confidence {confidence:.2f}", kind=preview.kind, confidence=preview.confidence)
         if others:
             reason = said("{text}; else {others}", text=reason, others=others)
@@ -139,7 +146,13 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
 
 
 def _horizons(
-    plan: Plan, site_file: Path, mapping_file: Path, crs: str, base: Sequence[str], top: Sequence[str]
+    plan: Plan,
+    site_file: Path,
+    mapping_file: Path,
+    crs: str,
+    base: Sequence[str],
+    top: Sequence[str],
+    language: Language,
 ) -> list[dict[str, Any]]:
     """Return the [[horizon]] tables: limits of codes, and, beside them, every name in the other files."""
     limits = _limits(plan, base, top)
@@ -151,8 +164,13 @@ def _horizons(
         others = list(load_site(site_file).horizons)
     except InputError:
         others = []  # the file at fault is dropped when the whole site is read
-    named = {table["name"].casefold(): table for table in limits}
-    return limits + [{"name": name} for name in others if name.casefold() not in named]
+    named = {name.casefold() for name in others}
+    for table in limits:
+        # In the language that was asked for, unless another file uses the English name.
+        if table["name"].casefold() not in named:
+            table["name"] = in_words(table["name"], language)
+    limited = {table["name"].casefold() for table in limits}
+    return limits + [{"name": name} for name in others if name.casefold() not in limited]
 
 
 def _ground(plan: Plan) -> Ground | None:
@@ -167,7 +185,7 @@ def _ground(plan: Plan) -> Ground | None:
 def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[str, Any]]:
     """Return the limits that are asked for, or the base of each code with enough contacts, the highest first."""
     pairs = [*(("base", code) for code in base), *(("top", code) for code in top)]
-    asked = [{"name": f"{limit} of {code}", limit: code} for limit, code in pairs]
+    asked = [{"name": _name(limit, code), limit: code} for limit, code in pairs]
     if asked:
         return asked
     heights: dict[str, list[float]] = {}
@@ -198,13 +216,24 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
             "",
             "",
             "note",
-            f"The base of {len(few)} codes has fewer than {FEWEST_CONTACTS} contacts and makes no horizon: {names}",
+            said(
+                "The base of {count} codes has fewer than {least} contacts and makes no horizon: {names}",
+                count=len(few),
+                least=FEWEST_CONTACTS,
+                names=names,
+            ),
             "Add a [[horizon]] to the site file where one is wanted (--base, --top).",
         )
         if issue not in plan.issues:
             plan.issues.append(issue)
     ordered = sorted(heights, key=lambda code: (-float(np.mean(heights[code])), code))
-    return [{"name": f"base of {code}", "base": code} for code in ordered]
+    return [{"name": _name("base", code), "base": code} for code in ordered]
+
+
+def _name(limit: str, code: str) -> str:
+    if limit == "top":
+        return said("top of {code}", code=Verbatim(code))
+    return said("base of {code}", code=Verbatim(code))
 
 
 def _write(
@@ -250,6 +279,7 @@ def _write(
     for part in plan.of("picks"):
         alone = "horizon" not in part.mapping.columns
         blocks.append(("[[picks]]", {**_file(part), **({"horizon": part.source.path.stem} if alone else {})}))
+    blocks += [("[[horizon_columns]]", _file(part)) for part in plan.of("horizon columns")]
     blocks += [("[[grids]]", {**_file(part), "horizon": part.source.path.stem}) for part in plan.of("grid")]
     blocks += [("[[orientations]]", _file(part)) for part in plan.of("orientations")]
     blocks += [("[[horizon]]", dict(table)) for table in horizons]

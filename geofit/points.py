@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.errors import PointsError
-from geofit.words import said
+from geofit.words import Verbatim, said
 
 __all__ = ["KINDS", "PointSet"]
 
@@ -79,16 +79,28 @@ class PointSet:
         try:
             xyz = np.array(self.xyz, dtype=np.float64)
         except (TypeError, ValueError) as error:
-            raise PointsError(f"xyz must hold numbers: {error}. Give an (n, 3) array of metres.") from None
+            raise PointsError(
+                said("xyz must hold numbers: {error}. Give an (n, 3) array of metres.", error=str(error))
+            ) from None
         if xyz.size == 0:
             xyz = xyz.reshape(0, 3)
         if xyz.ndim != 2 or xyz.shape[1] != 3:
-            raise PointsError(f"xyz has shape {xyz.shape}; an (n, 3) array of easting, northing, elevation is needed.")
+            raise PointsError(
+                said(
+                    "xyz has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.", shape=xyz.shape
+                )
+            )
         bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         if bad.size:
             raise PointsError(
-                f"{bad.size} of {len(xyz)} points are not finite, the first at index {bad[0]}: "
-                f"{xyz[bad[0]].tolist()}. Remove or complete them before fitting."
+                said(
+                    "{count} of {total} points are not finite, the first at index {index}: {place}. Remove or "
+                    "complete them before fitting.",
+                    count=bad.size,
+                    total=len(xyz),
+                    index=bad[0],
+                    place=xyz[bad[0]].tolist(),
+                )
             )
         n = len(xyz)
         self._set("xyz", xyz)
@@ -99,8 +111,12 @@ class PointSet:
         wrong = np.flatnonzero((self.accuracy <= 0) | np.isinf(self.accuracy))
         if wrong.size:
             raise PointsError(
-                f"accuracy[{wrong[0]}] is {self.accuracy[wrong[0]]:g} m; one standard deviation must be above 0. "
-                "Use nan where the source states none."
+                said(
+                    "accuracy[{index}] is {value:g} m; one standard deviation must be above 0. Use nan where the "
+                    "source states none.",
+                    index=wrong[0],
+                    value=self.accuracy[wrong[0]],
+                )
             )
 
     def _set(self, name: str, array: NDArray[Any]) -> None:
@@ -131,7 +147,7 @@ class PointSet:
     def describe(self, index: int) -> str:
         """Name one point as a person would look it up: hole or section, file and row."""
         name, kind = str(self.hole[index] or self.section[index]), str(self.kind[index])
-        what = said("{kind} {name}", kind=kind, name=name) if name else said("{kind}", kind=kind)
+        what = said("{kind} {name}", kind=kind, name=Verbatim(name)) if name else said("{kind}", kind=kind)
         file, row = str(self.file[index]), int(self.row[index])
         if file:
             return said("{point}, {file} row {row}", point=what, file=file, row=row)
@@ -142,9 +158,18 @@ def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     try:
         array: NDArray[Any] = np.asarray(values, dtype=dtype)
     except (TypeError, ValueError) as error:
-        raise PointsError(f"{name} cannot be read as {dtype.__name__}: {error}.") from None
+        raise PointsError(
+            said("{name} cannot be read as {type}: {error}.", name=name, type=dtype.__name__, error=str(error))
+        ) from None
     if array.ndim == 0:
         return np.full(n, array, dtype=array.dtype)
     if array.shape != (n,):
-        raise PointsError(f"{name} has shape {array.shape}; {n} points need shape ({n},) or one value for all.")
+        raise PointsError(
+            said(
+                "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
+                name=name,
+                shape=array.shape,
+                n=n,
+            )
+        )
     return array.copy()

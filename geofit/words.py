@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from functools import reduce
 from typing import Any
 
-__all__ = ["Said", "said"]
+__all__ = ["Said", "Verbatim", "listed", "said"]
 
 
 class Said(str):
@@ -27,6 +28,12 @@ class Said(str):
         return other.format(**values)
 
 
+class Verbatim(str):
+    """A word that is the same in every language: a column or key of a file, a name, also where it is one of ours."""
+
+    __slots__ = ()
+
+
 def said(template: str, **values: Any) -> Said:
     """Return ``template.format(**values)``; the template must be a literal, so that translations can be checked.
 
@@ -39,3 +46,15 @@ def said(template: str, **values: Any) -> Said:
     text = Said(template.format(**values))
     text.template, text.values = template, values
     return text
+
+
+def listed(texts: Iterable[str]) -> str:
+    """Return texts as a list with commas, empty if there is none; those that can be told in another language still can.
+
+    Examples
+    --------
+    >>> listed([said("row {row}", row=2), said("row {row}", row=5)])
+    'row 2, row 5'
+    """
+    texts = list(texts)
+    return reduce(lambda a, b: said("{first}, {second}", first=a, second=b), texts) if texts else ""

@@ -15,7 +15,7 @@ from geofit.io.journal import Journal
 from geofit.io.sniff import decode, is_number
 from geofit.io.source import Source
 from geofit.io.tables import Table
-from geofit.words import said
+from geofit.words import Verbatim, said
 
 __all__ = ["group_names", "read_group"]
 
@@ -48,7 +48,11 @@ def read_group(source: Source, journal: Journal) -> Table:
     group = groups.get(source.table)
     if group is None:
         raise InputError(
-            f"The file has no group '{source.table}'; its groups are {', '.join(groups)}",
+            said(
+                "The file has no group '{table}'; its groups are {names}",
+                table=Verbatim(source.table),
+                names=", ".join(groups),
+            ),
             "Name one of them.",
             file=source.name,
         )

@@ -57,8 +57,14 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     if known and 2 * swapped.sum() > used.size:
         i = int(used[np.flatnonzero(swapped)[0]])
         raise InputError(
-            f"x and y look exchanged: {swapped.sum()} of {used.size} rows lie far outside the study area, "
-            f"and inside it with x and y swapped, the first at x = {x[i]:.15g}, y = {y[i]:.15g}",
+            said(
+                "x and y look exchanged: {count} of {total} rows lie far outside the study area, and inside it "
+                "with x and y swapped, the first at x = {x:.15g}, y = {y:.15g}",
+                count=swapped.sum(),
+                total=used.size,
+                x=x[i],
+                y=y[i],
+            ),
             "x is the easting, y the northing; exchange the columns "
             "(in many Chinese tables X is the northing and Y the easting).",
             file=rows.file,
@@ -74,7 +80,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
             i,
             "x",
             said(
-                "{count} rows lie far outside the study area, the first at x = {x:.15g}, y = {y:.15g}",
+                "Rows far outside the study area: {count}, the first at x = {x:.15g}, y = {y:.15g}",
                 count=off.size,
                 x=x[i],
                 y=y[i],

@@ -16,11 +16,12 @@ from geofit.io.axes import Region, check_axes
 from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
 from geofit.io.desurvey import Desurvey, WellPath, desurvey
 from geofit.io.journal import Journal
+from geofit.io.lower_limits import tops_from_above
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source, as_source
 from geofit.io.surveys import Stations, read_stations
 from geofit.site import Ground, Hole, ImportIssue, TableCount
-from geofit.words import said
+from geofit.words import Verbatim, listed, said
 
 __all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreholes"]
 
@@ -200,7 +201,7 @@ def _read_collars(
     rows.close()
     for i in np.flatnonzero(~rows.ok).tolist():
         if name[i] not in first:
-            journal.refused[name[i]] = f"{rows.file}, {rows.line[i]}"
+            journal.refused[name[i]] = listed([Verbatim(rows.file), said("row {row}", row=rows.line[i])])
     if not first:
         raise InputError("No row of the collar table can be used", "See the listed rows.", file=source.name) from None
     return {hole: _Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole)) for hole, i in first.items() if rows.ok[i]}
@@ -229,10 +230,18 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
     """Whether the limits are elevations: as stated, by their names, or because they descend below the collar."""
     if rows.source.measure is not None:
         return rows.source.measure == "elevation"
-    named = [plain_name(rows.table.header[rows.columns[role]])[0] for role in ("from", "to")]
+    headers = [rows.table.header[rows.columns[role]] for role in ("from", "to") if role in rows.columns]
+    named = [plain_name(header)[0] for header in headers]
     sound = np.isfinite(top) & np.isfinite(base) & np.isfinite(mouth)
     falls = (top > base) & (top <= mouth + 1.0) & sound
-    if all(any(word in name for word in ("elev", "高程", "标高")) for name in named):
+    elevations = [any(word in name for word in ("elev", "高程", "标高")) for name in named]
+    if any(elevations) and any("depth" in name or "深" in name for name in named):
+        raise InputError(
+            said("'{top}' and '{base}' are not both depths or both elevations", top=headers[0], base=headers[1]),
+            "State columns = { from = ..., to = ... } that are.",
+            file=rows.file,
+        )
+    if all(elevations):
         reason = said("by their names")
     elif sound.sum() >= 3 and falls.sum() > 0.6 * sound.sum() and np.ptp(mouth[sound]) > 0:
         reason = said(
@@ -247,7 +256,7 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
         rows.file,
         said("The limits are taken as elevations, {reason}", reason=reason),
         'State measure = "depth" where they are depths.',
-        column=rows.table.header[rows.columns["from"]],
+        column=headers[0],
     )
     return True
 
@@ -256,8 +265,10 @@ def _to_depths(rows: Rows, name: list[str], paths: Mapping[str, WellPath], limit
     """Return the depths along the holes of limits that are elevations."""
     depth = np.full(len(limits), np.nan)
     groups: dict[str, list[int]] = {}
-    for i in np.flatnonzero(rows.ok).tolist():
-        groups.setdefault(name[i], []).append(i)
+    # Rows that are not used, too: they may end the one below them.
+    for i in np.flatnonzero(np.isfinite(limits)).tolist():
+        if name[i] in paths:
+            groups.setdefault(name[i], []).append(i)
     for hole, members in groups.items():
         path = paths[hole]
         # Collar and log are rounded apart: a limit a few centimetres above the mouth is the mouth.
@@ -275,13 +286,17 @@ def _read_log(
 ) -> IntervalLog:
     rows = read_rows(source, INTERVALS, journal)
     name, code = np.array(rows.text("hole")), np.array(rows.text("code"))
+    lower_only = "from" not in rows.columns
     top, base = rows.numbers("from"), rows.numbers("to")
     end = np.array([collars[h].end if h in collars else np.nan for h in name])
     rows.require_known("hole", name.tolist(), collars, "collar table")
     mouth = np.array([collars[h].xyz[2] if h in collars else np.nan for h in name])
     if _by_elevation(rows, top, base, mouth):
-        top = _to_depths(rows, name.tolist(), paths, top, "from")
+        if not lower_only:
+            top = _to_depths(rows, name.tolist(), paths, top, "from")
         base = _to_depths(rows, name.tolist(), paths, base, "to")
+    if lower_only:
+        top = tops_from_above(rows, name.tolist(), base, collars)
     for mask, role, reason, remedy in (
         (
             top < 0,

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from geofit.errors import InputError
 from geofit.io.columns import BOUNDARY
 from geofit.io.journal import Journal
+from geofit.io.parser_words import told_by
 from geofit.io.rows import read_rows
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
 from geofit.io.vector import RING
+from geofit.words import said
 
 __all__ = ["load_boundary", "read_boundary"]
 
@@ -65,7 +67,7 @@ def _from_table(source: Source, journal: Journal) -> Floats:
     if rows.table.read > rows.ok.sum():
         bad = next(issue for issue in journal.issues if issue.file == source.name and issue.severity == "error")
         raise InputError(
-            f"A corner of the boundary cannot be read: {bad.reason}",
+            said("A corner of the boundary cannot be read: {reason}", reason=bad.reason),
             bad.remedy,
             file=source.name,
             row=bad.row,
@@ -80,12 +82,16 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
     try:
         rings = _rings(json.loads(text))
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        what, line = told_by(error)
         raise InputError(
-            f"This is no GeoJSON polygon: {error}", "Export one polygon without holes.", file=source.name
+            said("This is no GeoJSON polygon: {error}", error=what),
+            "Export one polygon without holes.",
+            file=source.name,
+            row=line,
         ) from None
     if len(rings) != 1:
         raise InputError(
-            f"The file has {len(rings)} rings; one polygon without holes is needed",
+            said("The file has {count} rings; one polygon without holes is needed", count=len(rings)),
             "Export the outline of the study area alone.",
             file=source.name,
         )
@@ -126,7 +132,7 @@ def _check(corners: Floats, name: str) -> None:
     distinct = len(np.unique(corners, axis=0))
     if distinct < 3:
         raise InputError(
-            f"The boundary has {distinct} different corners; at least three are needed",
+            said("Different corners of the boundary: {count}; at least three are needed", count=distinct),
             "List the corners of the study area in order.",
             file=name,
         )
@@ -135,8 +141,9 @@ def _check(corners: Floats, name: str) -> None:
 
     polygon = Polygon(corners)
     if not polygon.is_valid or polygon.area == 0:
+        what, _, place = explain_validity(polygon).rstrip("]").partition("[")
         raise InputError(
-            f"The boundary crosses or touches itself: {explain_validity(polygon)}",
+            said("The boundary crosses or touches itself: {reason}, {place}", reason=what, place=place),
             "List the corners in order around the study area, each once.",
             file=name,
         )

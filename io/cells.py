@@ -52,7 +52,7 @@ def table_of(
             journal.add(
                 "error",
                 source.name,
-                said("The row has {count} cells, the header {width}", count=len(cells), width=width),
+                said("Cells of the row: {count}, of the header: {width}", count=len(cells), width=width),
                 "Complete the header or shorten the row.",
                 row=line,
                 value=" ".join(cells)[:120],
@@ -61,7 +61,7 @@ def table_of(
             kept.append((line, cells))
     if not kept and not malformed:
         raise InputError(
-            f"The table has a header ({', '.join(header[:40])}) but no rows",
+            said("The table has a header ({names}) but no rows", names=", ".join(header[:40])),
             "Export the table again with its rows.",
             file=source.name,
         )

@@ -14,6 +14,7 @@ __all__ = [
     "COLLAR",
     "COLLAR_ON_GROUND",
     "GEOGRAPHIC",
+    "HORIZON_COLUMNS",
     "INTERVALS",
     "ORIENTATIONS",
     "PICKS",
@@ -32,12 +33,19 @@ __all__ = [
 class Schema:
     """The roles of one kind of table, each with its spellings, the surest first.
 
-    Spellings are normalised as :func:`plain_name` does. ``required`` roles must be found.
+    Spellings are normalised as :func:`plain_name` does. ``required`` roles must be found, but for ``derived``
+    ones, which other rows give where no column does.
     """
 
     name: str
     required: Mapping[str, tuple[str, ...]]
     optional: Mapping[str, tuple[str, ...]]
+    derived: frozenset[str] = frozenset()
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """Roles that need a column of their own."""
+        return tuple(role for role in self.required if role not in self.derived)
 
 
 def _spelled(words: str) -> tuple[str, ...]:
@@ -75,19 +83,21 @@ _AZIMUTH = _spelled(
 )
 _DIP = _spelled("dip dipangle hornincl holeincl plunge 倾角 倾斜角 倾伏角")
 _FROM = _spelled(
-    "from depthfrom fromdepth start top depthtop topdepth geoltop topelevation elevationtop "
-    "起始深度 层顶高程 层顶标高 起深 起始 层顶深度 顶板深度 顶深 自 从 起"
+    "from depthfrom fromdepth start top depthtop topdepth geoltop "
+    "起始深度 起深 起始 层顶深度 层顶埋深 顶板深度 顶板埋深 顶深 自 从 起 "
+    "topelevation elevationtop 层顶高程 层顶标高 顶板高程 顶板标高"
 )
 _TO = _spelled(
-    "to depthto todepth end bottom base depthbase basedepth geolbase baseelevation elevationbase 层底高程 层底标高 "
-    "终止深度 止深 终止 结束深度 层底深度 底板深度 底深 至 到 止"
+    "to depthto todepth end bottom base depthbase basedepth depthbottom bottomdepth geolbase "
+    "终止深度 止深 终止 结束深度 层底深度 层底埋深 底板深度 底板埋深 底深 至 到 止 "
+    "baseelevation elevationbase bottomelevation elevationbottom 层底高程 层底标高 底板高程 底板标高"
 )
 _CODE = _spelled(
     "code rockcode lithcode lithologycode geologycode unitcode "
     "stratumcode legendcode geolgeol geolleg lithology lith "
     "rock rocktype rockunit unit formation stratum stratigraphy strat simplelith geology weathering "
     "地层代号 代号 代码 编码 地层编号 层号 地层 岩性代号 岩性 "
-    "岩性名称 岩石名称 岩层 风化程度 风化带 风化 风化等级"
+    "岩性名称 岩石名称 岩土名称 地层名称 土层名称 岩层 风化程度 风化带 风化 风化等级"
 )
 _HORIZON = _spelled(
     "horizon surface formation featurename feature interface contact surfacename horizonname layer "
@@ -111,7 +121,8 @@ COLLAR = Schema(
 #: Where there is a ground, collars without an elevation stand on it.
 COLLAR_ON_GROUND = Schema("collar", {"hole": _HOLE, **_PLACE}, {"z": _Z, **COLLAR.optional})
 SURVEY = Schema("survey", {"hole": _HOLE, "depth": _STATION, "azimuth": _AZIMUTH, "dip": _DIP}, {})
-INTERVALS = Schema("intervals", {"hole": _HOLE, "from": _FROM, "to": _TO, "code": _CODE}, {})
+#: Without a column of upper limits they are the lower ones of the row above (:mod:`geofit.io.lower_limits`).
+INTERVALS = Schema("intervals", {"hole": _HOLE, "from": _FROM, "to": _TO, "code": _CODE}, {}, frozenset({"from"}))
 ADIT_PATH = Schema("adit path", {"adit": _ADIT, **_PLACE, "z": _Z}, {})
 ADIT_CONTACTS = Schema("adit contacts", {"adit": _ADIT, "chainage": _CHAINAGE, "horizon": _HORIZON}, {})
 SECTION = Schema("section", {"horizon": _HORIZON, "distance": _DISTANCE, "elevation": _Z}, {})
@@ -132,6 +143,8 @@ PICKS = Schema(
     {**_PLACE, "z": _Z},
     {"horizon": _HORIZON, "section": _SECTION, "hole": _PICKED_HOLE, "kind": _KIND, "accuracy": _ACCURACY},
 )
+#: Which columns are horizons only the user knows: they are no roles.
+HORIZON_COLUMNS = Schema("horizon columns", _PLACE, {"hole": _PICKED_HOLE, "z": _Z})
 BOUNDARY = Schema("boundary", _PLACE, {})
 SECTION_LINES = Schema("section lines", {"section": _SECTION, **_PLACE}, {})
 ORIENTATIONS = Schema(
@@ -162,6 +175,7 @@ SCHEMAS = {
         SECTION_LINES,
         TRACES,
         PICKS,
+        HORIZON_COLUMNS,
         ORIENTATIONS,
         BOUNDARY,
     )

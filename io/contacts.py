@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Literal
 
 import numpy as np
@@ -11,10 +10,11 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
+from geofit.io.hints import nearest
 from geofit.io.journal import Journal
 from geofit.points import PointSet
 from geofit.site import ImportIssue
-from geofit.words import said
+from geofit.words import Verbatim, said
 
 __all__ = ["Contacts", "Limit", "load_contacts", "take_contacts"]
 
@@ -61,10 +61,13 @@ def load_contacts(boreholes: Boreholes, code: str, limit: Limit, journal: Journa
     carrying = [log for log in boreholes.logs if (log.code == code).any()]
     if not carrying:
         codes = sorted({str(c) for log in boreholes.logs for c in np.unique(log.code)})
-        near = get_close_matches(code, codes, 1)
         raise InputError(
-            f"No interval has the code '{code}'; the codes are {', '.join(codes[:40]) or 'none'}",
-            f"Did you mean '{near[0]}'?" if near else "Name one of them.",
+            said(
+                "No interval has the code '{code}'; the codes are {names}",
+                code=Verbatim(code),
+                names=", ".join(codes[:40]) or said("none"),
+            ),
+            nearest(code, codes, said("Name one of them.")),
             file=", ".join(log.file for log in boreholes.logs) or None,
         )
     return PointSet.concatenate([_contacts_of(boreholes, log, code, limit, journal) for log in carrying])
@@ -88,8 +91,8 @@ def _contacts_of(boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit
             "note",
             log.file,
             said(
-                "{limit} of {code}: {count} contacts; no sure contact (the code {why}, or its limit is contradicted) "
-                "in {unseen} holes: {holes}",
+                "{limit} of {code}: contacts: {count}; no sure contact (the code {why}, or its limit is "
+                "contradicted) in holes ({unseen}): {holes}",
                 limit=limit,
                 code=code,
                 count=len(found),

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.errors import InputError
 from geofit.io.extra import need
+from geofit.words import said
 
 __all__ = ["is_code", "project"]
 
@@ -36,12 +37,12 @@ def project(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[
     MissingDependencyError
         If pyproj is not installed.
     """
-    pyproj = need("pyproj", "gis", f"Projecting {file}")
+    pyproj = need("pyproj", "gis", said("Projecting {file}", file=file))
     before, after = _system(pyproj, source, file), _system(pyproj, target, file)
     units = {axis.unit_name for axis in after.axis_info[:2]}
     if not after.is_projected or units != {"metre"}:
         raise InputError(
-            f"The target '{target}' is no projected system in metres",
+            said("The target '{target}' is no projected system in metres", target=target),
             "Name the grid of the site, such as a UTM zone: EPSG:32650.",
             file=file,
         )
@@ -59,5 +60,7 @@ def _system(pyproj: Any, text: str, file: str) -> Any:
         return pyproj.CRS.from_user_input(text)
     except pyproj.exceptions.CRSError as error:
         raise InputError(
-            f"The coordinate system '{text}' is unknown: {error}", "Give a code such as EPSG:32650.", file=file
+            said("The coordinate system '{text}' is unknown: {error}", text=text, error=str(error)),
+            "Give a code such as EPSG:32650.",
+            file=file,
         ) from None

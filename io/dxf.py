@@ -82,7 +82,7 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
         unit = int(document.header.get("$INSUNITS", 0))
     except failures as error:
         raise InputError(
-            f"The drawing cannot be read: {_clean(str(error)) or type(error).__name__}",
+            said("The drawing cannot be read: {error}", error=_clean(str(error)) or type(error).__name__),
             "Open it in CAD, audit it and save it as DXF (2007 or later).",
             file=source.name,
         ) from None
@@ -164,7 +164,7 @@ def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> t
             aside[entity.layer] = aside.get(entity.layer, 0) + entity.size
     for layer, size in aside.items():
         reason = said(
-            "Layer '{layer}' is not among the layers '{pattern}'; its {count} points are not used",
+            "Layer '{layer}' is not among the layers '{pattern}'; its points are not used ({count})",
             layer=layer,
             pattern=source.table,
             count=size,

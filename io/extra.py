@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any
 
 from geofit.errors import MissingDependencyError
+from geofit.words import said
 
 __all__ = ["need"]
 
@@ -23,6 +24,12 @@ def need(module: str, extra: str, what: str) -> Any:
     except ImportError as error:
         package = module.split(".")[0]
         raise MissingDependencyError(
-            f"{what} needs the package {package}, which cannot be imported ({error}). "
-            f"Install it: pip install 'geofit[{extra}]'"
+            said(
+                "{what} needs the package {package}, which cannot be imported ({error}). Install it: pip install "
+                "'geofit[{extra}]'",
+                what=what,
+                package=package,
+                error=str(error),
+                extra=extra,
+            )
         ) from None

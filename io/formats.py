@@ -108,7 +108,7 @@ def _choose(source: Source, form: str, kind: str, journal: Journal) -> Source:
             )
             return replace(source, table=usual)
     raise InputError(
-        f"The file holds {len(names)} tables: {', '.join(names[:40]) or 'none'}",
+        said("The file holds {count} tables: {names}", count=len(names), names=", ".join(names[:40]) or said("none")),
         "Name one of them with table = ...",
         file=source.name,
     )

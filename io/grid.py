@@ -13,7 +13,7 @@ from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
 from geofit.points import PointSet
 from geofit.site import Ground
-from geofit.words import said
+from geofit.words import Verbatim, said
 
 __all__ = ["grid_unit", "load_grid", "load_ground", "read_ground"]
 
@@ -70,7 +70,7 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
     name = horizons.match(horizon)
     if name is None:
         raise InputError(
-            f"The grid is of '{horizon}', which is no horizon of the site",
+            said("The grid is of '{horizon}', which is no horizon of the site", horizon=horizon),
             'State horizon = "..." in [[grids]], or add the [[horizon]].',
             file=source.name,
         )
@@ -115,7 +115,12 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     cells = [word for _, words in body for word in words]
     if len(cells) != columns * rows:
         raise InputError(
-            f"The grid has {len(cells)} cells; ncols x nrows = {columns} x {rows} are needed",
+            said(
+                "The grid has {count} cells; ncols x nrows = {columns} x {rows} are needed",
+                count=len(cells),
+                columns=columns,
+                rows=rows,
+            ),
             "Export the grid again.",
             file=source.name,
         )
@@ -160,7 +165,7 @@ def _size(head: dict[str, float], key: str, file: str) -> int:
     value = head.get(key, np.nan)
     if not (np.isfinite(value) and value >= 2 and value == int(value)):
         raise InputError(
-            f"The grid's head has no whole {key} of at least 2",
+            said("The grid's head has no whole {key} of at least 2", key=Verbatim(key)),
             "An ESRI ASCII grid starts with ncols, nrows, xllcorner, yllcorner, cellsize.",
             file=file,
         )
@@ -173,4 +178,8 @@ def _corner(head: dict[str, float], axis: str, step: float, file: str) -> float:
         return head[f"{axis}llcenter"]
     if f"{axis}llcorner" in head:
         return head[f"{axis}llcorner"] + 0.5 * step
-    raise InputError(f"The grid has no {axis}llcorner", f"Add a line '{axis}llcorner 500000'.", file=file)
+    raise InputError(
+        said("The grid has no {axis}llcorner", axis=Verbatim(axis)),
+        said("Add a line '{axis}llcorner 500000'.", axis=Verbatim(axis)),
+        file=file,
+    )

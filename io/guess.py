@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from string import ascii_uppercase
 
 import numpy as np
@@ -12,12 +11,13 @@ import numpy as np
 from geofit.errors import InputError
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, Schema, plain_name
 from geofit.io.guess_values import by_values
+from geofit.io.hints import nearest
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, parse_numbers
-from geofit.words import said
+from geofit.words import Verbatim, listed, said
 
-__all__ = ["RoleGuess", "find_columns", "guess_roles", "sample_of", "taken_as"]
+__all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as"]
 
 #: Roles whose cells are words; all others hold numbers.
 WORDS = frozenset({"hole", "code", "horizon", "section", "adit", "kind"})
@@ -104,7 +104,7 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
         rivals.sort(reverse=True)
         confidence, _, j, why = rivals[0]
         others = tuple(table.header[k] for _, _, k, _ in rivals[1:])
-        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), f"by its name{why}", others)
+        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), why, others)
     return found
 
 
@@ -126,23 +126,28 @@ def _lettered(table: Table) -> bool:
 
 
 def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, str]:
-    """Return how well the values of a column suit a role, 0.1 to 1, and what speaks against it."""
+    """Return how well the values of a named column suit a role, 0.1 to 1, and why it is taken or doubted."""
     cells = [table.columns[j][i].strip() for i in rows]
     filled = tuple(cell for cell in cells if cell)
+    why = said("by its name")
     if not filled:
-        return (0.1, "; all its cells are empty") if rows else (1.0, "")
+        return (0.1, said("by its name; all its cells are empty")) if rows else (1.0, why)
     fill = len(filled) / len(cells)
-    merit, why = 0.3 + 0.7 * fill, f"; {fill:.0%} of its cells are filled" if fill < 0.9 else ""
+    merit = 0.3 + 0.7 * fill
+    if fill < 0.9:
+        why = said("by its name; {share:.0%} of its cells are filled", share=fill)
     if role in WORDS:
         return merit, why
     values, bad = parse_numbers(filled, table.decimal)
     share = 1.0 - len(bad) / len(filled)
     if share < 0.9:
-        merit, why = merit * max(share, 0.1), f"; {1 - share:.0%} of its cells are no numbers"
+        merit *= max(share, 0.1)
+        why = said("by its name; {share:.0%} of its cells are no numbers", share=1 - share)
     low, high = _LIMITS.get(role, (-np.inf, np.inf))
     inside = np.mean((values >= low) & (values <= high)) if share > 0 else 1.0
     if inside < 0.5 and share > 0.5:
-        merit, why = merit * 0.3, f"; its values are not between {low:g} and {high:g}"
+        merit *= 0.3
+        why = said("by its name; its values are not between {low:g} and {high:g}", low=low, high=high)
     return merit, why
 
 
@@ -182,7 +187,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
         _warn_of_constant(table, columns, journal)
     if source.target and (table.named or source.columns):
         columns |= _geographic(table, columns, journal)
-    missing = [role for role in schema.required if role not in columns]
+    missing = [role for role in schema.needed if role not in columns]
     if missing:
         raise _missing(table, schema, missing)
     return columns
@@ -192,14 +197,14 @@ def taken_as(guess: RoleGuess) -> str:
     """Say which column was taken as what, why, how surely, and which other ones it could be."""
     text = said(
         "Column '{column}' is taken as {role}, {reason}, confidence {confidence:.2f}",
-        column=guess.column,
+        column=Verbatim(guess.column),
         role=guess.role,
         reason=guess.reason,
         confidence=guess.confidence,
     )
     if not guess.others:
         return text
-    others = ", ".join(f"'{name}'" for name in guess.others)
+    others = listed(said("'{name}'", name=Verbatim(name)) for name in guess.others)
     return said("{text}; also possible: {others}", text=text, others=others)
 
 
@@ -219,8 +224,8 @@ def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> d
         table.name,
         said(
             "'{x}' and '{y}' are taken as longitude and latitude (EPSG:4326) and projected",
-            x=table.header[found["x"]],
-            y=table.header[found["y"]],
+            x=Verbatim(table.header[found["x"]]),
+            y=Verbatim(table.header[found["y"]]),
         ),
         "State crs and columns where this is wrong.",
     )
@@ -244,7 +249,7 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
             table.name,
             said(
                 "'{column}' is the same for all horizons of one place: it may be the hole's own",
-                column=table.header[columns["z"]],
+                column=Verbatim(table.header[columns["z"]]),
             ),
             "State columns = { z = ... } with the elevation of the horizon.",
             column=table.header[columns["z"]],
@@ -256,17 +261,23 @@ def _stated(table: Table, schema: Schema, source: Source) -> dict[str, int]:
     columns = {}
     for role, wanted in source.columns.items():
         if role not in roles:
-            near = get_close_matches(role, roles, 1)
             raise InputError(
-                f"A {schema.name} table has no column role '{role}'",
-                (f"Did you mean '{near[0]}'? " if near else "") + f"The roles are {', '.join(roles)}.",
+                said("A {kind} table has no column role '{role}'", kind=schema.name, role=Verbatim(role)),
+                nearest(role, roles, said("The roles are {names}.", names=", ".join(roles))),
                 file=table.name,
             )
-        columns[role] = _locate(table, role, wanted)
+        columns[role] = locate(table, role, wanted)
     return columns
 
 
-def _locate(table: Table, role: str, wanted: str | int) -> int:
+def locate(table: Table, role: str, wanted: str | int) -> int:
+    """Return the index of a column that is named by its header, or its number from 1.
+
+    Raises
+    ------
+    InputError
+        If there is no such column.
+    """
     if isinstance(wanted, str):
         if wanted in table.header:
             return table.header.index(wanted)
@@ -277,8 +288,13 @@ def _locate(table: Table, role: str, wanted: str | int) -> int:
     if 1 <= number <= len(table.header):
         return number - 1
     raise InputError(
-        f"There is no column '{wanted}' for {role}; the columns are {', '.join(table.header)}",
-        f"Name one of them, or give its number from 1 to {len(table.header)}.",
+        said(
+            "There is no column '{wanted}' for {role}; the columns are {names}",
+            wanted=Verbatim(wanted),
+            role=Verbatim(role),
+            names=", ".join(table.header),
+        ),
+        said("Name one of them, or give its number from 1 to {count}.", count=len(table.header)),
         file=table.name,
     )
 
@@ -291,18 +307,33 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
             "(geofit import: --crs).",
             file=table.name,
         )
-    names = " and ".join(f"'{role}'" for role in missing)
-    found = ", ".join(table.header)
-    what = f"No column for {names} was found in this {schema.name} table; " + (
-        f"its columns are {found}" if table.named else f"it has no header and {len(table.header)} columns"
+    names = listed(said("'{name}'", name=Verbatim(role)) for role in missing)
+    what = (
+        said(
+            "No column for {names} was found in this {kind} table; its columns are {found}",
+            names=names,
+            kind=schema.name,
+            found=", ".join(table.header),
+        )
+        if table.named
+        else said(
+            "No column for {names} was found in this {kind} table without a header; its columns: {count}",
+            names=names,
+            kind=schema.name,
+            count=len(table.header),
+        )
     )
     example = ", ".join(f'{role} = "..."' for role in missing)
     on_ground = schema.name == "collar" and missing == ["z"]
-    ground = " Or give the ground ([ground], a grid): collars stand on it." if on_ground else ""
+    remedy = said(
+        "Name the column in the header, or state columns = {{ {example} }} (--x, --y, --z, --surface, "
+        "--section for a bare CSV; a column's number counted from 1 will do).",
+        example=example,
+    )
+    ground = said("Or give the ground ([ground], a grid): collars stand on it.")
     return InputError(
         what,
-        f"Name the column in the header, or state columns = {{ {example} }} (--x, --y, --z, --surface, "
-        f"--section for a bare CSV; a column's number counted from 1 will do).{ground}",
+        said("{first} {second}", first=remedy, second=ground) if on_ground else remedy,
         file=table.name,
         row=int(table.lines[0]) - 1 if table.named and len(table) and table.lines[0] > 1 else None,
         column=missing[0],

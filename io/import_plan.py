@@ -18,6 +18,7 @@ from geofit.io.rows import read_rows
 from geofit.io.sections import load_lines
 from geofit.io.source import Source
 from geofit.site import ImportIssue, TableCount
+from geofit.words import Verbatim, listed, said
 
 __all__ = ["Part", "Plan", "campaigns", "look_at", "settle"]
 
@@ -63,7 +64,7 @@ class Plan:
                     self.set_aside(
                         part.source.name,
                         part.preview.read,
-                        f"The file is not used: {error.reason}",
+                        said("The file is not used: {reason}", reason=error.reason),
                         error.remedy,
                         row=error.row or 0,
                         column=error.column or "",
@@ -85,10 +86,10 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
         return
     for preview in previews:
         part_source = replace(source, table=preview.table)
-        said = next((m for m in mappings if m.suits(name, preview.table, preview.kind or None)), None)
+        own = next((m for m in mappings if m.suits(name, preview.table, preview.kind or None)), None)
         mapping = replace(preview.mapping, file=name)
-        if said is not None:
-            mapping = replace(said, file=name, table=preview.table, columns={**mapping.columns, **said.columns})
+        if own is not None:
+            mapping = replace(own, file=name, table=preview.table, columns={**mapping.columns, **own.columns})
         part = Part(name, preview, mapping, part_source)
         if preview.kind == "skip":
             plan.set_aside(part_source.name, preview.read, "The mapping leaves this table out", "", "note")
@@ -111,18 +112,23 @@ def _not_recognised(preview: TablePreview) -> tuple[str, str]:
     nearest, best = "", 0.0
     missing: tuple[str, ...] = ()
     for kind in ("picks", "collar", "survey", "intervals", "section", "adit path", "adit contacts"):
-        absent = tuple(role for role, words in SCHEMAS[kind].required.items() if not names & set(words))
-        share = 1.0 - len(absent) / len(SCHEMAS[kind].required)
+        absent = tuple(role for role in SCHEMAS[kind].needed if not names & set(SCHEMAS[kind].required[role]))
+        share = 1.0 - len(absent) / len(SCHEMAS[kind].needed)
         # Of two kinds of which as much is there, one that asks for more is likelier.
         if share > best or (share == best > 0 and len(SCHEMAS[kind].required) > len(SCHEMAS[nearest].required)):
             nearest, missing, best = kind, absent, share
     if best >= 0.5:
-        lacking = " and ".join(f"'{role}'" for role in missing)
-        return f"The file is not used: nearest to a {nearest} table, but without {lacking}", _REMEDY
-    return f"The file is not used: its columns ({', '.join(preview.header[:12])}) are of no known kind", _REMEDY
+        return said(
+            "The file is not used: nearest to a {kind} table, but without {names}",
+            kind=nearest,
+            names=listed(said("'{name}'", name=Verbatim(role)) for role in missing),
+        ), _REMEDY
+    return said(
+        "The file is not used: its columns ({names}) are of no known kind", names=", ".join(preview.header[:12])
+    ), _REMEDY
 
 
-_REMEDY = "Name its kind and columns in a mapping file (--mapping)."
+_REMEDY = said("Name its kind and columns in a mapping file (--mapping).")
 
 
 def settle(plan: Plan) -> None:
@@ -132,10 +138,11 @@ def settle(plan: Plan) -> None:
         for part in plan.of(kind)[1:]:
             plan.parts[kind].remove(part)
             first = plan.of(kind)[0].source.name
-            remedy = "Import one of them."
+            remedy = said("Import one of them.")
             if kind == "ground":
-                remedy = 'State kind = "grid" in a mapping file (--mapping) where it is a horizon.'
-            plan.set_aside(part.source.name, _rows_of(part), f"The {kind} is taken from {first} already", remedy)
+                remedy = said('State kind = "grid" in a mapping file (--mapping) where it is a horizon.')
+            reason = said("The {kind} is taken from {file} already", kind=kind, file=first)
+            plan.set_aside(part.source.name, _rows_of(part), reason, remedy)
     lacking = [
         ("survey", "collar"),
         ("intervals", "collar"),
@@ -147,8 +154,8 @@ def settle(plan: Plan) -> None:
                 plan.set_aside(
                     part.source.name,
                     part.preview.read,
-                    f"The {kind} table has no {needed} table",
-                    f"Add the {needed} table.",
+                    said("The {kind} table has no {needed} table", kind=kind, needed=needed),
+                    said("Add the {needed} table.", needed=needed),
                 )
     _place_sections(plan)
 
@@ -184,16 +191,20 @@ def _place_sections(plan: Plan) -> None:
             stem = part.source.path.stem
             part.section = known.get(stem.casefold(), "")
             if part.section in placed:
-                reason = f"Section '{part.section}' is taken from {placed[part.section]} already"
-                remedy = "Import one of them."
+                reason = said(
+                    "Section '{name}' is taken from {file} already", name=part.section, file=placed[part.section]
+                )
+                remedy = said("Import one of them.")
             elif not part.section:
-                reason = "The section has no line in plan"
-                remedy = (
-                    f"Add a table section, x, y with the corners of section '{stem}', "
-                    "or write [[section]] with its line into the site file."
+                reason = said("The section has no line in plan")
+                remedy = said(
+                    "Add a table section, x, y with the corners of section '{name}', or write [[section]] with its "
+                    "line into the site file.",
+                    name=stem,
                 )
                 if kind == "drawing":
-                    remedy += ' A map: state kind = "traces", "adit path" or "adit contacts" in a mapping file.'
+                    a_map = said('A map: state kind = "traces", "adit path" or "adit contacts" in a mapping file.')
+                    remedy = said("{first} {second}", first=remedy, second=a_map)
             else:
                 placed[part.section] = part.source.name
                 continue
@@ -220,7 +231,7 @@ def campaigns(plan: Plan) -> list[tuple[Part, Part | None, list[Part]]]:
                 plan.set_aside(
                     part.source.name,
                     part.preview.read,
-                    f"The survey is taken from {surveys[k].source.name} already",
+                    said("The {kind} is taken from {file} already", kind=kind, file=surveys[k].source.name),
                     "Join the survey tables.",
                 )
     return [(collar, surveys.get(k), intervals.get(k, [])) for k, collar in enumerate(collars)]

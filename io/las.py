@@ -48,7 +48,9 @@ def read_log(source: Source, journal: Journal) -> Table:
         units = ["", *(found[role][1] for role in ("x", "y", "z", "depth"))]
         return table_of(source, journal, list(_WELL), [(1, cells)], units=units)
     if source.table != "CURVES":
-        raise InputError(f"A LAS file has no table '{source.table}'", "Name WELL or CURVES.", file=source.name)
+        raise InputError(
+            said("A LAS file has no table '{table}'", table=source.table), "Name WELL or CURVES.", file=source.name
+        )
     depth = np.asarray(log.index, dtype=np.float64)
     step = float(depth[-1] - depth[-2]) if len(depth) > 1 else 0.0
     ends = np.append(depth[1:], depth[-1] + step)
@@ -76,7 +78,7 @@ def _cell(value: Any) -> str:
 
 def _open(source: Source, journal: Journal) -> tuple[Any, int]:
     """Return the log and the line of its first sample."""
-    lasio = need("lasio", "las", f"Reading the log {source.name}")
+    lasio = need("lasio", "las", said("Reading the log {file}", file=source.name))
     text, _ = decode(journal.read(source), source.name, source.encoding)
     failures = (
         lasio.exceptions.LASHeaderError,
@@ -96,7 +98,9 @@ def _open(source: Source, journal: Journal) -> tuple[Any, int]:
             size = len(np.asarray(log.index, dtype=np.float64))
     except failures as error:
         raise InputError(
-            f"The log cannot be read: {error or type(error).__name__}", "Export it as LAS 2.0.", file=source.name
+            said("The log cannot be read: {error}", error=str(error) or type(error).__name__),
+            "Export it as LAS 2.0.",
+            file=source.name,
         ) from None
     if not size:
         raise InputError("The log has no sample", "Export it with its ~ASCII section.", file=source.name)

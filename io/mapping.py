@@ -5,7 +5,6 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from difflib import get_close_matches
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
@@ -13,8 +12,11 @@ from typing import Any
 from geofit.errors import InputError
 from geofit.files import replacing
 from geofit.io.columns import SCHEMAS
+from geofit.io.hints import nearest
+from geofit.io.parser_words import told_by
 from geofit.io.source import Source
 from geofit.io.toml_text import toml_key, toml_value
+from geofit.words import Verbatim, said
 
 __all__ = ["KINDS", "ColumnMapping", "load_mappings", "save_mappings"]
 
@@ -37,6 +39,8 @@ class ColumnMapping:
         Column of each role: its header, or its number from 1.
     table : str
         Sheet, group or layer.
+    horizons : sequence of str or int
+        Columns of which each holds one horizon, for the kind "horizon columns".
     encoding, sep, decimal, unit, measure, crs : str, optional
         As in :class:`geofit.io.Source`; what is ``None`` is guessed at reading.
     """
@@ -45,6 +49,7 @@ class ColumnMapping:
     kind: str
     columns: Mapping[str, str | int] = field(default_factory=dict)
     table: str = ""
+    horizons: tuple[str | int, ...] = ()
     encoding: str | None = None
     sep: str | None = None
     decimal: str | None = None
@@ -53,11 +58,11 @@ class ColumnMapping:
     crs: str | None = None
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "horizons", tuple(self.horizons))
         if self.kind not in KINDS:
-            near = get_close_matches(self.kind, KINDS, 1)
             raise InputError(
-                f"A mapping has no kind '{self.kind}'",
-                (f"Did you mean '{near[0]}'? " if near else "") + f"The kinds are {', '.join(KINDS)}.",
+                said("A mapping has no kind '{kind}'", kind=Verbatim(self.kind)),
+                nearest(self.kind, KINDS, said("The kinds are {names}.", names=", ".join(KINDS))),
                 file=self.file,
             )
 
@@ -78,7 +83,13 @@ class ColumnMapping:
             for name in ("encoding", "sep", "decimal", "unit", "measure", "crs")
             if getattr(source, name) is None
         }
-        return replace(source, table=source.table or self.table, columns={**self.columns, **source.columns}, **own)
+        return replace(
+            source,
+            table=source.table or self.table,
+            columns={**self.columns, **source.columns},
+            horizons=source.horizons or self.horizons,
+            **own,
+        )
 
     def source(self, path: str | Path) -> Source:
         """Return a file as this mapping reads it."""
@@ -95,6 +106,8 @@ def save_mappings(
         for name in ("table", "encoding", "sep", "decimal", "unit", "measure", "crs"):
             if value := getattr(mapping, name):
                 lines.append(f"{name} = {toml_value(value)}")
+        if mapping.horizons:
+            lines.append(f"horizons = {toml_value(mapping.horizons)}")
         if mapping.columns:
             lines.append("[table.columns]")
         for role, column in mapping.columns.items():
@@ -121,19 +134,29 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
     try:
         top = tomllib.loads(source.read().decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        raise InputError(f"The mapping is not UTF-8: {error}", "Save it as UTF-8.", file=source.name) from None
+        what, _ = told_by(error)
+        raise InputError(
+            said("The mapping is not UTF-8: {error}", error=what), "Save it as UTF-8.", file=source.name
+        ) from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"The mapping is no TOML: {error}", "See docs/formats_in.md.", file=source.name) from None
+        what, line = told_by(error)
+        raise InputError(
+            said("The mapping is no TOML: {error}", error=what), "See docs/formats_in.md.", file=source.name, row=line
+        ) from None
     version, tables = top.pop("version", VERSION), top.pop("table", [])
     if not isinstance(version, int) or version > VERSION:
         raise InputError(
-            f"The mapping is of version {version}; this geofit reads up to {VERSION}",
+            said(
+                "The mapping is of version {version}; this geofit reads up to {known}", version=version, known=VERSION
+            ),
             "Use a newer geofit.",
             file=source.name,
         )
     if top or not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise InputError(
-            "A mapping holds version and [[table]] only" + (f", not '{next(iter(top))}'" if top else ""),
+            said("A mapping holds version and [[table]] only, not '{key}'", key=Verbatim(next(iter(top))))
+            if top
+            else said("A mapping holds version and [[table]] only"),
             "See docs/formats_in.md.",
             file=source.name,
         )
@@ -144,21 +167,28 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
     known = [f.name for f in fields(ColumnMapping)]
     for key, value in table.items():
         if key not in known:
-            near = get_close_matches(key, known, 1)
             raise InputError(
-                f"[[table]] of a mapping has no key '{key}'",
-                (f"Did you mean '{near[0]}'? " if near else "") + f"The keys are {', '.join(known)}.",
+                said("[[table]] of a mapping has no key '{key}'", key=Verbatim(key)),
+                nearest(key, known, said("The keys are {names}.", names=", ".join(known))),
                 file=file,
                 column=key,
             )
-        sound = (
-            isinstance(value, dict) and all(type(column) in (str, int) for column in value.values())
-            if key == "columns"
-            else isinstance(value, str)
-        )
+        kind = {"columns": said("a table of headers or numbers"), "horizons": said("a list of headers or numbers")}
+        match key:
+            case "columns":
+                sound = isinstance(value, dict) and all(type(column) in (str, int) for column in value.values())
+            case "horizons":
+                sound = isinstance(value, list) and all(type(column) in (str, int) for column in value)
+            case _:
+                sound = isinstance(value, str)
         if not sound:
             raise InputError(
-                f"{key} in a mapping must be " + ("a table of headers or numbers" if key == "columns" else "a text"),
+                said(
+                    "{key} in {where} must be {kind}",
+                    key=Verbatim(key),
+                    where=said("a mapping"),
+                    kind=kind.get(key, said("a text")),
+                ),
                 "Correct its value.",
                 file=file,
                 column=key,
@@ -166,5 +196,9 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
             )
     for key in ("file", "kind"):
         if key not in table:
-            raise InputError(f"A [[table]] of the mapping has no '{key}'", f'Write {key} = "...".', file=file)
+            raise InputError(
+                said("A [[table]] of the mapping has no '{key}'", key=Verbatim(key)),
+                said('Write {key} = "...".', key=Verbatim(key)),
+                file=file,
+            )
     return ColumnMapping(**table)

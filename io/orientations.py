@@ -12,6 +12,7 @@ from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
 from geofit.site import Orientations
+from geofit.words import said
 
 __all__ = ["load_orientations"]
 
@@ -53,8 +54,10 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
         return _from_normals(rows)
     if "dip" not in rows.columns or not {"azimuth", "strike"} & set(rows.columns):
         raise InputError(
-            "No columns for an attitude were found in this orientations table; its columns are "
-            + ", ".join(rows.table.header),
+            said(
+                "No columns for an attitude were found in this orientations table; its columns are {names}",
+                names=", ".join(rows.table.header),
+            ),
             "Name dip with azimuth or strike, or the normal nx, ny, nz.",
             file=rows.file,
         )

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.errors import InputError
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import PICKS, Schema
 from geofit.io.horizons import HorizonNames
@@ -122,18 +121,7 @@ def load_picks(
     check_axes(rows, x, y, region)
     kinds = [cell.casefold() or kind for cell in rows.text("kind", required=False)]
     rows.close()
-    if not rows.ok.any():
-        first = next(
-            (issue for issue in journal.issues if issue.file == source.name and issue.severity == "error"),
-            None,
-        )
-        raise InputError(
-            f"None of {rows.table.read} rows can be used" + (f"; row {first.row}: {first.reason}" if first else ""),
-            first.remedy if first else "",
-            file=source.name,
-            column=first.column if first else None,
-            value=first.value if first else None,
-        )
+    rows.require_any()
     return horizons.split(
         rows,
         names,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from geofit.errors import GeofitError
-from geofit.io.columns import SCHEMAS, SECTIONS, Schema
+from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS, SECTIONS, Schema
 from geofit.io.formats import TABLE_FORMATS, USUAL_TABLES, read_any_table, table_names
 from geofit.io.guess import USABLE, RoleGuess, guess_roles, sample_of
 from geofit.io.journal import Journal
@@ -174,7 +174,7 @@ def preview_table(source: Source, kind: str | None = None) -> TablePreview:
             for role, guess in guesses.items()
             if guess.confidence >= USABLE or guess.stated or role in SCHEMAS[kind].required
         ),
-        missing=tuple(role for role in (SCHEMAS[kind].required if kind else ()) if role not in guesses),
+        missing=tuple(role for role in (SCHEMAS[kind].needed if kind else ()) if role not in guesses),
         header=table.header,
         units=table.units,
         rows=tuple(tuple(column[i] for column in table.columns) for i in sample),
@@ -200,6 +200,8 @@ def _rank(table: Table, source: Source) -> dict[str, float]:
     """Return the kinds whose required columns are there, the likeliest first."""
     ranked: dict[str, float] = {}
     for name, schema in SCHEMAS.items():
+        if schema is HORIZON_COLUMNS:
+            continue  # any table with a place and a number could be one
         try:
             guesses = guess_roles(table, schema, source)
         except GeofitError:
@@ -217,7 +219,7 @@ def _rank(table: Table, source: Source) -> dict[str, float]:
 def _needed(schema: Schema, source: Source) -> list[str]:
     """Return the roles that must be found: not degrees where a target is named, nor a collar's height on the ground."""
     spared = {"x", "y"} if source.target else set[str]()
-    return [role for role in schema.required if role not in spared | ({"z"} if schema.name == "collar" else set())]
+    return [role for role in schema.needed if role not in spared | ({"z"} if schema.name == "collar" else set())]
 
 
 def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> float:
@@ -232,6 +234,9 @@ def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> fl
     match schema.name:
         case "collar":
             merit *= _once(table, guesses, "hole") * (1.0 if "z" in guesses else 0.8)
+        case "intervals" if "from" not in guesses:
+            # Layer upon layer repeats the hole; a table of one row a hole tells how deep the holes are.
+            merit *= 0.85 if _once(table, guesses, "hole") < 0.95 else 0.4
         case "picks":
             merit *= 0.9 if "horizon" in guesses else 0.75
         case "orientations":

@@ -31,8 +31,10 @@ from geofit import __version__
 from geofit.accuracy import plain
 from geofit.errors import InputError, SettingsError
 from geofit.files import file_stems, replacing
+from geofit.io.parser_words import told_by
 from geofit.settings import FitSettings
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = [
     "VERSION",
@@ -164,7 +166,7 @@ def save_project(
             part.write_text(text + "\n", encoding="utf-8", newline="\n")
     except OSError as error:
         raise InputError(
-            f"The project cannot be written: {error.strerror or error}",
+            said("The project cannot be written: {error}", error=error.strerror or str(error)),
             "Make the folder, or name another.",
             file=str(target),
         ) from None
@@ -188,23 +190,38 @@ def open_project(path: str | PathLike[str]) -> Project:
         data = json.loads(source.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(
-            f"The project cannot be read: {error.strerror or error}", "Check the path.", file=str(source)
+            said("The project cannot be read: {error}", error=error.strerror or str(error)),
+            "Check the path.",
+            file=str(source),
         ) from None
     except (ValueError, RecursionError) as error:
+        what, line = told_by(error)
         raise InputError(
-            f"This is no project file: {error}", "Open a *.geofit file, or mend its JSON.", file=str(source)
+            said("This is no project file: {error}", error=what),
+            "Open a *.geofit file, or mend its JSON.",
+            file=str(source),
+            row=line,
         ) from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
-        raise InputError(f"The file does not say '{FORMAT}'", "Open a *.geofit file.", file=str(source))
+        raise InputError(
+            said("The file does not say '{format}'", format=FORMAT), "Open a *.geofit file.", file=str(source)
+        )
     version = data.get("version")
     if not isinstance(version, int) or isinstance(version, bool) or version < 0:
         raise InputError(
-            "The project has no version", f"It should stand as a number up to {VERSION}.", file=str(source)
+            "The project has no version",
+            said("It should stand as a number up to {known}.", known=VERSION),
+            file=str(source),
         )
     if version > VERSION:
         raise InputError(
-            f"The project was saved by a newer geofit: its version is {version}, this geofit "
-            f"({__version__}) reads up to {VERSION}",
+            said(
+                "The project was saved by a newer geofit: its version is {version}, this geofit ({program}) "
+                "reads up to {known}",
+                version=version,
+                program=__version__,
+                known=VERSION,
+            ),
             "Update geofit: pip install -U geofit",
             file=str(source),
         )
@@ -214,7 +231,9 @@ def open_project(path: str | PathLike[str]) -> Project:
         return _project(data)
     except (KeyError, TypeError, ValueError, AttributeError, SettingsError) as error:
         raise InputError(
-            f"The project does not hold what version {version} should: {error!r}",
+            said(
+                "The project does not hold what version {version} should: {error}", version=version, error=repr(error)
+            ),
             "Undo the last change by hand, or open a copy.",
             file=str(source),
         ) from None
@@ -292,7 +311,9 @@ def _write_surface(name: str, surface: HorizonSurface, target: Path) -> ProjectR
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            f"The folder cannot be made: {error.strerror or error}", "Save elsewhere.", file=str(folder)
+            said("The folder cannot be made: {error}", error=error.strerror or str(error)),
+            "Save elsewhere.",
+            file=str(folder),
         ) from None
     stem = file_stems([name])[name]
     draft = folder / f".{stem}.draft.step"

@@ -28,7 +28,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
     MissingDependencyError
         If rasterio is not installed.
     """
-    rasterio = need("rasterio", "gis", f"Reading the raster {source.name}")
+    rasterio = need("rasterio", "gis", said("Reading the raster {file}", file=source.name))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a raster without georeference is refused below
@@ -37,7 +37,9 @@ def read_raster(source: Source, journal: Journal) -> Ground:
                 place, crs, bands = raster.transform, raster.crs, raster.count
     except (rasterio.errors.RasterioError, OSError, ValueError, MemoryError) as error:
         raise InputError(
-            f"The raster cannot be read: {error}", "Open it in a GIS and save it as GeoTIFF.", file=source.name
+            said("The raster cannot be read: {error}", error=str(error)),
+            "Open it in a GIS and save it as GeoTIFF.",
+            file=source.name,
         ) from None
     if place.is_identity or place.b or place.d or place.a <= 0 or place.e >= 0:
         raise InputError(
@@ -78,19 +80,19 @@ def _check_crs(source: Source, crs: object, journal: Journal) -> None:
     journal.add("note", source.name, said("The coordinate system of the raster is {crs}", crs=str(crs)[:120]))
     if getattr(crs, "is_geographic", False):
         raise InputError(
-            f"The raster is in longitude and latitude ({str(crs)[:60]}); metres are needed",
+            said("The raster is in longitude and latitude ({crs}); metres are needed", crs=str(crs)[:60]),
             "Warp it to the site's grid (gdalwarp -t_srs EPSG:...).",
             file=source.name,
         )
     if source.target and is_code(source.target):
-        pyproj = need("pyproj", "gis", f"Reading the raster {source.name}")
+        pyproj = need("pyproj", "gis", said("Reading the raster {file}", file=source.name))
         try:
             same = pyproj.CRS.from_user_input(source.target).to_2d() == pyproj.CRS.from_user_input(str(crs)).to_2d()
         except pyproj.exceptions.CRSError:
             return
         if not same:
             raise InputError(
-                f"The raster is in {str(crs)[:60]}, the site in {source.target}",
-                f"Warp it (gdalwarp -t_srs {source.target}).",
+                said("The raster is in {crs}, the site in {target}", crs=str(crs)[:60], target=source.target),
+                said("Warp it (gdalwarp -t_srs {target}).", target=source.target),
                 file=source.name,
             )

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.errors import InputError
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
 from geofit.io.crs import is_code, project
 from geofit.io.formats import read_any_table
@@ -19,7 +20,7 @@ from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
 from geofit.io.units import length_factors
-from geofit.words import said
+from geofit.words import Verbatim, said
 
 __all__ = ["NO_DATA", "Rows", "read_rows"]
 
@@ -124,20 +125,44 @@ class Rows:
             if name not in hints:
                 near = get_close_matches(name, present, 1) if len(hints) < 20 else []
                 hints[name] = (
-                    said("Did you mean '{name}'?", name=near[0])
+                    said("Did you mean '{name}'?", name=Verbatim(near[0]))
                     if near
                     else said("Add it to the {where}.", where=where)
                 )
             self.reject(
                 i,
                 role,
-                said("The {role} '{name}' is not in the {where}", role=role, name=name, where=where),
+                said("The {role} '{name}' is not in the {where}", role=role, name=Verbatim(name), where=where),
                 hints[name],
             )
 
     def close(self) -> None:
         """Count the rows: those of the file that are not used are listed."""
         self.journal.count(self.file, self.table.read, self.table.read - int(self.ok.sum()))
+
+    def require_any(self) -> None:
+        """Refuse the table if none of its rows can be used, with the first row's reason.
+
+        Raises
+        ------
+        InputError
+            If no row is left.
+        """
+        if self.ok.any():
+            return
+        first = next(
+            (issue for issue in self.journal.issues if issue.file == self.file and issue.severity == "error"),
+            None,
+        )
+        raise InputError(
+            said("None of the rows can be used; row {row}: {reason}", row=first.row, reason=first.reason)
+            if first
+            else said("None of the rows can be used"),
+            first.remedy if first else "",
+            file=self.file,
+            column=first.column if first else None,
+            value=first.value if first else None,
+        )
 
     def _list(self, severity: Severity, i: int, role: str, reason: str, remedy: str) -> None:
         j = self.columns.get(role)

@@ -66,7 +66,7 @@ def read_drawing(
                 "error" if horizon is not None else "note",
                 source.name,
                 said(
-                    "{reason}; {entity} with {count} points is not used",
+                    "{reason}; {entity} is not used (points: {count})",
                     reason=reason,
                     entity=entity.type,
                     count=entity.size,

@@ -103,7 +103,9 @@ def load_sections(
     rows.close()
     if not rows.ok.any():
         raise InputError(
-            f"None of {rows.table.read} rows of the sections can be used", "See the listed rows.", file=source.name
+            "None of the rows of the sections can be used",
+            "See the listed rows.",
+            file=source.name,
         )
     return sections, horizons.split(rows, horizon, xyz, kind="section", section=name)
 

@@ -16,6 +16,7 @@ from geofit.io.sections import Drawing, load_level, load_lines, load_section, lo
 from geofit.io.site_keys import Reader
 from geofit.points import PointSet
 from geofit.site import Section
+from geofit.words import said
 
 __all__ = ["gather", "read_sections"]
 
@@ -37,17 +38,24 @@ def read_sections(
     sections: list[Section] = []
     for table in reader.tables(top, "section"):
         name = reader.need(table, "name", str, "[[section]]", 'Write name = "...".')
-        where = f"section '{name}'"
+        where = said("section '{name}'", name=name)
         if any(section.name == name for section in sections):
-            raise reader.fail(f"Two sections have the name '{name}'", "Give each its own.", "name")
+            raise reader.fail(said("Two sections have the name '{name}'", name=name), "Give each its own.", "name")
         source = reader.source(table, where, ("name", "line", "scale", "origin"), "section")
         remedy = "Write line = [[x, y], [x, y]], the corners of the section line in plan."
         if "line" not in table and name in lines:
             line = lines[name]
         else:
-            line = _pairs(reader, reader.need(table, "line", list, where, remedy), f"line of {where}", remedy)
+            line = _pairs(
+                reader, reader.need(table, "line", list, where, remedy), said("line of {where}", where=where), remedy
+            )
         if len(line) < 2 or not (np.diff(line, axis=0) != 0).any(axis=1).all():
-            raise reader.fail(f"The line of {where} needs two or more different corners", remedy, "line", line.tolist())
+            raise reader.fail(
+                said("The line of {where} needs two or more different corners", where=where),
+                remedy,
+                "line",
+                line.tolist(),
+            )
         _check_line(reader, line, where, region)
         sections.append(Section(name, line))
         gather(gathered, load_section(source, sections[-1], _drawing(reader, table, where), names, journal))
@@ -56,14 +64,16 @@ def read_sections(
         found, points = load_sections(source, lines, names, journal, region)
         for one in found:
             if any(section.name == one.name for section in sections):
-                raise InputError(f"Two sections have the name '{one.name}'", "Give each its own.", file=source.name)
+                raise InputError(
+                    said("Two sections have the name '{name}'", name=one.name), "Give each its own.", file=source.name
+                )
         sections += found
         gather(gathered, points)
     for table in reader.tables(top, "level"):
         elevation = reader.get(table, "elevation", float, "[[level]]")
         if elevation is None:
             raise reader.fail("A [[level]] has no elevation", "Write elevation = 1200.0.", "elevation")
-        where = f"level {elevation:g}"
+        where = said("level {elevation:g}", elevation=elevation)
         source = reader.source(table, where, ("elevation", "scale", "origin"), "traces")
         drawing = _drawing(reader, table, where)
         gather(gathered, load_level(source, elevation, drawing, names, journal, region))
@@ -73,9 +83,11 @@ def read_sections(
 def _drawing(reader: Reader, table: Mapping[str, Any], where: str) -> Drawing:
     scale = reader.get(table, "scale", float, where)
     if scale is not None and scale <= 0:
-        raise reader.fail(f"scale in {where} must be above 0", "Give drawing units a metre.", "scale", scale)
+        raise reader.fail(
+            said("scale in {where} must be above 0", where=where), "Give drawing units a metre.", "scale", scale
+        )
     remedy = "Write origin = [u, v], the drawing's coordinates of distance 0 and elevation 0."
-    origin = _pairs(reader, [table.get("origin", [0.0, 0.0])], f"origin of {where}", remedy)[0]
+    origin = _pairs(reader, [table.get("origin", [0.0, 0.0])], said("origin of {where}", where=where), remedy)[0]
     return Drawing(scale=1.0 if scale is None else scale, origin=(float(origin[0]), float(origin[1])))
 
 
@@ -85,15 +97,18 @@ def _pairs(reader: Reader, value: Any, where: str, remedy: str) -> Floats:
     except (ValueError, TypeError):
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
-        raise reader.fail(f"The {where} is no list of finite pairs", remedy, value=value)
+        raise reader.fail(said("The {where} is no list of finite pairs", where=where), remedy, value=value)
     return pairs
 
 
 def _check_line(reader: Reader, line: Floats, where: str, region: Region | None) -> None:
     if region is not None and place_in(line, region) == "exchanged":
         raise reader.fail(
-            f"x and y look exchanged in the line of {where}: it lies far outside the study area, and inside "
-            "it with x and y swapped",
+            said(
+                "x and y look exchanged in the line of {where}: it lies far outside the study area, and inside "
+                "it with x and y swapped",
+                where=where,
+            ),
             "x is the easting, y the northing.",
             "line",
             line.tolist(),

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from difflib import get_close_matches
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +20,13 @@ from geofit.io.contacts import Limit, load_contacts
 from geofit.io.crs import is_code
 from geofit.io.desurvey import METHODS
 from geofit.io.grid import load_grid, load_ground
+from geofit.io.hints import nearest
+from geofit.io.horizon_columns import load_horizon_columns
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.mapping import load_mappings
 from geofit.io.orientations import load_orientations
+from geofit.io.parser_words import told_by
 from geofit.io.picks import load_picks
 from geofit.io.places import list_places
 from geofit.io.site_drawings import gather, read_sections
@@ -35,6 +37,7 @@ from geofit.points import KINDS, PointSet
 from geofit.progress import Progress, tell
 from geofit.settings import FitSettings
 from geofit.site import Ground, Hole, Orientations, Site
+from geofit.words import Verbatim, said
 
 __all__ = ["load_site", "read_site"]
 
@@ -117,6 +120,11 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
         picks = reader.source(table, "[picks]", ("kind", "horizon"), "picks")
         alone = reader.get(table, "horizon", str, "[picks]")
         gather(gathered, load_picks(picks, names, journal, kind=kind, region=region, alone=alone))
+    for table in reader.tables(top, "horizon_columns"):
+        source = reader.source(table, "[horizon_columns]", ("horizons",), "horizon columns")
+        if stated := reader.get(table, "horizons", list, "[horizon_columns]"):
+            source = replace(source, horizons=stated)
+        gather(gathered, load_horizon_columns(source, names, journal, region))
     for table in reader.tables(top, "grids"):
         source = reader.source(table, "[grids]", ("horizon",), "grid")
         horizon_of = reader.get(table, "horizon", str, "[grids]") or source.path.stem
@@ -157,25 +165,33 @@ def _parse(data: bytes, name: str) -> dict[str, Any]:
     try:
         return tomllib.loads(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        raise InputError(f"The site file is not UTF-8: {error}", "Save it as UTF-8.", file=name) from None
+        what, _ = told_by(error)
+        raise InputError(
+            said("The site file is not UTF-8: {error}", error=what), "Save it as UTF-8.", file=name
+        ) from None
     except tomllib.TOMLDecodeError as error:
-        raise InputError(f"The site file is no TOML: {error}", "See docs/site_file.md.", file=name) from None
+        what, line = told_by(error)
+        raise InputError(
+            said("The site file is no TOML: {error}", error=what), "See docs/site_file.md.", file=name, row=line
+        ) from None
 
 
 def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
     name = reader.need(table, "name", str, "[[horizon]]", 'Write name = "...".').strip()
-    where = f"horizon '{name}'"
+    where = said("horizon '{name}'", name=name)
     if not name:
         raise reader.fail("A [[horizon]] has an empty name", 'Write name = "...".', "name")
     reader.keys(table, HORIZON, where)
     top, base = (reader.get(table, key, str, where) for key in ("top", "base"))
     if top is not None and base is not None:
-        raise reader.fail(f"{where} has both top and base", "Keep the one that is this horizon.", "base")
+        raise reader.fail(
+            said("{where} has both top and base", where=where), "Keep the one that is this horizon.", "base"
+        )
     accuracy = reader.get(table, "accuracy", dict, where) or {}
     for kind in accuracy:
-        if not reader.get(accuracy, kind, float, f"accuracy of {where}") > 0:
+        if not reader.get(accuracy, kind, float, said("accuracy of {where}", where=where)) > 0:
             raise reader.fail(
-                f"accuracy of {where} must be above 0",
+                said("accuracy of {where} must be above 0", where=where),
                 "Give one standard deviation in metres.",
                 kind,
                 accuracy[kind],
@@ -183,7 +199,9 @@ def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
     try:
         settings = FitSettings(**{key: table[key] for key in SETTINGS if key in table})
     except (SettingsError, TypeError) as error:
-        raise reader.fail(f"{where}: {error}", "Correct it in the site file.") from None
+        raise reader.fail(
+            said("{where}: {error}", where=where, error=str(error)), "Correct it in the site file."
+        ) from None
     return _Horizon(name, top, base, {kind: float(value) for kind, value in accuracy.items()}, settings)
 
 
@@ -208,8 +226,14 @@ def _compare(reader: Reader, boundary: Floats, ground: Region) -> None:
         x, y = boundary.mean(axis=0)
         swapped = place == "exchanged"
         raise reader.fail(
-            f"The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid"
-            + (", and on it with x and y exchanged" if swapped else ""),
+            said(
+                "The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid, and on it with x "
+                "and y exchanged",
+                x=x,
+                y=y,
+            )
+            if swapped
+            else said("The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid", x=x, y=y),
             "Exchange x and y of the boundary." if swapped else "Give both in the same coordinates.",
             "boundary",
         )
@@ -221,19 +245,26 @@ def _boreholes(
     where = "[boreholes]"
     reader.keys(table, ("collar", "survey", "intervals", "dip", "declination", "desurvey"), where)
     if "collar" not in table:
-        raise reader.fail(f"{where} has no 'collar'", 'Write collar = "collar.csv".', "collar")
+        raise reader.fail(said("{where} has no 'collar'", where=where), 'Write collar = "collar.csv".', "collar")
     dip = reader.get(table, "dip", str, where)
     if dip not in (None, "down-positive", "down-negative"):
         raise reader.fail("The sign of the dips is unknown", 'Write "down-positive" or "down-negative".', "dip", dip)
     method = reader.get(table, "desurvey", str, where) or METHODS[0]
     if method not in METHODS:
-        raise reader.fail("The way to desurvey is unknown", f"Write {' or '.join(METHODS)}.", "desurvey", method)
+        raise reader.fail(
+            "The way to desurvey is unknown", said("Write {names}.", names=" or ".join(METHODS)), "desurvey", method
+        )
     intervals = table.get("intervals", [])
     intervals = intervals if isinstance(intervals, list) else [intervals]
     return load_boreholes(
-        reader.source(table["collar"], f"collar in {where}", kind="collar"),
-        reader.source(table["survey"], f"survey in {where}", kind="survey") if "survey" in table else None,
-        [reader.source(entry, f"intervals in {where}", kind="intervals") for entry in intervals],
+        reader.source(table["collar"], said("{key} in {where}", key=Verbatim("collar"), where=where), kind="collar"),
+        reader.source(table["survey"], said("{key} in {where}", key=Verbatim("survey"), where=where), kind="survey")
+        if "survey" in table
+        else None,
+        [
+            reader.source(entry, said("{key} in {where}", key=Verbatim("intervals"), where=where), kind="intervals")
+            for entry in intervals
+        ],
         dip,
         journal,
         region,
@@ -257,7 +288,11 @@ def _gather_contacts(
         logged = [campaign for campaign in boreholes if campaign.logs]
         if not logged:
             raise reader.fail(
-                f"horizon '{horizon.name}' is a limit of '{code}', but the site has no intervals",
+                said(
+                    "horizon '{name}' is a limit of '{code}', but the site has no intervals",
+                    name=horizon.name,
+                    code=code,
+                ),
                 'Add intervals = ["lithology.csv"] to [boreholes], or remove top and base.',
                 "top" if horizon.top is not None else "base",
             )
@@ -281,9 +316,15 @@ def _adits(
     reader.keys(table, ("path", "contacts"), "[adits]")
     if "path" not in table:
         raise reader.fail("[adits] has no 'path'", 'Write path = "adits.csv".', "path")
-    adits = load_adits(reader.source(table["path"], "path in [adits]", kind="adit path"), journal, region)
+    adits = load_adits(
+        reader.source(table["path"], said("{key} in {where}", key=Verbatim("path"), where="[adits]"), kind="adit path"),
+        journal,
+        region,
+    )
     if "contacts" in table:
-        contacts = reader.source(table["contacts"], "contacts in [adits]", kind="adit contacts")
+        contacts = reader.source(
+            table["contacts"], said("{key} in {where}", key=Verbatim("contacts"), where="[adits]"), kind="adit contacts"
+        )
         gather(gathered, load_adit_contacts(contacts, adits, names, journal))
     return adits
 
@@ -298,9 +339,13 @@ def _relations(
     faults = {fault: _named(reader, table, fault, "[faults]", horizons) for fault in table}
     for fault, cut in faults.items():
         if fault in cut:
-            raise reader.fail(f"The fault '{fault}' is said to cut itself", "Name the horizons that it cuts.", fault)
+            raise reader.fail(
+                said("The fault '{fault}' is said to cut itself", fault=fault), "Name the horizons that it cuts.", fault
+            )
         if fault in order:
-            raise reader.fail(f"The fault '{fault}' stands in the order of strata", "Take it out of it.", "order")
+            raise reader.fail(
+                said("The fault '{fault}' stands in the order of strata", fault=fault), "Take it out of it.", "order"
+            )
     return order, faults
 
 
@@ -309,15 +354,18 @@ def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horiz
     names = reader.get(table, key, list, where) or []
     for name in names:
         if name not in horizons:
-            near = get_close_matches(str(name), horizons, 1)
             raise reader.fail(
-                f"{key} in {where} names '{name}', which is no horizon",
-                (f"Did you mean '{near[0]}'? " if near else "") + f"The horizons are {', '.join(horizons)}.",
+                said("{key} in {where} names '{name}', which is no horizon", key=Verbatim(key), where=where, name=name),
+                nearest(str(name), horizons, said("The horizons are: {names}.", names=", ".join(horizons))),
                 key,
                 name,
             )
         if names.count(name) > 1:
-            raise reader.fail(f"{key} in {where} names '{name}' twice", "Name each horizon once.", key)
+            raise reader.fail(
+                said("{key} in {where} names '{name}' twice", key=Verbatim(key), where=where, name=name),
+                "Name each horizon once.",
+                key,
+            )
     return tuple(names)
 
 
@@ -331,7 +379,7 @@ def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> Point
     """Return the points with the site file's accuracy where their own file states none."""
     if not len(points):
         raise reader.fail(
-            f"Horizon '{horizon.name}' has no point in any file",
+            said("Horizon '{name}' has no point in any file", name=horizon.name),
             "Correct its name or code, or remove its [[horizon]] table.",
             "name",
         )
@@ -339,10 +387,13 @@ def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> Point
     kinds = sorted({*KINDS, *points.kind.tolist()})
     for kind, value in horizon.accuracy.items():
         if kind not in kinds:
-            near = get_close_matches(kind, kinds, 1)
             raise reader.fail(
-                f"accuracy of horizon '{horizon.name}' names the kind '{kind}', which no point has",
-                f"Did you mean '{near[0]}'?" if near else f"The kinds are {', '.join(kinds)}.",
+                said(
+                    "accuracy of horizon '{name}' names the kind '{kind}', which no point has",
+                    name=horizon.name,
+                    kind=Verbatim(kind),
+                ),
+                nearest(kind, kinds, said("The kinds are {names}.", names=", ".join(kinds))),
                 kind,
             )
         accuracy[(points.kind == kind) & np.isnan(accuracy)] = value

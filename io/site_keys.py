@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
-from difflib import get_close_matches
 from pathlib import Path
 from typing import Any
 
 from geofit.errors import InputError
+from geofit.io.hints import nearest
 from geofit.io.mapping import ColumnMapping
 from geofit.io.source import Source
 from geofit.settings import FitSettings
+from geofit.words import Verbatim, said
 
 __all__ = ["HORIZON", "SETTINGS", "TABLE", "TOP", "Reader"]
 
@@ -33,13 +34,14 @@ TOP = (
     "level",
     "traces",
     "picks",
+    "horizon_columns",
     "grids",
     "orientations",
     "horizon",
     "faults",
 )
 
-_KINDS = {str: "a text", dict: "a table", list: "a list", float: "a number"}
+_KINDS = {str: said("a text"), dict: said("a table"), list: said("a list"), float: said("a number")}
 
 
 class Reader:
@@ -62,10 +64,9 @@ class Reader:
         allowed = list(allowed)
         for key in table:
             if key not in allowed:
-                near = get_close_matches(key, allowed, 1, cutoff=0.5)
                 raise self.fail(
-                    f"{where} has no key '{key}'",
-                    (f"Did you mean '{near[0]}'? " if near else "") + f"The keys are {', '.join(allowed)}.",
+                    said("{where} has no key '{key}'", where=where, key=Verbatim(key)),
+                    nearest(key, allowed, said("The keys are {names}.", names=", ".join(allowed)), cutoff=0.5),
                     key,
                 )
 
@@ -76,14 +77,19 @@ class Reader:
             return None
         numeric = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
         if not (numeric if kind is float else isinstance(value, kind)):
-            raise self.fail(f"{key} in {where} must be {_KINDS[kind]}", "Correct its value.", key, value)
+            raise self.fail(
+                said("{key} in {where} must be {kind}", key=Verbatim(key), where=where, kind=_KINDS[kind]),
+                "Correct its value.",
+                key,
+                value,
+            )
         return float(value) if kind is float else value
 
     def need(self, table: Mapping[str, Any], key: str, kind: type, where: str, remedy: str) -> Any:
         """Return the value of a key that must be there."""
         value = self.get(table, key, kind, where)
         if value is None:
-            raise self.fail(f"{where} has no '{key}'", remedy, key)
+            raise self.fail(said("{where} has no '{key}'", where=where, key=Verbatim(key)), remedy, key)
         return value
 
     def tables(self, top: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
@@ -91,7 +97,11 @@ class Reader:
         value = top.get(key, [])
         value = [value] if isinstance(value, dict) else value
         if not isinstance(value, list) or not all(isinstance(table, dict) for table in value):
-            raise self.fail(f"'{key}' is no table", f"Write [{key}] or [[{key}]] above its keys.", key)
+            raise self.fail(
+                said("'{key}' is no table", key=Verbatim(key)),
+                said("Write [{key}] or [[{key}]] above its keys.", key=Verbatim(key)),
+                key,
+            )
         return value
 
     def source(self, value: Any, where: str, more: Iterable[str] = (), kind: str = "") -> Source:
@@ -102,14 +112,16 @@ class Reader:
         if isinstance(value, str):
             value = {"file": value}
         if not isinstance(value, dict):
-            raise self.fail(f"{where} must name a file", 'Write "name.csv" or { file = "name.csv" }.', value=value)
+            raise self.fail(
+                said("{where} must name a file", where=where), 'Write "name.csv" or { file = "name.csv" }.', value=value
+            )
         self.keys(value, (*TABLE, *more), where)
         file = self.need(value, "file", str, where, 'Write file = "name.csv".')
         columns = self.get(value, "columns", dict, where) or {}
         for role, column in columns.items():
             if not isinstance(column, (str, int)) or isinstance(column, bool):
                 raise self.fail(
-                    f"Column '{role}' in {where} must be a header or a number",
+                    said("Column '{role}' in {where} must be a header or a number", role=Verbatim(role), where=where),
                     "Correct its value.",
                     role,
                     column,

@@ -8,6 +8,8 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from geofit.errors import InputError
+from geofit.io.parser_words import told_by
+from geofit.words import said
 
 __all__ = ["decode", "find_decimal", "find_separator", "is_header", "is_number", "is_units_row", "split_line"]
 
@@ -52,11 +54,16 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
             return data.decode(encoding).removeprefix("\ufeff"), encoding
         except LookupError:
             raise InputError(
-                f"The encoding {encoding!r} is unknown", "Give utf-8, utf-16, gb18030 or cp1252.", file=name
+                said("The encoding {encoding!r} is unknown", encoding=encoding),
+                "Give utf-8, utf-16, gb18030 or cp1252.",
+                file=name,
             ) from None
         except UnicodeError as error:
+            what, _ = told_by(error)
             raise InputError(
-                f"The file is not written in {encoding}: {error}", "Leave the encoding out.", file=name
+                said("The file is not written in {encoding}: {error}", encoding=encoding, error=what),
+                "Leave the encoding out.",
+                file=name,
             ) from None
     if data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise InputError("This is a workbook, not a text table", "Save the sheet as CSV UTF-8.", file=name)

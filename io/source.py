@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from geofit.errors import InputError
+from geofit.words import said
 
 __all__ = ["Source", "as_source"]
 
@@ -30,7 +31,9 @@ class Source:
     unit : str, optional
         Unit of all lengths: "m", "ft", "ft-us" (survey foot), "km", "cm" or "mm".
     measure : {"depth", "elevation"}, optional
-        Whether from, to (of intervals) or z (of picks) count downwards or are elevations.
+        Whether from, to (of intervals), z (of picks) or the horizons count downwards or are elevations.
+    horizons : sequence of str or int
+        Columns of which each holds one horizon, where a table has one row a hole or place.
     crs, target : str, optional
         Coordinate system of x and y, and the one that is wanted: where both are codes that differ, the places
         are projected (extra ``gis``).
@@ -45,6 +48,7 @@ class Source:
     table: str = ""
     unit: str | None = None
     measure: str | None = None
+    horizons: Sequence[str | int] = ()
     crs: str | None = None
     target: str | None = None
 
@@ -57,14 +61,22 @@ class Source:
         object.__setattr__(self, "sep", words.get(self.sep, self.sep) if self.sep is not None else None)
         if self.sep is not None and len(self.sep) != 1:
             raise InputError(
-                f"The separator {self.sep!r} is not one character",
+                said("The separator {sep!r} is not one character", sep=self.sep),
                 "Give one character, 'tab' or 'space'.",
                 file=self.name,
             )
         if self.decimal not in (None, ".", ","):
-            raise InputError(f"The decimal mark {self.decimal!r} is unknown", "Give '.' or ','.", file=self.name)
+            raise InputError(
+                said("The decimal mark {decimal!r} is unknown", decimal=self.decimal),
+                "Give '.' or ','.",
+                file=self.name,
+            )
         if self.measure not in (None, "depth", "elevation"):
-            raise InputError(f"The measure {self.measure!r} is unknown", "Give 'depth' or 'elevation'.", file=self.name)
+            raise InputError(
+                said("The measure {measure!r} is unknown", measure=self.measure),
+                "Give 'depth' or 'elevation'.",
+                file=self.name,
+            )
         if self.decimal == "," and self.sep == ",":
             raise InputError(
                 "The comma cannot be both separator and decimal mark",
@@ -79,12 +91,15 @@ class Source:
         except FileNotFoundError:
             raise InputError(
                 "There is no such file",
-                f"It was looked for at {self.path}; names in a site file count from the site file's folder.",
+                said(
+                    "It was looked for at {path}; names in a site file count from the site file's folder.",
+                    path=self.path,
+                ),
                 file=self.name,
             ) from None
         except OSError as error:
             raise InputError(
-                f"The file cannot be opened: {error.strerror or error}",
+                said("The file cannot be opened: {error}", error=error.strerror or str(error)),
                 "Name a file that you may read.",
                 file=self.name,
             ) from None

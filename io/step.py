@@ -26,6 +26,7 @@ from geofit.io.step_text import canonical
 from geofit.occ import faces_of, placement
 from geofit.steps.stitch import shell
 from geofit.surface import HorizonSurface, Patch
+from geofit.words import said
 
 __all__ = ["UNITS", "Unit", "read_shapes", "read_step", "store_step", "write_step"]
 
@@ -95,7 +96,11 @@ def store_step(
     if not surfaces:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(target))
     if unit not in UNITS:
-        raise InputError(f"A STEP file in '{unit}' is unknown", f"Choose {' or '.join(UNITS)}.", file=str(target))
+        raise InputError(
+            said("A STEP file in '{unit}' is unknown", unit=unit),
+            said("Choose {names}.", names=" or ".join(UNITS)),
+            file=str(target),
+        )
     shells = {name: shell(surface) for name, surface in surfaces.items()}
     with _parameters(unit):
         filled = document()
@@ -228,7 +233,7 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
         handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=".step")
     except OSError as error:
         raise InputError(
-            f"The file cannot be written: {error.strerror}",
+            said("The file cannot be written: {error}", error=error.strerror or str(error)),
             "Make the folder, or name another.",
             file=str(target),
         ) from None

@@ -105,7 +105,7 @@ def read_back(surface: HorizonSurface, shape: FileShape, found: HorizonSurface, 
             float(expected),
             "edges",
             said(
-                "{free} free edges where the outline has {expected}, closing into {loops} loop(s)",
+                "free edges: {free}, edges of the outline: {expected}, closed loops: {loops}",
                 free=len(free),
                 expected=expected,
                 loops=loops,
@@ -178,7 +178,7 @@ def _words(seams: tuple[Seam, ...], field: str, unit: str) -> str:
         return said("one face, no seam")
     worst = max(seams, key=lambda seam: float(getattr(seam, field)))
     return said(
-        "{places} places on each of {count} seams; largest between {first} and {second}: {value:.2g} {unit}",
+        "{places} places on each seam ({count}); largest between {first} and {second}: {value:.2g} {unit}",
         places=SAMPLES,
         count=len(seams),
         first=worst.first,

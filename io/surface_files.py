@@ -7,6 +7,7 @@ from pathlib import Path
 
 from geofit.errors import InputError
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = ["ENDINGS", "is_surface_file", "read_surface_file"]
 
@@ -40,8 +41,8 @@ def read_surface_file(path: str | Path) -> Mapping[str, HorizonSurface]:
             return read_tsurf(path)
         case ending:
             raise InputError(
-                f"A surface is not read from a file that ends in '{ending}'",
-                f"Give a file that ends in {', '.join(ENDINGS)}.",
+                said("A surface is not read from a file that ends in '{ending}'", ending=ending),
+                said("Give a file that ends in {names}.", names=", ".join(ENDINGS)),
                 file=str(path),
             )
     return read(path)

@@ -39,18 +39,31 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
             columns, rows, corners, z, blank = _binary_7(data)
     except (struct.error, ValueError, IndexError, OverflowError) as error:
         raise InputError(
-            f"The Surfer grid is damaged: {error or type(error).__name__}", "Export the grid again.", file=source.name
+            said("The Surfer grid is damaged: {error}", error=str(error) or type(error).__name__),
+            "Export the grid again.",
+            file=source.name,
         ) from None
     west, east, south, north = corners
     if columns < 2 or rows < 2 or z.size != columns * rows:
         raise InputError(
-            f"The grid has {z.size} cells; columns x rows = {columns} x {rows} are needed, 2 x 2 at least",
+            said(
+                "The grid has {count} cells; columns x rows = {columns} x {rows} are needed, 2 x 2 at least",
+                count=z.size,
+                columns=columns,
+                rows=rows,
+            ),
             "Export the grid again.",
             file=source.name,
         )
     if not (np.isfinite(corners).all() and east > west and north > south):
         raise InputError(
-            f"The grid's corners are no area: x {west:g} to {east:g}, y {south:g} to {north:g}",
+            said(
+                "The grid's corners are no area: x {west:g} to {east:g}, y {south:g} to {north:g}",
+                west=west,
+                east=east,
+                south=south,
+                north=north,
+            ),
             "Export the grid again.",
             file=source.name,
         )

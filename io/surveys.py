@@ -141,7 +141,11 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
     negative, positive = int((dip[used] < 0).sum()), int((dip[used] > 0).sum())
     if sign is None and negative == positive > 0:
         raise InputError(
-            f"{positive} dips are positive and {negative} negative: the sign that points down is not clear",
+            said(
+                "{positive} dips are positive and {negative} negative: the sign that points down is not clear",
+                positive=positive,
+                negative=negative,
+            ),
             'State dip = "down-positive" or dip = "down-negative".',
             file=rows.file,
             column=rows.table.header[rows.columns["dip"]],

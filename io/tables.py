@@ -89,7 +89,7 @@ def read_table(source: Source, journal: Journal) -> Table:
     columns, numbers, malformed = _columns(lines, body, width, sep, source.name, journal)
     if not numbers and not malformed:
         raise InputError(
-            f"The file has a header ({', '.join(header)}) but no rows",
+            said("The file has a header ({names}) but no rows", names=", ".join(header)),
             "Export the table again with its rows.",
             file=source.name,
         )
@@ -127,7 +127,11 @@ def _skip_comments(lines: list[str], name: str, journal: Journal) -> int:
     skipped = sum(bool(line.strip()) for line in lines[:start])
     if skipped:
         journal.add(
-            "note", name, said("{count} comment lines at the head are not read", count=skipped), row=1, value=lines[0]
+            "note",
+            name,
+            said("Comment lines at the head that are not read: {count}", count=skipped),
+            row=1,
+            value=lines[0],
         )
     return start
 
@@ -177,7 +181,7 @@ def _columns(
             journal.add(
                 "error",
                 name,
-                said("The row has {count} cells, the header {width}", count=len(cells), width=width),
+                said("Cells of the row: {count}, of the header: {width}", count=len(cells), width=width),
                 "Quote cells that hold the separator, or use another separator than the decimal mark.",
                 row=number,
                 value=line[:120],
@@ -185,7 +189,7 @@ def _columns(
         else:
             odd.append((number, (cells + [""] * width)[:width]))
     if blank:
-        journal.add("note", name, said("{count} lines without any cell filled are no rows", count=blank))
+        journal.add("note", name, said("Lines without any cell filled, which are no rows: {count}", count=blank))
     cells = sep.join(regular).split(sep) if regular else []
     columns = [cells[j::width] + [row[j] for _, row in odd] for j in range(width)]
     numbers += [number for number, _ in odd]

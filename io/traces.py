@@ -62,9 +62,10 @@ def _from_dxf(
     if region is not None and len(xyz):
         place = place_in(xyz[:, :2], region)
         if place != "inside":
-            swapped = ", x and y look exchanged" if place == "exchanged" else ""
             raise InputError(
-                f"The map lies far outside the study area{swapped}",
+                "The map lies far outside the study area, x and y look exchanged"
+                if place == "exchanged"
+                else "The map lies far outside the study area",
                 "Save the drawing in the site's coordinates; a section is named by [[section]].",
                 file=source.name,
             )
@@ -73,7 +74,7 @@ def _from_dxf(
         raise _undraped(blank.size, source, int(drawn.number[blank[0]]))
     if blank.size and ground is not None:
         journal.add(
-            "note", source.name, said("{count} points at elevation 0 are draped on the ground", count=blank.size)
+            "note", source.name, said("Points at elevation 0 that are draped on the ground: {count}", count=blank.size)
         )
         xyz[blank, 2] = ground.elevation(xyz[blank, 0], xyz[blank, 1])
     for i in np.flatnonzero(np.isnan(xyz[:, 2])).tolist():
@@ -91,7 +92,7 @@ def _from_dxf(
 
 def _undraped(count: int, source: Source, row: int) -> InputError:
     return InputError(
-        f"{count} points have no elevation and the site has no ground to drape them on",
+        said("The site has no ground to drape the points without an elevation on ({count})", count=count),
         "Add a column z, or a [ground] table to the site file.",
         file=source.name,
         row=row,

@@ -13,6 +13,7 @@ from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.units import metres_of
 from geofit.points import PointSet
+from geofit.words import said
 
 __all__ = ["read_tsurf"]
 
@@ -62,7 +63,11 @@ def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:
                 _take(objects[-1], key, line, words)
             except (ValueError, IndexError, KeyError):
                 raise InputError(
-                    f"This {key} cannot be read", "Export the TSurf again.", file=source.name, row=row, value=line[:80]
+                    said("This {key} cannot be read", key=key),
+                    "Export the TSurf again.",
+                    file=source.name,
+                    row=row,
+                    value=line[:80],
                 ) from None
             except InputError as error:
                 raise InputError(error.reason, error.remedy, file=source.name, row=row, value=line[:80]) from None

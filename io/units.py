@@ -36,7 +36,12 @@ def metres_of(unit: str, file: str | None = None) -> float:
     """Return the metres of a unit that the user states."""
     known = _UNITS.get(unit.strip().casefold())
     if known is None:
-        raise InputError(f"The unit '{unit}' is unknown", f"The units are {', '.join(METRES)}.", file=file, value=unit)
+        raise InputError(
+            said("The unit '{unit}' is unknown", unit=unit),
+            said("The units are {names}.", names=", ".join(METRES)),
+            file=file,
+            value=unit,
+        )
     return METRES[known]
 
 

@@ -24,7 +24,7 @@ RING = "ring"
 def layer_names(source: Source) -> tuple[str, ...]:
     """Return the layers of a file that have a geometry."""
     source.read()
-    pyogrio = need("pyogrio", "gis", f"Reading the map {source.name}")
+    pyogrio = need("pyogrio", "gis", said("Reading the map {file}", file=source.name))
     try:
         layers = pyogrio.list_layers(source.path)
     except (pyogrio.errors.DataSourceError, OSError, ValueError) as error:
@@ -43,7 +43,7 @@ def read_features(source: Source, journal: Journal) -> Table:
         If the file cannot be read, or the places are longitude and latitude and no target system is named.
     """
     journal.read(source)
-    pyogrio = need("pyogrio", "gis", f"Reading the map {source.name}")
+    pyogrio = need("pyogrio", "gis", said("Reading the map {file}", file=source.name))
     import shapely
 
     try:
@@ -105,14 +105,16 @@ def _text(value: Any) -> str:
 
 
 def _refuse_degrees(source: Source, crs: str) -> None:
-    pyproj = need("pyproj", "gis", f"Reading the map {source.name}")
+    pyproj = need("pyproj", "gis", said("Reading the map {file}", file=source.name))
     try:
         degrees = pyproj.CRS.from_user_input(crs).is_geographic
     except pyproj.exceptions.CRSError:
         return
     if degrees:
         raise InputError(
-            f"The places are longitude and latitude ({crs[:60]}); easting and northing in metres are needed",
+            said(
+                "The places are longitude and latitude ({crs}); easting and northing in metres are needed", crs=crs[:60]
+            ),
             'Project the layer to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
             "(geofit import: --crs).",
             file=source.name,
@@ -121,5 +123,7 @@ def _refuse_degrees(source: Source, crs: str) -> None:
 
 def _damaged(source: Source, error: Exception) -> InputError:
     return InputError(
-        f"The map cannot be read: {error}", "Open it in a GIS and save it as GeoPackage.", file=source.name
+        said("The map cannot be read: {error}", error=str(error)),
+        "Open it in a GIS and save it as GeoPackage.",
+        file=source.name,
     )

@@ -42,7 +42,11 @@ def read_sheet(source: Source, journal: Journal) -> Table:
     rows = sheets.get(name)
     if not rows:
         raise InputError(
-            f"The workbook has no sheet '{name}' with rows; its sheets are {', '.join(sheets)}",
+            said(
+                "The workbook has no sheet '{name}' with rows; its sheets are {names}",
+                name=name,
+                names=", ".join(sheets),
+            ),
             "Name one of them.",
             file=source.name,
         )
@@ -75,7 +79,7 @@ def read_sheet(source: Source, journal: Journal) -> Table:
 
 def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]:
     """Return the filled rows of each sheet: line and cells."""
-    openpyxl = need("openpyxl", "xlsx", f"Reading the workbook {source.name}")
+    openpyxl = need("openpyxl", "xlsx", said("Reading the workbook {file}", file=source.name))
     failures = (
         openpyxl.utils.exceptions.InvalidFileException,
         zipfile.BadZipFile,
@@ -104,7 +108,7 @@ def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]
             return sheets
     except failures as error:
         raise InputError(
-            f"The workbook cannot be read: {error or type(error).__name__}",
+            said("The workbook cannot be read: {error}", error=str(error) or type(error).__name__),
             "Open it in a spreadsheet program and save it as .xlsx, or the sheet as CSV UTF-8.",
             file=source.name,
         ) from None

@@ -280,7 +280,7 @@ def test_a_pass_with_a_failed_check_says_so(tmp_path):
     write_html(document(report, EN), {}, tmp_path / "r.html")
     text = _Page((tmp_path / "r.html").read_text(encoding="utf-8")).text
     assert "✓ PASS" in text
-    assert "✗ 1 fail: normals" in text
+    assert "✗ 1 failed: normals" in text
     assert "But a check does not hold" in text
     assert "Worst at (500001.00, 3100002.00, 1503.00) m" in text
 

@@ -85,7 +85,7 @@ def test_a_control_point_beside_a_seam_moves_both_patches_and_the_seam_stays_tan
 def test_exact_points_are_never_lost():
     surface = fitted()
     rows, columns, _ = patch_of(surface, "core").control.shape
-    with pytest.raises(ExactnessError, match=r"acts on .* points that are met exactly"):
+    with pytest.raises(ExactnessError, match=r"acts on points that are met exactly"):
         surface.adjust("core", rows // 2, columns // 2, 0.5)
 
 

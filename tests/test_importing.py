@@ -165,3 +165,23 @@ def test_one_table_of_two_kinds_and_degrees(folder):
     east, north = pyproj.Transformer.from_crs(4326, 32650, always_xy=True).transform(117.0, 28.2)
     np.testing.assert_allclose(found.site.horizons["base of Q"].xyz[0], [east, north, 80], atol=1e-6)
     assert [(c.used, c.listed) for c in found.counts] == [(4, 4), (8, 0)]
+
+
+def test_bases_are_named_and_issues_told_in_the_language_asked_for(folder):
+    from chinese import english_left
+
+    from geofit.report.language import ZH
+
+    found = import_files([folder / name for name in ("collar.csv", "log.csv")], folder / "s.toml", language=ZH)
+    assert [name for name in found.site.horizons if name.endswith("底界")] == list(found.site.horizons)
+    told = found.issue_file.read_text("utf-8-sig")
+    assert not [left for line in told.splitlines()[1:] for left in english_left(line.split(",", 5)[5])]
+    assert "据列名" in told
+
+
+def test_a_name_that_another_file_uses_is_kept_in_every_language(folder):
+    from geofit.report.language import ZH
+
+    found = import_files([folder / name for name in FILES], folder / "s.toml", language=ZH)
+    assert "base of clay" in found.site.horizons
+    assert "clay底界" not in found.site.horizons

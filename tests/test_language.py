@@ -2,65 +2,19 @@
 
 from __future__ import annotations
 
-import ast
+import csv
+import errno
+import os
+import pickle
 import string
-from pathlib import Path
-from typing import get_args
+from dataclasses import replace
 
 import pytest
+from chinese import english_left, literals
 
-from geofit.errors import SettingsError
-from geofit.offdata import Scheme
+from geofit.errors import InputError, SettingsError
 from geofit.report.language import EN, ZH, language, sentence, tell
-from geofit.words import said
-
-ROOT = Path(__file__).resolve().parents[1]
-#: Methods by which readers list rows: severity and file, or row and role, then reason and remedy.
-LISTING = ("add", "reject", "warn")
-
-
-def literals() -> dict[str, str]:
-    """Every text that said(), the report's t() and Check() are given, and where: all of them must be literals."""
-    found: dict[str, str] = {}
-    for folder in ("geofit", "io"):
-        for path in sorted((ROOT / folder).rglob("*.py")):
-            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-                if not isinstance(node, ast.Call) or not node.args:
-                    continue
-                if (
-                    folder == "io"
-                    and "export" not in path.parts
-                    and isinstance(node.func, ast.Attribute)
-                    and node.func.attr in LISTING
-                ):
-                    # What readers list: reasons and remedies, each a literal or by said(); other words are names.
-                    where = f"{path.relative_to(ROOT).as_posix()}:{node.lineno}"
-                    found |= dict.fromkeys((text for one in node.args[2:] for text in _texts(one)), where)
-                if not isinstance(node.func, ast.Name):
-                    continue
-                name, first = node.func.id, node.args[0]
-                where = f"{path.relative_to(ROOT).as_posix()}:{node.lineno}"
-                if name in ("said", "t"):
-                    texts = _texts(first)
-                    assert texts, f"{where}: {name}() wants a literal, so that translations can be checked"
-                elif name == "Check":
-                    texts = _texts(first)
-                else:
-                    continue
-                found |= dict.fromkeys(texts, where)
-    return found
-
-
-def _texts(node: ast.expr) -> list[str]:
-    """The literals that an argument can be; a scheme of cross-validation is one of three by its type."""
-    if isinstance(node, ast.Attribute) and node.attr == "scheme":
-        return list(get_args(Scheme))
-    if isinstance(node, ast.Constant) and isinstance(node.value, str):
-        return [node.value]
-    if isinstance(node, ast.IfExp):
-        one, other = _texts(node.body), _texts(node.orelse)
-        return one + other if one and other else []
-    return []
+from geofit.words import Verbatim, listed, said
 
 
 def _fields(template: str) -> set[str]:
@@ -68,8 +22,8 @@ def _fields(template: str) -> set[str]:
 
 
 def test_every_text_has_a_chinese_one():
-    absent = {text: where for text, where in literals().items() if text not in ZH.texts}
-    assert not absent, "add to geofit/report/chinese_said.py or chinese.py:\n" + "\n".join(
+    absent = {text: where for text, where in literals(("geofit", "io")).items() if text not in ZH.texts}
+    assert not absent, "say by said() what has values, and add to geofit/report/chinese_errors.py:\n" + "\n".join(
         f"{where}: {text!r}" for text, where in absent.items()
     )
 
@@ -113,3 +67,86 @@ def test_an_unknown_language_names_the_known_ones():
     assert language("zh") is ZH
     with pytest.raises(SettingsError, match="en or zh"):
         language("fr")
+
+
+def test_a_text_that_is_not_told_is_found(tmp_path, monkeypatch):
+    import chinese
+
+    monkeypatch.setattr(chinese, "ROOT", tmp_path)
+    (tmp_path / "geofit").mkdir()
+    (tmp_path / "geofit" / "new.py").write_text(
+        "def f(n):\n    what = 'not told'\n    raise InputError(what, f'{n} of them')\n", encoding="utf-8"
+    )
+    assert literals(["geofit"]) == dict.fromkeys(["not told", "f'{n} of them'"], "geofit/new.py:3")
+    assert english_left(said("{reason}.", reason="Nobody told this")) == ["Nobody told this"]
+
+
+def test_an_error_is_told_as_a_whole():
+    reason = said("The project cannot be written: {error}", error=os.strerror(errno.EACCES))
+    error = InputError(reason, "Make the folder, or name another.", file="site.toml", row=3, column="base", value="map")
+    assert str(error) == (
+        "site.toml, row 3, column 'base', value 'map': The project cannot be written: Permission denied. "
+        "Make the folder, or name another."
+    )
+    told = "site.toml，第 3 行，列“base”，值“map”：工程不能写出：没有访问权限。请建立该文件夹，或另行指定。"
+    assert tell(str(error), ZH) == tell(str(pickle.loads(pickle.dumps(error))), ZH) == told
+
+
+def test_a_reason_that_ends_with_a_full_stop_gets_no_second_one():
+    inner = said("There is no patch '{patch}'. The patches are: {names}.", patch="x", names="core")
+    assert str(InputError(inner, "Check the path.")).count("..") == 0
+    assert tell(str(InputError(inner, "Check the path.")), ZH).endswith("核心区。请检查路径。")
+    assert str(InputError(inner)) == inner
+
+
+def test_columns_keys_and_names_stay_as_they_are():
+    assert tell(Verbatim("north"), ZH) == "north" != tell("north", ZH)
+    assert tell(listed([Verbatim("core"), said("row {row}", row=2)]), ZH) == "core，第 2 行"
+    assert listed([]) == ""
+
+
+@pytest.mark.parametrize(
+    "code",
+    ["EACCES", "EPERM", "ENOENT", "ENOSPC", "EROFS", "EISDIR", "ENOTDIR", "EEXIST", "EBUSY", "EIO", "ENAMETOOLONG"],
+)
+def test_what_the_system_says_of_files_is_told(code):
+    if os.name != "posix":
+        pytest.skip("the texts are those of POSIX systems")
+    assert tell(os.strerror(getattr(errno, code)), ZH) != os.strerror(getattr(errno, code))
+
+
+def test_what_is_wrong_in_a_site_file_is_told_with_its_line(tmp_path):
+    from geofit.io import read_site
+
+    (tmp_path / "site.toml").write_text("[site]\nname 'x'\n", encoding="utf-8")
+    with pytest.raises(InputError) as caught:
+        read_site(tmp_path / "site.toml")
+    assert tell(str(caught.value), ZH) == (
+        "site.toml，第 2 行：场地文件不是 TOML：键之后应为“=”。请见 docs/site_file.md。"
+    )
+
+
+def test_tables_of_a_chinese_report_have_chinese_reasons(tmp_path):
+    from results import horizon
+
+    from geofit.report.tables import write_issues, write_residuals
+    from geofit.site import ImportIssue
+
+    issue = ImportIssue(
+        "p.csv", 4, "z", "abc", "error", said("The {role} is no finite number", role="z"), "Complete the cell."
+    )
+    write_issues([issue], tmp_path / "i.csv", ZH)
+    with (tmp_path / "i.csv").open(encoding="utf-8-sig", newline="") as stream:
+        (row,) = csv.DictReader(stream)
+    assert (row["severity"], row["column"], row["reason"], row["remedy"]) == (
+        "error", "z", "z不是有限数", "请补全该单元格。",
+    )  # fmt: skip
+    result = horizon()
+    (conflict,) = result.accuracy.conflicts
+    text = said("{dropped} repeats {kept}", dropped=result.surface.points.describe(conflict.dropped), kept="x")
+    accuracy = replace(result.accuracy, conflicts=(replace(conflict, text=text),))
+    write_residuals(replace(result, surface=result.surface.with_(accuracy=accuracy)), tmp_path / "r.csv", ZH)
+    with (tmp_path / "r.csv").open(encoding="utf-8-sig", newline="") as stream:
+        (dropped,) = [row for row in csv.DictReader(stream) if row["used"] == "no"]
+    assert dropped["reason"].endswith("与 x 重复")
+    assert dropped["reason"].startswith(tell(dropped["kind"], ZH))

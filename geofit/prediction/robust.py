@@ -19,7 +19,7 @@ from geofit.prediction.crossval import common_factor
 from geofit.prediction.deletion import linear_fit
 from geofit.prediction.outliers import LIMIT, find_outliers
 from geofit.prediction.posterior import posterior
-from geofit.words import said
+from geofit.words import listed, said
 
 __all__ = ["fit_robustly"]
 
@@ -53,12 +53,12 @@ def fit_robustly(model: Model, stage: Callable[[str, float], None]) -> Model:
         model = problem.fit(problem.kept, stage)
     if not rejected.any():
         return model
-    names = ", ".join(given.points.describe(int(k)) for k in np.flatnonzero(rejected)[:5])
+    names = [given.points.describe(int(k)) for k in np.flatnonzero(rejected)[:5]]
     text = said(
-        "robust: {count} peripheral points that their neighbours do not bear out take no part in the fit ({names}); "
-        "sigma counts them all the same",
+        "robust: peripheral points that their neighbours do not bear out take no part in the fit ({count}: "
+        "{names}); sigma counts them all the same",
         count=int(rejected.sum()),
-        names=names + (", ..." if rejected.sum() > 5 else ""),
+        names=listed([*names, "..."] if rejected.sum() > 5 else names),
     )
     return _noted(model, text)
 

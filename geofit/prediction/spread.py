@@ -20,6 +20,7 @@ from geofit.prediction.calibration import Calibration, uncalibrated
 from geofit.prediction.posterior import Posterior, posterior
 from geofit.splines import bspline
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = ["Grid", "Spread", "band", "grid_over", "sd_at", "uncertainty_on"]
 
@@ -165,10 +166,14 @@ def band(
         If nothing is known about how the surface was fitted.
     """
     if not 0 < share < 1:
-        raise SettingsError(f"share is {share!r}; a probability above 0 and below 1 is needed, for instance 0.9.")
+        raise SettingsError(
+            said("share is {share!r}; a probability above 0 and below 1 is needed, for instance 0.9.", share=share)
+        )
     uncertainty = found.uncertainty if isinstance(found, OffData) else found
     if uncertainty is None:
-        raise FitError(f"No standard deviation is known of '{surface.name}'; see the notes of its examination.")
+        raise FitError(
+            said("No standard deviation is known of '{name}'; see the notes of its examination.", name=surface.name)
+        )
     model = _model(surface)
     space = model.net.space
     u, v = bspline.greville(space.knots_u, space.degree), bspline.greville(space.knots_v, space.degree)
@@ -205,5 +210,9 @@ def _sd(model: Model, uncertainty: Uncertainty, plane: Floats) -> Floats:
 
 def _model(surface: HorizonSurface) -> Model:
     if surface.model is None:
-        raise FitError(f"'{surface.name}' was not fitted here: nothing is known about what lies between its points.")
+        raise FitError(
+            said(
+                "'{name}' was not fitted here: nothing is known about what lies between its points.", name=surface.name
+            )
+        )
     return surface.model

@@ -63,7 +63,7 @@ def _cover(report: AccuracyReport, t: Language, missing_picture: str, warning: s
     facts.append("geofit " + dict(report.versions)["geofit"])
     blocks.append(Paragraph(" · ".join(facts), "quiet"))
     if warning:
-        blocks.append(Paragraph(warning, "warning"))
+        blocks.append(Paragraph(tell(warning, t), "warning"))
     blocks.append(Heading(t("Verdict")))
     columns = (
         Column(t("Horizon")),
@@ -89,7 +89,7 @@ def _cover(report: AccuracyReport, t: Language, missing_picture: str, warning: s
     for name, reason in report.failures:
         blocks.append(Paragraph(t("{name} could not be fitted: {reason}", name=name, reason=reason), "warning"))
     if missing_picture:
-        blocks.append(Paragraph(missing_picture, "warning"))
+        blocks.append(Paragraph(tell(missing_picture, t), "warning"))
     else:
         blocks.append(Picture(report.picture, t("All horizons and holes.")))
     blocks.append(Heading(t("Signatures")))
@@ -111,7 +111,7 @@ def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
     failed = [check for check in horizon.all_checks if check.passed is False]
     if failed:
         names = ", ".join(dict.fromkeys(tell(check.name, t) for check in failed))
-        checks = Mark(False, t("{count} fail: {names}", count=len(failed), names=names))
+        checks = Mark(False, t("{count} failed: {names}", count=len(failed), names=names))
     else:
         held = sum(check.passed is True for check in horizon.all_checks)
         checks = Mark(True, t("all {count} hold", count=held))
@@ -150,7 +150,7 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
         Heading(t("Rejected rows and warnings")),
         Paragraph(
             t(
-                "{errors} rows were not used, {warnings} warnings, {notes} notes on how files were understood; "
+                "Rows not used: {errors}; warnings: {warnings}; notes on how files were understood: {notes}. "
                 "import_issues.csv lists all of them.",
                 errors=counts["error"],
                 warnings=counts["warning"],

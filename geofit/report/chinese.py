@@ -20,7 +20,7 @@ _REPORT = {
     "Verdict": "检验结论",
     "Horizon": "层面",
     "Horizon {name}": "层面 {name}",
-    "{count} horizons": "{count} 个层面",
+    "Horizons: {count}": "{count} 个层面",
     "σ, m": "σ, m",
     "ε, m": "ε, m",
     "Largest |d|, m": "最大 |d|, m",
@@ -39,7 +39,7 @@ _REPORT = {
     "Prepared": "编制",
     "Checked": "校核",
     "Approved": "审定",
-    "{count} fail: {names}": "{count} 项不满足：{names}",
+    "{count} failed: {names}": "{count} 项不满足：{names}",
     "all {count} hold": "{count} 项全部满足",
     "not examined": "未检验",
     "Not examined.": "未检验。",
@@ -50,8 +50,8 @@ _REPORT = {
     "Rows read = rows used + rows listed. SHA-256 tells whether a file is the one that was read.": "读入行数 = 采用行数 + "
     "列出行数。SHA-256 校验值用于确认文件未被改动。",
     "Rejected rows and warnings": "未采用的行与警告",
-    "{errors} rows were not used, {warnings} warnings, {notes} notes on how files were understood; import_issues.csv "
-    "lists all of them.": "未采用 {errors} 行，警告 {warnings} 条，文件识别说明 {notes} 条；全部列于 import_issues.csv。",
+    "Rows not used: {errors}; warnings: {warnings}; notes on how files were understood: {notes}. "
+    "import_issues.csv lists all of them.": "未采用 {errors} 行，警告 {warnings} 条，文件识别说明 {notes} 条；全部列于 import_issues.csv。",
     "Versions": "软件版本",
     "Method: Li, Miao, Liu, Wang (2011), interpolation–approximation fitting of complex geological surfaces; checks "
     "and errors off the data as geofit documents them.": "方法：Li, Miao, Liu, Wang（2011），复杂地质曲面的插值–逼近拟合；"

@@ -28,15 +28,15 @@ _ROWS = {
     "site file's [[horizon]] list": "场地文件的 [[horizon]] 列表",
     "x and y look exchanged in this row": "该行 x 与 y 似已互换",
     "x is the easting, y the northing.": "x 为东坐标，y 为北坐标。",
-    "{count} rows lie far outside the study area, the first at x = {x:.15g}, y = {y:.15g}": "{count} 行远在研究区之外，首行位于 "
+    "Rows far outside the study area: {count}, the first at x = {x:.15g}, y = {y:.15g}": "{count} 行远在研究区之外，首行位于 "
     "x = {x:.15g}，y = {y:.15g}",
     "Check the coordinates and the boundary.": "请检查坐标与边界。",
-    "The row has {count} cells, the header {width}": "该行有 {count} 个单元格，表头为 {width} 个",
+    "Cells of the row: {count}, of the header: {width}": "该行有 {count} 个单元格，表头为 {width} 个",
     "Complete the header or shorten the row.": "请补全表头或缩短该行。",
     "Quote cells that hold the separator, or use another separator than the decimal mark.": "含分隔符的单元格请加引号，或改用与小数点"
     "不同的分隔符。",
-    "{count} lines without any cell filled are no rows": "{count} 行无任何内容，不计入",
-    "{count} comment lines at the head are not read": "文件开头 {count} 行注释未读入",
+    "Lines without any cell filled, which are no rows: {count}": "{count} 行无任何内容，不计入",
+    "Comment lines at the head that are not read: {count}": "文件开头 {count} 行注释未读入",
     "A title above the header is not read": "表头上方的标题未读入",
     "This row holds the units": "该行为单位行",
     "tab": "制表符",
@@ -62,6 +62,10 @@ _GUESSES = {
     "State columns = {entry} where this is wrong.": "如有误，请注明 columns = {entry}。",
     "State columns = { z = ... } with the elevation of the horizon.": "请以 columns = { z = ... } 注明层面高程所在列。",
     "by its name": "据列名",
+    "by its name; all its cells are empty": "据列名；但单元格全部为空",
+    "by its name; {share:.0%} of its cells are filled": "据列名；仅 {share:.0%} 的单元格有内容",
+    "by its name; {share:.0%} of its cells are no numbers": "据列名；但 {share:.0%} 的单元格不是数字",
+    "by its name; its values are not between {low:g} and {high:g}": "据列名；但数值不在 {low:g} 至 {high:g} 之间",
     "by its place": "据列的位置",
     "stated": "已注明",
     "by its values, the size of map coordinates": "据数值，量级为平面坐标",
@@ -97,6 +101,18 @@ _HOLES = {
     "The limits are taken as elevations, {reason}": "界线取作高程，{reason}",
     "by their names": "据列名",
     "because {count} of {total} intervals descend from the collar's elevation": "因 {total} 段中有 {count} 段自孔口高程向下递减",
+    "'{top}' and '{base}' are not both depths or both elevations": "“{top}”与“{base}”并非同为深度或同为高程",
+    "State columns = { from = ..., to = ... } that are.": "请注明同为深度或同为高程的 columns = { from = ..., to = ... }。",
+    "There are lower limits only; upper limits were taken from the row above, 0 at the first row of a hole": "仅有层底界线；层顶"
+    "取自同孔上一行的层底，各孔首行为 0",
+    "State columns = { from = ... } where there are upper limits.": "如另有层顶列，请注明 columns = { from = ... }。",
+    "The lower limit of row {last} lies above that of row {first}; one of the two is wrong": "第 {last} 行的层底高于第 {first} 行的"
+    "层底，二者必有一误",
+    "The upper limit is not known: row {row}, the one above, gives none": "层顶未知：上一行（第 {row} 行）未给出可用的层底",
+    "Correct that row.": "请更正该行。",
+    "The rows are not in order of depth ({back} of {steps} steps within a hole go up); those of each hole were sorted by "
+    "depth": "各行未按深度排列（孔内 {steps} 步中有 {back} 步向上）；已在各孔内按深度排序",
+    'State measure = "elevation" where the limits are elevations.': '如界线为高程，请注明 measure = "elevation"。',
     'State measure = "depth" where they are depths.': '如为深度，请注明 measure = "depth"。',
     "The hole has no elevation {z:g} m below its collar": "该孔孔口以下无高程 {z:g} m 处",
     "Correct the elevation.": "请更正高程。",
@@ -114,8 +130,8 @@ _HOLES = {
     "Remove one of the two.": "请删除其一。",
     "The interval overlaps that of row {row} by {length:.2f} m; limits inside the other one are no contacts": "该段与第 {row} 行重叠 "
     "{length:.2f} m；位于另一段内的界线不作接触点",
-    "{limit} of {code}: {count} contacts; no sure contact (the code {why}, or its limit is contradicted) in {unseen} holes: "
-    "{holes}": "{code} 的{limit}：接触点 {count} 个；{unseen} 个孔无可靠接触点（该代号{why}，或其界线有矛盾）：{holes}",
+    "{limit} of {code}: contacts: {count}; no sure contact (the code {why}, or its limit is contradicted) in "
+    "holes ({unseen}): {holes}": "{code} 的{limit}：接触点 {count} 个；{unseen} 个孔无可靠接触点（该代号{why}，或其界线有矛盾）：{holes}",
     "starts at the collar": "自孔口开始",
     "is open at the hole's end": "至孔底未穿透",
     "Hole {hole}: {reason}": "钻孔 {hole}：{reason}",
@@ -184,10 +200,10 @@ _DRAWINGS = {
     "Adit": "平硐",
     "The line of section": "剖面线",
     "Two or more corners are needed.": "至少需两个角点。",
-    "Layer '{layer}' is not among the layers '{pattern}'; its {count} points are not used": "图层“{layer}”不在所选图层“{pattern}”之列，"
+    "Layer '{layer}' is not among the layers '{pattern}'; its points are not used ({count})": "图层“{layer}”不在所选图层“{pattern}”之列，"
     "其 {count} 个点未采用",
     "Layer '{layer}' is no horizon of the site": "图层“{layer}”不是场地的层面",
-    "{reason}; {entity} with {count} points is not used": "{reason}；{entity}（{count} 个点）未采用",
+    "{reason}; {entity} is not used (points: {count})": "{reason}；{entity}（{count} 个点）未采用",
     "Draw the horizon as a polyline on the layer with its name.": "请在以层面命名的图层上绘制多段线。",
     "A {entity} is no LWPOLYLINE, POLYLINE, LINE or POINT": "{entity} 不是 LWPOLYLINE、POLYLINE、LINE 或 POINT",
     "A coordinate is no finite number": "坐标不是有限数",
@@ -204,7 +220,7 @@ _DRAWINGS = {
     "Correct the distance, the line, or the drawing's scale and origin.": "请更正距离、剖面线，或图的比例与原点。",
     "The point lies off the ground's grid": "该点在地面格网之外",
     "Extend the grid or add its elevation.": "请扩大格网或补充其高程。",
-    "{count} points at elevation 0 are draped on the ground": "{count} 个高程为 0 的点已投到地面",
+    "Points at elevation 0 that are draped on the ground: {count}": "{count} 个高程为 0 的点已投到地面",
     "The strike is read by the right-hand rule: the plane dips to the right of it": "走向按右手法则读取：面向走向其右侧为倾向",
     "Give the azimuth of the dip where that is wrong.": "如有误，请给出倾向方位角。",
     "The dip is not between 0 and 90 degrees": "倾角不在 0° 至 90° 之间",
@@ -214,6 +230,21 @@ _DRAWINGS = {
 }
 
 _FORMATS = {
+    "No column is named as a horizon": "未指明哪些列为层面",
+    'State horizons = ["..."] with their headers.': '请以 horizons = ["..."] 注明其列名。',
+    "Depths need the elevation that they count from, and there is no column for it": "深度须有起算高程，而表中没有该列",
+    "State columns = { z = ... } with the elevation of the collar.": "请以 columns = { z = ... } 注明孔口高程所在列。",
+    "Column '{column}' is no horizon of the site; its values are not used": "列“{column}”不是场地的层面，其值不用",
+    "Add a [[horizon]] of its name.": "请添加同名的 [[horizon]]。",
+    "Two columns are of horizon '{name}'": "有两列同属层面“{name}”",
+    "The row holds no horizon's value": "该行没有任何层面的值",
+    "Complete the row or remove it.": "请补全或删除该行。",
+    "Depths of {names} are taken straight down from z": "{names} 的深度自 z 铅直向下量取",
+    "The values of {names} are taken as elevations": "{names} 的值取作高程",
+    "The cell is no finite number; it makes no pick": "该单元格不是有限数，不成点",
+    "The depth is negative; it makes no pick": "深度为负，不成点",
+    "Correct the cell.": "请更正该单元格。",
+    "Cells without a value in the rows that are used, which make no pick: {counts}": "所用各行中无值而不成点的单元格：{counts}",
     "Read as AGS {edition}, {encoding}": "按 AGS {edition}、{encoding} 读入",
     "State encoding where this is wrong.": "如有误，请注明 encoding。",
     "Correct the line.": "请更正该行。",

@@ -13,11 +13,11 @@ _FIT = {
     "frame '{frame}' as asked": "按要求采用坐标架“{frame}”",
     "parametric surface through its sections: {share:.0f} % of their length runs backwards (overturned), so it is no "
     "height field": "取通过各剖面线的参数曲面：剖面线有 {share:.0f} % 的长度倒转，不能作高度场",
-    "{count} points lie beyond the study area; the surface is widened to hold them": "{count} 个点位于研究区之外，曲面已外扩将其包含",
-    "{count} core points on the surface": "核心区 {count} 个点位于曲面上",
+    "points beyond the study area: {count}; the surface is widened to hold them": "{count} 个点位于研究区之外，曲面已外扩将其包含",
+    "core points on the surface: {count}": "核心区 {count} 个点位于曲面上",
     "{count} of {total} approximated points beyond the interior tolerance": "{total} 个逼近点中有 {count} 个超过内部容差",
     "{count} of {total} points beyond the interior tolerance": "{total} 个点中有 {count} 个超过内部容差",
-    "largest gap of {count} seams": "{count} 条拼接缝的最大缝隙",
+    "largest gap of the seams ({count})": "{count} 条拼接缝的最大缝隙",
     "largest angle at a seam": "拼接缝处的最大夹角",
     "largest angle at a seam (breaks are allowed)": "拼接缝处的最大夹角（允许折线）",
     "{dropped} repeats {kept}": "{dropped} 与 {kept} 重复",
@@ -33,7 +33,7 @@ _FIT = {
     "{n} points are judged by sigma, not pulled into the tolerance one by one; noise about {noise:.3f} m": "{n} 个点以 σ 评判，"
     "不逐点拉入容差；噪声约 {noise:.3f} m",
     "no more control points are allowed there": "该处不允许再增加控制点",
-    "interior tolerance {tolerance:g} m not met at {count} points, worst {worst:.3f} m: {reason}": "{count} 个点未满足内部容差 "
+    "interior tolerance {tolerance:g} m not met, points: {count}, worst {worst:.3f} m: {reason}": "{count} 个点未满足内部容差 "
     "{tolerance:g} m，最大 {worst:.3f} m：{reason}",
     "the points scatter by about {noise:.2g} m about the smoothest surface that they support; meeting each within {tolerance:g} m bends it between them, and an interior tolerance of about {wider:.2g} m would predict new holes better": "各点围绕其所能支持的最光滑曲面的离散约为 {noise:.2g} m；要求逐点在 {tolerance:g} m 以内会使曲面在点间弯曲，内部容差取约 {wider:.2g} m 时对新钻孔的预测更好",
     "its points bear each other out to about {noise:.3g} m only, more than epsilon {epsilon:g} m": "其各点仅能在约 {noise:.3g} m 内相互印证，超过控制误差 ε {epsilon:g} m",
@@ -58,9 +58,9 @@ _FIT = {
     "全部点采用逼近",
     "the dense points fill the area": "密集点布满全区",
     "{reason}, but all points are approximated: {error}": "{reason}，但全部点采用逼近：{error}",
-    "sigma stays above epsilon: after {step} local adjustments no further step lowers it": "σ 仍大于 ε：经 {step} 次局部调整后"
+    "sigma stays above epsilon: no further local adjustment lowers it (made: {step})": "σ 仍大于 ε：经 {step} 次局部调整后"
     "已无法再降低",
-    "sigma came below epsilon after {step} local adjustments": "经 {step} 次局部调整，σ 降至 ε 以下",
+    "local adjustments until sigma came below epsilon: {step}": "经 {step} 次局部调整，σ 降至 ε 以下",
     "the section curves span the whole surface": "剖面曲线张成整个曲面",
     "core='all': every point is interpolated": "core='all'：全部点采用插值",
     "core='none': every point is approximated": "core='none'：全部点采用逼近",
@@ -84,8 +84,8 @@ _FIT = {
     "no exact point": "无精确点",
     "{lines} section curves over {length:.0f} m, {count} points between them": "{length:.0f} m 内有 {lines} 条剖面曲线，其间有 {count} "
     "个点",
-    "robust: {count} peripheral points that their neighbours do not bear out take no part in the fit ({names}); sigma counts "
-    "them all the same": "稳健拟合：外围区有 {count} 个与相邻点不符的点未参与拟合（{names}），σ 仍计入这些点",
+    "robust: peripheral points that their neighbours do not bear out take no part in the fit ({count}: {names}); "
+    "sigma counts them all the same": "稳健拟合：外围区有 {count} 个与相邻点不符的点未参与拟合（{names}），σ 仍计入这些点",
     "{count} points are too many for robust weights": "{count} 个点过多，不能采用稳健权",
     "{fault} throws {horizon} down by {low:.2f} to {high:.2f} m, {mean:.2f} m on average over {length:.0f} m: {up} lies above "
     "{down}": "{fault} 使 {horizon} 落差 {low:.2f} 至 {high:.2f} m，沿 {length:.0f} m 平均 {mean:.2f} m：{up} 高于 {down}",
@@ -189,23 +189,23 @@ _CHECKS = {
     "{value:.1f} m，且有其自身数据点控制；共有 {points} 个点、{area:.0f} m² 高出地面 {tolerance:g} m 以上",
     "away from its points the horizon goes on above the ground, up to {value:.1f} m over {area:.0f} square metres: eroded "
     "there, or not held by any point": "远离数据点处层面高出地面，最多 {value:.1f} m，面积 {area:.0f} m²：已被剥蚀，或无点控制",
-    "{count} of {n} measured dips contradict the surface: the worst is {azimuth:.0f}/{dip:.0f} where the surface dips "
-    "{surface_azimuth:.0f}/{surface_dip:.0f} ({angle:.0f} degrees between the planes); the measurement belongs to another "
-    "structure, or the surface is wrong there": "{n} 组实测产状中有 {count} 组与曲面不符：最差者为 {azimuth:.0f}°∠{dip:.0f}°，而曲面为 "
+    "measured dips that contradict the surface: {count} of {n}, the worst is {azimuth:.0f}/{dip:.0f} where the "
+    "surface dips {surface_azimuth:.0f}/{surface_dip:.0f} ({angle:.0f} degrees between the planes); the "
+    "measurement belongs to another structure, or the surface is wrong there": "{n} 组实测产状中有 {count} 组与曲面不符：最差者为 {azimuth:.0f}°∠{dip:.0f}°，而曲面为 "
     "{surface_azimuth:.0f}°∠{surface_dip:.0f}°（两面夹角 {angle:.0f}°）；该测点属另一构造，或曲面在该处有误",
-    "{n} measured dips agree with the surface, the worst by {angle:.0f} degrees": "{n} 组实测产状与曲面相符，最大相差 {angle:.0f}°",
-    "{count} of {total} points lie beyond the surface's edge and are measured to the edge": "{total} 个点中有 {count} 个位于曲面边界"
+    "the measured dips ({n}) agree with the surface, the worst by {angle:.0f} degrees": "{n} 组实测产状与曲面相符，最大相差 {angle:.0f}°",
+    "points beyond the surface's edge, measured to the edge: {count} of {total}": "{total} 个点中有 {count} 个位于曲面边界"
     "之外，量至边界",
     "{count} of {total} triangles turned over or without an area": "{total} 个三角形中有 {count} 个翻转或面积为零",
     "A triangle mesh: seams, control points and the tangent plane do not apply.": "三角网：不适用拼接缝、控制点与切平面检查。",
     "beyond the surface: {point}": "曲面以外：{point}",
-    "beyond the surface: {count} more points": "曲面以外：另有 {count} 个点",
+    "beyond the surface: further points, {count}": "曲面以外：另有 {count} 个点",
     "elevations reach {value:.1f} m beyond the data's range": "高程超出数据范围 {value:.1f} m",
-    "{upper} lies below {lower} at {count} places: {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m at ({x:.1f}, "
-    "{y:.1f})": "{upper} 有 {count} 处低于 {lower}：面积 {area:.0f} m²，体积 {volume:.0f} m³，最深 {depth:.2f} m，位于（{x:.1f}，{y:.1f}）",
+    "{upper} lies below {lower} (places: {count}): {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m at "
+    "({x:.1f}, {y:.1f})": "{upper} 有 {count} 处低于 {lower}：面积 {area:.0f} m²，体积 {volume:.0f} m³，最深 {depth:.2f} m，位于（{x:.1f}，{y:.1f}）",
     "{upper} lies above {lower} everywhere: {low:.2f} to {high:.2f} m, {mean:.2f} m on average": "{upper} 处处高于 {lower}：厚度 "
     "{low:.2f} 至 {high:.2f} m，平均 {mean:.2f} m",
-    "{upper} lies below {lower} above the ground only: {count} places, {area:.0f} m2, {volume:.0f} m3": "{upper} 仅在地面以上低于 "
+    "{upper} lies below {lower} above the ground only (places: {count}): {area:.0f} m2, {volume:.0f} m3": "{upper} 仅在地面以上低于 "
     "{lower}：{count} 处，面积 {area:.0f} m²，体积 {volume:.0f} m³",
     "{upper} and {lower} share no area": "{upper} 与 {lower} 无公共范围",
     "the surface swings between the points: at {x:.0f}, {y:.0f} by {value:.1f} m from what those around support ({limit:.1f} "
@@ -217,7 +217,7 @@ _CHECKS = {
     "not judged: no patch has {few} approximated points": "不予评判：无曲面片有 {few} 个逼近点",
     "no patch lies to one side of its points; largest mean {mean:+.3f} m, {patch}": "无曲面片偏于数据点一侧；最大平均残差 "
     "{mean:+.3f} m，{patch}",
-    "not judged: {n} approximated points, {few} are needed": "不予评判：逼近点仅 {n} 个，需 {few} 个",
+    "not judged: too few approximated points, {n} where {few} are needed": "不予评判：逼近点仅 {n} 个，需 {few} 个",
     "residuals of neighbours do not hang together (Moran's I {moran:.2f}, z {z:.1f})": "相邻点残差无空间相关（莫兰指数 I "
     "{moran:.2f}，z {z:.1f}）",
     "residuals of neighbours agree: a pattern of about {value:.2f} m that the surface does not follow (Moran's I "
@@ -228,27 +228,27 @@ _CHECKS = {
     "not judged: most residuals lie at the interior tolerance, where the fit stops; the normal plot leaves its line by "
     "{off:.0%} for that": "不予评判：残差多位于内部容差处，拟合至此即止；正态概率图因此偏离直线 {off:.0%}",
     "the normal plot of the residuals is straight but for {off:.1%}": "残差正态概率图呈直线，偏离仅 {off:.1%}",
-    "the residuals are not noise: the normal plot leaves its line by {off:.0%}, and {few} of {n} points make {share:.0%} of "
-    "the sum of squares; look at the worst points first": "残差不是随机噪声：正态概率图偏离直线 {off:.0%}，{n} 个点中 {few} 个占"
+    "the residuals are not noise: the normal plot leaves its line by {off:.0%}, with {share:.0%} of the sum of "
+    "squares from {few} of {n} points; look at the worst points first": "残差不是随机噪声：正态概率图偏离直线 {off:.0%}，{n} 个点中 {few} 个占"
     "平方和的 {share:.0%}；请先查看残差最大的点",
     "{text}; {part} of {n} points looked at": "{text}；查看了 {n} 个点中的 {part} 个",
     "a bias: the surface runs too low in patch {patch}, {share:.0%} of {n} approximated points lie above it, on average by "
     "{mean:.3f} m": "系统偏差：曲面片 {patch} 偏低，{n} 个逼近点中 {share:.0%} 在其上方，平均 {mean:.3f} m",
     "a bias: the surface runs too high in patch {patch}, {share:.0%} of {n} approximated points lie below it, on average by "
     "{mean:.3f} m": "系统偏差：曲面片 {patch} 偏高，{n} 个逼近点中 {share:.0%} 在其下方，平均 {mean:.3f} m",
-    "the surface passes through itself: {crossed} pairs of {n} triangles cross, one at {x:.1f}, {y:.1f}, {z:.1f}": "曲面自相交："
-    "{n} 个三角形中有 {crossed} 对相交，其一位于 {x:.1f}，{y:.1f}，{z:.1f}",
+    "the surface passes through itself: crossing pairs of triangles: {crossed} (triangles: {n}), one at {x:.1f}, "
+    "{y:.1f}, {z:.1f}": "曲面自相交：{n} 个三角形中有 {crossed} 对相交，其一位于 {x:.1f}，{y:.1f}，{z:.1f}",
     "a height field over the map stands once over each place: it cannot cross itself": "平面上的高度场在每一处只有一个值，不会自相交",
     "a height field over its best plane stands once over each place: it cannot cross itself": "最佳平面上的高度场在每一处只有一个值，"
     "不会自相交",
     "no two of {n} triangles between the ends and middles of its spans cross": "各节点区间端点与中点构成的 {n} 个三角形互不相交",
-    "{count} places where patches are degenerate (an edge without length, a corner without an angle, control points that run "
-    "back): {names}; other programs may refuse such a face": "有 {count} 处曲面片退化（边长为零、角为零或控制点倒退）：{names}；"
+    "places where patches are degenerate (an edge without length, a corner without an angle, control points that "
+    "run back): {count}, in {names}; other programs may refuse such a face": "有 {count} 处曲面片退化（边长为零、角为零或控制点倒退）：{names}；"
     "其他软件可能拒收此类面",
     "{count} of {total} places folded or degenerate: the surface turns over there, or its normals look to the other "
     "side": "{total} 处中有 {count} 处折叠或退化：曲面在该处翻转，或法向相反",
     "{count} of {total} places folded or degenerate": "{total} 处中有 {count} 处折叠或退化",
-    "no edge, corner or control point of {n} patches has collapsed": "{n} 个曲面片的边、角、控制点均未退化",
+    "no edge, corner or control point of the patches ({n}) has collapsed": "{n} 个曲面片的边、角、控制点均未退化",
     "the surface covers {covered:.0f} of the study area's {wanted:.0f} square metres": "曲面覆盖研究区 {wanted:.0f} m² 中的 "
     "{covered:.0f} m²",
     "the surface covers only {covered:.0f} of the study area's {wanted:.0f} square metres: {off:.1f} % of it have no "
@@ -263,7 +263,7 @@ _CHECKS = {
 }
 
 _FILE = {
-    "{places} places on each of {count} seams; largest between {first} and {second}: {value:.2g} {unit}": "{count} 条拼接缝各取 "
+    "{places} places on each seam ({count}); largest between {first} and {second}: {value:.2g} {unit}": "{count} 条拼接缝各取 "
     "{places} 处；最大者在 {first} 与 {second} 之间：{value:.2g} {unit}",
     "one face, no seam": "仅一个面，无拼接缝",
     "OpenCASCADE's projection": "由 OpenCASCADE 投影",
@@ -273,7 +273,7 @@ _FILE = {
     "the surface does not reach its whole outline": "曲面未达到全部轮廓",
     "largest distance of {count} core points from the surface in the file ({how})": "核心区 {count} 个点到文件中曲面的最大距离（{how}）",
     "OpenCASCADE's BRepCheck of the shape read": "对读入的形体作 OpenCASCADE BRepCheck 检查",
-    "{free} free edges where the outline has {expected}, closing into {loops} loop(s)": "自由边 {free} 条，轮廓应有 {expected} 条，"
+    "free edges: {free}, edges of the outline: {expected}, closed loops: {loops}": "自由边 {free} 条，轮廓应有 {expected} 条，"
     "闭合为 {loops} 个环",
     "largest tolerance of an edge between faces: a larger one could hide a gap": "面间边的最大容差：过大可能掩盖缝隙",
     "largest tolerance of a free edge: how far the outline's curve may leave the surface": "自由边的最大容差：轮廓曲线可偏离曲面的距离",
@@ -307,4 +307,48 @@ _OFF_DATA = {
     "without {failed} of the sections no surface can be laid": "缺少其中 {failed} 条剖面便不能成面",
 }
 
-SAID = {**_FIT, **_SETTINGS, **_ERRORS, **_CHECKS, **_FILE, **_OFF_DATA}
+#: What a task is at.
+_STAGES = {
+    "start": "启动",
+    "read": "读取",
+    "read boundary and ground": "读取边界与地面",
+    "read boreholes and adits": "读取钻孔与平硐",
+    "read sections": "读取剖面",
+    "read traces and picks": "读取地质界线与层面点",
+    "read the site": "读取场地",
+    "read the project": "读取工程",
+    "read STEP": "读取 STEP",
+    "look at files": "查看文件",
+    "imported": "已导入",
+    "check rows": "检查各行",
+    "compare places": "比较位置",
+    "write": "写出",
+    "write the sample site": "写出示例场地",
+    "conflicts": "查找矛盾点",
+    "partition": "分区",
+    "fit": "拟合",
+    "field": "区域场",
+    "periphery": "外围区",
+    "robust": "稳健拟合",
+    "check": "检验",
+    "adjust": "局部调整",
+    "done": "完成",
+    "fault {name}": "断层 {name}",
+    "block {name}": "断块 {name}",
+    "push apart": "推开层面",
+    "repair": "修正",
+    "order": "上下次序",
+    "changes by hand": "人工调整",
+    "triangles": "三角化",
+    "section": "剖面",
+    "uncertainty": "不确定性",
+    "cross-validation": "交叉验证",
+    "calibration": "校准",
+    "other methods": "其他方法",
+    "next holes": "建议孔位",
+    "report": "报告",
+    "STEP and read-back": "STEP 与回读",
+    "pictures": "图件",
+}
+
+SAID = {**_STAGES, **_FIT, **_SETTINGS, **_ERRORS, **_CHECKS, **_FILE, **_OFF_DATA}

@@ -10,6 +10,7 @@ from functools import lru_cache
 from typing import Any
 
 from geofit.errors import MissingDependencyError
+from geofit.words import said
 
 __all__ = ["NO_CHINESE_FONT", "FontFile", "PdfFonts", "families", "missing_font", "pdf_fonts"]
 
@@ -20,11 +21,13 @@ CHINESE = (
     "Hiragino Sans GB", "Heiti SC", "STHeiti", "Noto Sans CJK JP", "WenQuanYi Micro Hei", "WenQuanYi Zen Hei",
     "SimHei", "SimSun", "Droid Sans Fallback", "Arial Unicode MS", "Noto Serif CJK SC", "AR PL UMing CN",
 )  # fmt: skip
-_INSTALL = (
+_INSTALL = said(
     "Install one (Debian and Ubuntu: apt-get install fonts-noto-cjk; Windows has Microsoft YaHei among its optional "
     "features) and run again."
 )
-NO_CHINESE_FONT = f"A Chinese report needs a font with Chinese characters, and this machine has none. {_INSTALL}"
+NO_CHINESE_FONT = said(
+    "A Chinese report needs a font with Chinese characters, and this machine has none. {install}", install=_INSTALL
+)
 
 
 @lru_cache(maxsize=1)
@@ -57,9 +60,11 @@ def missing_font(texts: Iterable[str]) -> str | None:
     wide = next((t for t in texts if any(unicodedata.east_asian_width(c) in "WF" for c in t)), None)
     if wide is None or _chinese() is not None:
         return None
-    return (
-        f"No font on this machine has the characters of '{wide}': pictures and PDF show boxes in their place. "
-        f"{_INSTALL} Tables and text of the HTML and the JSON are complete."
+    return said(
+        "No font on this machine has the characters of '{text}': pictures and PDF show boxes in their place. {install} "
+        "Tables and text of the HTML and the JSON are complete.",
+        text=wide,
+        install=_INSTALL,
     )
 
 

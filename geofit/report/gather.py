@@ -41,9 +41,9 @@ from geofit.report.result import HorizonResult, sigma_of
 from geofit.site import Site
 
 if TYPE_CHECKING:
-    from geofit.stack.throw import FaultCut
     from geofit.stack.order import Order
     from geofit.stack.repair import Contradiction
+    from geofit.stack.throw import FaultCut
 
 __all__ = ["PICTURES", "accuracy_report", "picture_name", "today"]
 

@@ -300,7 +300,9 @@ def _conflicts(h: HorizonReport, t: Language) -> list[Block]:
         Column(t("Difference, m"), "number"),
         Column(t("Why"), "wide"),
     )
-    rows = tuple((c.kept, c.dropped, digits.metres(c.difference), tell(c.text, t)) for c in h.conflicts)
+    rows = tuple(
+        (tell(c.kept, t), tell(c.dropped, t), digits.metres(c.difference), tell(c.text, t)) for c in h.conflicts
+    )
     return [*blocks, Table(columns, rows)]
 
 

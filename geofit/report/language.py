@@ -9,9 +9,11 @@ from typing import Any
 
 from geofit.errors import SettingsError
 from geofit.report.chinese import LABELS
+from geofit.report.chinese_errors import REFUSED
+from geofit.report.chinese_files import UNREADABLE
 from geofit.report.chinese_io import LISTED
 from geofit.report.chinese_said import SAID
-from geofit.words import Said
+from geofit.words import Said, Verbatim, said
 
 __all__ = ["EN", "ZH", "Language", "language", "sentence", "tell"]
 
@@ -25,7 +27,7 @@ class Language:
 
     Examples
     --------
-    >>> ZH("{count} horizons", count=5)
+    >>> ZH("Horizons: {count}", count=5)
     '5 个层面'
     """
 
@@ -40,7 +42,7 @@ class Language:
 
 
 EN = Language("en", "en")
-ZH = Language("zh", "zh-CN", {**LISTED, **SAID, **LABELS})
+ZH = Language("zh", "zh-CN", {**UNREADABLE, **REFUSED, **LISTED, **SAID, **LABELS})
 
 
 def language(code: str) -> Language:
@@ -54,14 +56,16 @@ def language(code: str) -> Language:
     for known in (EN, ZH):
         if known.code == code:
             return known
-    raise SettingsError(f"The language is '{code}'; choose en or zh.")
+    raise SettingsError(said("The language is '{code}'; choose en or zh.", code=code))
 
 
 def tell(text: str, language: Language) -> str:
     """Return a text of the core (:func:`geofit.words.said`) or one of its words (a kind, a patch) in a language.
 
-    What the language does not have stays English.
+    What the language does not have stays English, what is :class:`geofit.words.Verbatim` as it is.
     """
+    if isinstance(text, Verbatim):
+        return str(text)
     template = language.texts.get(text.template if isinstance(text, Said) else text)
     if template is None:
         return str(text)

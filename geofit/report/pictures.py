@@ -17,7 +17,7 @@ from geofit.report.gather import SITE_PICTURE, picture_name
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
-from geofit.report.style import FAIL, INK, MUTED, PASS, drawing
+from geofit.report.style import FAIL, HORIZONS, INK, MUTED, PASS, drawing
 from geofit.report.uncertainty import uncertainty_map
 
 if TYPE_CHECKING:
@@ -79,9 +79,7 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
         axes = figure.add_axes((0, 0.45 / height, 1, tall / height))
         axes.imshow(view.image, interpolation="antialiased")
         axes.set_axis_off()
-        swatches = [
-            Swatch(facecolor=scene.SEVERAL[i % len(scene.SEVERAL)], label=r.name) for i, r in enumerate(results)
-        ]
+        swatches = [Swatch(facecolor=HORIZONS[i % len(HORIZONS)], label=r.name) for i, r in enumerate(results)]
         figure.legend(
             handles=swatches, loc="lower left", ncols=min(len(swatches), 6), handlelength=1.2, borderaxespad=0,
             bbox_to_anchor=(0, 0.2 / height), columnspacing=1.4,

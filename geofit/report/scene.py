@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geofit.errors import MissingDependencyError
 from geofit.report.result import HorizonResult
-from geofit.report.style import kind_style
+from geofit.report.style import HORIZONS, kind_style
 from geofit.report.view import rims, trimmed
 from geofit.site import Hole
 from geofit.surface import HorizonSurface
@@ -23,19 +23,17 @@ from geofit.words import said
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["NO_OPENGL", "SEVERAL", "Scene", "elevation_colours", "horizon_scene", "site_scene"]
+__all__ = ["NO_OPENGL", "Scene", "elevation_colours", "horizon_scene", "site_scene"]
 
 Floats = NDArray[np.float64]
 
-NO_OPENGL = (
+NO_OPENGL = said(
     "The 3D picture is missing: this machine has no OpenGL library. "
     "Install one (Debian and Ubuntu: apt-get install libgl1 libegl1 libxrender1) and run again."
 )
 
 #: Steps of a patch's mesh on each side.
 STEPS = 90
-#: Colours of the horizons where several stand in one picture: they differ in lightness too.
-SEVERAL = ("#5b8fb5", "#dcb25a", "#7fa66a", "#b3564a", "#8b6fae", "#4a9a96", "#c98d9d", "#6b7784")
 #: Opacity of horizons that stand behind each other.
 SHEER = 0.72
 #: Relief is raised by a whole number, at most MOST_RAISED, until it is this share of the width.
@@ -91,7 +89,7 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
 def site_scene(
     surfaces: Sequence[HorizonSurface], holes: Sequence[Hole] = (), size: tuple[int, int] = (1800, 1300)
 ) -> Scene:
-    """Draw all horizons of a site with its holes, one colour of ``SEVERAL`` each.
+    """Draw all horizons of a site with its holes, one colour of ``HORIZONS`` each.
 
     Raises
     ------
@@ -105,7 +103,7 @@ def site_scene(
     for i, surface in enumerate(surfaces):
         for k in range(len(surface.patches)):
             mesh = _mesh(surface, k, place)
-            _add_surface(plotter, mesh, color=SEVERAL[i % len(SEVERAL)], opacity=SHEER)
+            _add_surface(plotter, mesh, color=HORIZONS[i % len(HORIZONS)], opacity=SHEER)
         for rim in rims(surface, steps=400).values():
             _add_rim(plotter, surface, rim, place, color="#1c2733", line_width=2, opacity=0.35)
     for hole in holes:

@@ -10,15 +10,13 @@ import numpy as np
 
 from geofit.files import replacing
 from geofit.geometry.cut import CutLine
-from geofit.report.style import INK, LINE, MUTED, drawing, quiet
+from geofit.report.style import INK, LINE, MUTED, drawing, horizon_colours, quiet
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = ["write_section_picture"]
 
-#: Line colours of the horizons in turn: dark enough on white, apart in lightness too.
-COLOURS = ("#8a5a2b", "#2d6a4f", "#0b5c8a", "#a3271c", "#6b4c9a", "#b58900", "#2b7a78", "#3a4652")
 #: A section flatter than this is drawn higher, and says so.
 FLATTEST, HIGHEST = 1 / 6, 5.0
 
@@ -55,13 +53,13 @@ def write_section_picture(
         axes = figure.add_axes((0.08, 0.95 / height, 0.86, 1 - 1.9 / height))
         for distance in bends[1:-1]:
             axes.axvline(distance, color=LINE, lw=0.9, zorder=0)
-        for k, (name, lines) in enumerate(cuts.items()):
-            colour = COLOURS[k % len(COLOURS)]
+        colours = horizon_colours(cuts)
+        for name, lines in cuts.items():
             for line in lines:
                 axes.plot(
                     line.distance,
                     line.xyz[:, 2],
-                    color=colour,
+                    color=colours[name],
                     lw=1.6,
                     label=name if line is lines[0] else None,
                 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import pairwise
@@ -18,7 +18,10 @@ from geofit.settings import FitSettings
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["INK", "KIND_STYLE", "LINE", "MUTED", "PAPER", "Band", "bands", "drawing", "kind_style", "quiet"]
+__all__ = [
+    "HORIZONS", "INK", "KIND_STYLE", "LINE", "MUTED", "PAPER", "Band", "bands", "drawing", "horizon_colours",
+    "kind_style", "quiet",
+]  # fmt: skip
 
 INK, MUTED, LINE, PAPER = "#1c2733", "#5d6b7a", "#d4dae1", "#ffffff"
 CORE, PASS, FAIL, QUIET, WARNING = "#0b5c8a", "#1b6e3c", "#a3271c", "#8795a3", "#b2611b"
@@ -35,10 +38,31 @@ KIND_STYLE = {
 }
 _OTHER = ("P", "#6b6b6b")
 
+#: Colours of the horizons in turn. All stand out from white paper and from a dark window alike, so that a horizon has
+#: the very same colour in both; the first five are told apart by colour-blind eyes too.
+HORIZONS = ("#5a91cf", "#b08a20", "#27784f", "#cf8275", "#9a4aa0", "#a4532a", "#3f9a9a", "#76716a")
+
+#: Deviations: near zero, then three steps below and three above the surface. What is farther off stands out more: on
+#: white it is darker, on a dark ground brighter.
+_NEAR = ("#8f8f8a", "#8d8d88")
+_BELOW = (("#90c4e6", "#2a7fbd", "#08335a"), ("#2c69a8", "#55aef2", "#cdecff"))
+_ABOVE = (("#f4b97f", "#d5701a", "#742603"), ("#95521a", "#f08d2a", "#ffe09a"))
+
 
 def kind_style(kind: str) -> tuple[str, str]:
     """Return marker and colour of a kind of source."""
     return KIND_STYLE.get(kind, _OTHER)
+
+
+def horizon_colours(names: Iterable[str]) -> dict[str, str]:
+    """Return the colour of each horizon by its place in the site's order; the one place that decides it.
+
+    Examples
+    --------
+    >>> horizon_colours(["T3-T2", "W"])["W"] == horizon_colours(["T3-T2", "W", "F1"])["W"]
+    True
+    """
+    return {name: HORIZONS[k % len(HORIZONS)] for k, name in enumerate(dict.fromkeys(names))}
 
 
 @dataclass(frozen=True)
@@ -57,16 +81,15 @@ class Band:
         return np.asarray((np.abs(d) >= self.low) & (np.abs(d) < self.high))
 
 
-def bands(settings: FitSettings) -> tuple[Band, ...]:
+def bands(settings: FitSettings, *, dark: bool = False) -> tuple[Band, ...]:
     """Return the bands of a deviation map: bounded by the three tolerances, not by the data.
 
-    Blue lies below the surface, orange above; darker and larger is further off.
+    Blue lies below the surface, orange above; larger, and darker (on a ``dark`` ground brighter), is further off.
     """
     limits = sorted({settings.boundary_tolerance, settings.interior_tolerance, settings.epsilon})
     edges = [0.0, *limits, np.inf]
     shades = -len(edges) + 2
-    blues = (QUIET, *("#9cc7e4", "#3b8cc4", "#083a63")[shades:])
-    oranges = (QUIET, *("#f3c9a0", "#dd7f2b", "#8a2f06")[shades:])
+    blues, oranges = ((_NEAR[dark], *steps[dark][shades:]) for steps in (_BELOW, _ABOVE))
     areas = (14.0, *(22.0, 44.0, 90.0)[shades:])
     made = []
     for i, (low, high) in enumerate(pairwise(edges)):

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from geofit.files import replacing
+from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
 from geofit.site import ImportIssue
 
@@ -19,8 +20,8 @@ RESIDUAL_HEADER = (
 ISSUE_HEADER = ("severity", "file", "row", "column", "value", "reason", "remedy")
 
 
-def write_residuals(result: HorizonResult, path: Path) -> None:
-    """Write one line a point, in the order they were read.
+def write_residuals(result: HorizonResult, path: Path, language: Language = EN) -> None:
+    """Write one line a point, in the order they were read; only the reasons are told in the language.
 
     Metres; residuals are positive above the surface. ``exact`` marks the points that the core interpolates;
     ``used`` is "no" for a point that lost a conflict, and ``reason`` says why.
@@ -38,18 +39,18 @@ def write_residuals(result: HorizonResult, path: Path) -> None:
             a.patch[i],
             "yes" if core[i] else "no",
             "no" if i in dropped else "yes",
-            dropped.get(i, ""),
+            tell(dropped.get(i, ""), language),
         )
         for i in range(len(points))
     )
     _write(path, RESIDUAL_HEADER, rows)
 
 
-def write_issues(issues: Sequence[ImportIssue], path: Path) -> None:
-    """Write everything that the readers found, errors first."""
+def write_issues(issues: Sequence[ImportIssue], path: Path, language: Language = EN) -> None:
+    """Write everything that the readers found, errors first; only reasons and remedies are told in the language."""
     order = {"error": 0, "warning": 1, "note": 2}
     rows = (
-        (i.severity, i.file, i.row or "", i.column, i.value, i.reason, i.remedy)
+        (i.severity, i.file, i.row or "", i.column, i.value, tell(i.reason, language), tell(i.remedy, language))
         for i in sorted(issues, key=lambda i: order[i.severity])
     )
     _write(path, ISSUE_HEADER, rows)

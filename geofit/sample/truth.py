@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.errors import SettingsError
+from geofit.words import said
 
 __all__ = [
     "BOUNDARY",
@@ -364,5 +365,9 @@ def horizon_truth(name: str) -> MapTruth | PlaneTruth | FoldTruth:
     True
     """
     if name not in _TRUTHS:
-        raise SettingsError(f"The sample site has no horizon {name!r}; choose one of {', '.join(HORIZONS)}.")
+        raise SettingsError(
+            said(
+                "The sample site has no horizon {name!r}; choose one of {names}.", name=name, names=", ".join(HORIZONS)
+            )
+        )
     return _TRUTHS[name]

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.errors import SettingsError
 from geofit.stack.zero_lines import zero_lines
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -43,8 +44,12 @@ class Fault:
         line = np.asarray(fault, float)
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
             raise SettingsError(
-                f"Fault {number + 1} has shape {line.shape}; a fitted surface or at least two (easting, northing) "
-                "corners of its trace are needed."
+                said(
+                    "Fault {number} has shape {shape}; a fitted surface or at least two (easting, northing) corners of "
+                    "its trace are needed.",
+                    number=number + 1,
+                    shape=line.shape,
+                )
             )
         return cls(f"fault {number + 1}", None, _left_of(line, area))
 

@@ -24,7 +24,7 @@ from geofit.stack.fault import BEYOND_TRACE, Fault, Height, longer, size
 from geofit.stack.relief import Relief
 from geofit.stack.throw import FaultCut, Sides, throws
 from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.words import listed, said
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -79,13 +79,19 @@ def fit_faulted(site: Site, name: str, progress: Progress | None = None) -> Bloc
         As :func:`fit_blocks`.
     """
     if name not in site.horizons:
-        raise InputError(f"There is no horizon '{name}'", f"The horizons are: {', '.join(site.horizons)}.")
+        raise InputError(
+            said("There is no horizon '{name}'", name=name),
+            said("The horizons are: {names}.", names=", ".join(site.horizons)),
+        )
     cutting = [fault for fault, cut in site.faults.items() if name in cut]
     if not cutting:
-        raise InputError(f"No fault of the site cuts '{name}'", f'Write F1 = ["{name}"] under [faults].')
+        raise InputError(
+            said("No fault of the site cuts '{name}'", name=name),
+            said('Write F1 = ["{name}"] under [faults].', name=name),
+        )
     faults = []
     for k, fault in enumerate(cutting):
-        tell(progress, f"fault {fault}", 0.5 * k / len(cutting))
+        tell(progress, said("fault {name}", name=fault), 0.5 * k / len(cutting))
         settings = site.settings.get(fault, FitSettings())
         faults.append(fit_horizon(site.horizons[fault], settings, site.boundary, name=fault))
     settings = site.settings.get(name, FitSettings())
@@ -138,7 +144,7 @@ def fit_blocks(
     parted = part(points, faults, area, name)
     blocks: dict[Sides, HorizonSurface] = {}
     for k, (title, sides) in enumerate(zip(parted.names, parted.sides, strict=True)):
-        tell(progress, f"block {title}", 0.5 + 0.5 * k / len(parted.names))
+        tell(progress, said("block {name}", name=title), 0.5 + 0.5 * k / len(parted.names))
         mine = points[np.flatnonzero(parted.block == k)]
         blocks[sides] = fit_block(mine, parted.faults, sides, settings, area, name=title)
     cuts = throws(blocks, parted.faults, name, area)
@@ -151,7 +157,8 @@ def area_of(points: PointSet, boundary: ArrayLike | None) -> Polygon:
 
     if boundary is not None:
         return shapely.Polygon(np.asarray(boundary, float))
-    return shapely.box(*points.xyz[:, :2].min(axis=0), *points.xyz[:, :2].max(axis=0), ccw=True)
+    (x0, y0), (x1, y1) = points.xyz[:, :2].min(axis=0), points.xyz[:, :2].max(axis=0)
+    return shapely.Polygon([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 
 
 def part(points: PointSet, faults: Sequence[HorizonSurface | ArrayLike], area: Polygon, name: str) -> Parting:
@@ -182,7 +189,7 @@ def part(points: PointSet, faults: Sequence[HorizonSurface | ArrayLike], area: P
                 block=title,
                 horizon=name,
                 count=len(mine),
-                points="; ".join(points.describe(i) for i in mine),
+                points=listed(points.describe(int(i)) for i in mine),
                 least=FEWEST,
             )
             raise FitError(text)

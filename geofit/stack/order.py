@@ -69,12 +69,12 @@ class Order:
         below = [crossing for crossing in self.crossings if not crossing.in_air >= 1.0]
         if not below:
             text = said(
-                "{upper} lies below {lower} above the ground only: {count} places, {area:.0f} m2, {volume:.0f} m3",
+                "{upper} lies below {lower} above the ground only (places: {count}): {area:.0f} m2, {volume:.0f} m3",
                 **figures,
             )
             return Check("order", True, 0.0, 0.0, "m", text)
         text = said(
-            "{upper} lies below {lower} at {count} places: {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m "
+            "{upper} lies below {lower} (places: {count}): {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m "
             "at ({x:.1f}, {y:.1f})",
             **figures,
         )

@@ -78,7 +78,11 @@ def fit_site(
     for k, name in enumerate(names):
 
         def listen(stage: str, fraction: float, /, name: str = name, k: int = k) -> None:
-            tell(progress, f"{name}: {stage}", (k + min(max(fraction, 0.0), 1.0)) / len(names))
+            tell(
+                progress,
+                said("{name}: {stage}", name=name, stage=stage),
+                (k + min(max(fraction, 0.0), 1.0)) / len(names),
+            )
 
         try:
             fits.add(name, found, listen)
@@ -122,7 +126,13 @@ class _Fits:
             surfaces = [self._whole(name, listen)]
         taken = [surface.name for surface in surfaces if surface.name in (*found.surfaces, *self._site.horizons)]
         if faults and any(title != name for title in taken):
-            raise SettingsError(f"A block of '{name}' is called '{taken[0]}', and so is a horizon. Rename the horizon.")
+            raise SettingsError(
+                said(
+                    "A block of '{name}' is called '{block}', and so is a horizon. Rename the horizon.",
+                    name=name,
+                    block=taken[0],
+                )
+            )
         seconds = (time.perf_counter() - start) / len(surfaces)
         for surface in surfaces:
             found.surfaces[surface.name] = surface

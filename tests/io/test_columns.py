@@ -80,7 +80,7 @@ def test_no_header_is_taken_in_order_with_a_warning(write):
     found, journal = find(write("1,2,3\n4,5,6\n"), columns.PICKS)
     assert found == {"x": 0, "y": 1, "z": 2}
     assert any(issue.severity == "warning" for issue in journal.issues)
-    with pytest.raises(InputError, match="no header and 4 columns"):
+    with pytest.raises(InputError, match="without a header; its columns: 4"):
         find(write("1,2,3,4\n4,5,6,7\n"), columns.PICKS)
 
 

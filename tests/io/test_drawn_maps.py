@@ -76,13 +76,13 @@ def test_map_traces_are_draped_where_they_have_no_elevation(folder):
     reasons = [issue.reason for issue in read.issues if issue.file == "plan.dxf"]
     assert any("off the ground's grid" in reason for reason in reasons)
     assert any("Layer 'FRAME' is no horizon" in reason for reason in reasons)
-    assert any("7 points at elevation 0 are draped" in reason for reason in reasons)
+    assert any("draped on the ground: 7" in reason for reason in reasons)
 
 
 def test_a_flat_map_without_a_ground_says_so(folder):
     plan(folder)
     (folder / "site.toml").write_text(HORIZONS + '[traces]\nfile = "plan.dxf"\n')
-    with pytest.raises(InputError, match="7 points have no elevation and the site has no ground"):
+    with pytest.raises(InputError, match="no ground to drape the points without an elevation on \\(7\\)"):
         read_site(folder / "site.toml")
 
 

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 import pytest
+from chinese import english_left
 
 from geofit.errors import InputError
 from geofit.io import read_site
@@ -100,7 +101,7 @@ BROKEN_FILES = {
     "longitude": ("collar", "hole,lon,lat,z\nB1,103.1,28.2,3\n", ["collar.csv", "Longitude", "Project"]),
     "workbook": ("collar", b"PK\x03\x04\x00\x00", ["collar.csv", "workbook"]),
     "binary": ("collar", bytes(range(256)) * 4, ["collar.csv", "no text"]),
-    "two corners": ("boundary", "x,y\n0,0\n1,1\n", ["boundary.csv", "2 different corners"]),
+    "two corners": ("boundary", "x,y\n0,0\n1,1\n", ["boundary.csv", "corners of the boundary: 2"]),
     "boundary without a corner's y": ("boundary", "x,y\n0,0\n1,\n1,1\n0,1\n", ["boundary.csv", "row 3"]),
     "boundary with an infinite corner": (
         "boundary",
@@ -160,6 +161,7 @@ def test_broken_file_is_named_in_the_error(make_site, case):
     with pytest.raises(InputError) as caught:
         read_site(make_site(**{file: text}))
     assert all(word in str(caught.value) for word in words), str(caught.value)
+    assert not english_left(str(caught.value))
 
 
 # what is replaced in the site file -> (by what, words of the error)
@@ -216,7 +218,7 @@ BROKEN_SITES = {
     ),
     "one name twice": ('name = "weathering"', 'name = "T2-T1"', ["one name"]),
     "no collar": ('collar = "collar.csv"\n', "", ["collar"]),
-    "no TOML": ("[traces]", "[traces", ["TOML", "line"]),
+    "no TOML": ("[traces]", "[traces", ["TOML", "row 21"]),
     "separator of two characters": (
         'file = "outcrops.csv"',
         'file = "outcrops.csv"\nsep = ";;"',
@@ -234,6 +236,7 @@ def test_broken_site_file_is_explained(make_site, case):
     with pytest.raises(InputError) as caught:
         read_site(make_site(text.replace(old, new)))
     assert all(word in str(caught.value) for word in words), str(caught.value)
+    assert not english_left(str(caught.value))
 
 
 # file -> (rows appended to the sound ones, column of the issue, words of its reason)
@@ -251,7 +254,7 @@ LISTED_ROWS = {
     "a no-data mark": ("geophysics", "T2-T1,500600,3100600,-9999,,\n", "z", "no data"),
     "accuracy of zero": ("geophysics", "T2-T1,500600,3100600,7,,0\n", "accuracy", "above 0"),
     "unknown horizon": ("geophysics", "T2-T3,500600,3100600,70,,\n", "horizon", "T2-T3"),
-    "a cell too many": ("geophysics", "T2-T1,500600,3100600,70,,0.5,7\n", "", "7 cells"),
+    "a cell too many": ("geophysics", "T2-T1,500600,3100600,70,,0.5,7\n", "", "row: 7"),
     "one swapped pick": ("geophysics", "T2-T1,3100600,500600,70,,\n", "x", "exchanged"),
     "one swapped collar": ("collar", "B9,3100600,500600,70,20\n", "x", "exchanged"),
     "duplicate collar": ("collar", "B1,500100,3100100,110,50\n", "hole", "row 2 already, at the same place"),
@@ -298,6 +301,7 @@ def test_bad_row_is_listed_and_not_used(make_site, files, case):
     (issue,) = errors(site)
     assert (issue.file, issue.row, issue.column) == (name, files[name].count("\n") + 1, column)
     assert words in issue.reason
+    assert not [text for one in site.issues for text in english_left(one.reason) + english_left(one.remedy)]
     (count,) = [count for count in site.counts if count.file == name]
     assert (count.read, count.listed) == (files[name].count("\n"), 1)
     for horizon, points in sound.horizons.items():

@@ -230,7 +230,7 @@ def test_robust_weights_find_the_truth_behind_blunders_and_leave_clean_data_alon
     assert rms(robust.elevation(x, y) - height) < 0.5 * rms(plain.elevation(x, y) - height)
     assert rms(robust.elevation(x, y) - height) < 1.1 * rms(clean.elevation(x, y) - height)
     assert np.flatnonzero(~robust.model.problem.kept).tolist() == wrong.tolist()
-    assert any("robust: 3 peripheral points" in note for note in robust.accuracy.notes)
+    assert any("(3: " in note and "robust: peripheral points" in note for note in robust.accuracy.notes)
     assert np.abs(robust.accuracy.residuals[robust.core]).max() < 1e-9
     assert robust.accuracy.n == len(points)
     same = fit_horizon(truth.points, FitSettings(robust=True), boundary=boundary)

@@ -4,62 +4,33 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from truth import EASTING, NORTHING, hills, rms
+from faulted import (
+    ACROSS,
+    BOUNDARY,
+    DIP,
+    HEIGHT,
+    ORIGIN,
+    START,
+    WAY,
+    fault_points,
+    faulted_site,
+    horizon_points,
+    off,
+    throw,
+    truth,
+)  # fmt: skip
+from truth import EASTING, NORTHING, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.errors import FitError, InputError, SettingsError
-from geofit.site import Site
 from geofit.stack.faults import fit_blocks, fit_faulted
 from geofit.steps.stitch import shell
 from geofit.words import Said
 
-ORIGIN = np.array([EASTING, NORTHING])
-BOUNDARY = np.array([[0, 0], [1200, 0], [1200, 1000], [0, 1000]]) + ORIGIN
-HEIGHT = hills(7, size=1200.0, shortest=400.0, relief=4.0)
-#: The fault's trace at the elevation 1500 m in plan, local; the part on its left is thrown down.
-START, WAY = np.array([520.0, 0.0]), np.array([0.12, 1.0]) / np.hypot(0.12, 1.0)
-ACROSS = np.array([-WAY[1], WAY[0]])
-DIP = np.radians(75.0)
-
-
-def throw(along):
-    """5 m, growing by 2 m a kilometre along the fault."""
-    return 5.0 + 0.002 * along
-
-
-def off(x, y, z):
-    """Distance in plan from the fault at its elevation, positive on the left, the hanging wall."""
-    return (np.column_stack([x, y]) - ORIGIN - START) @ ACROSS + (z - 1500.0) / np.tan(DIP)
-
-
-def truth(x, y):
-    """The faulted horizon: the left block, which lies over the fault, is down."""
-    along = (np.column_stack([x, y]) - ORIGIN - START) @ WAY
-    z = HEIGHT(x, y)
-    down = z - throw(along)
-    return np.where(off(x, y, (z + down) / 2) > 0, down, z)
-
-
-def fault_points():
-    """Points of the fault's plane: it dips to the left."""
-    along, depth = np.meshgrid(np.linspace(-100, 1200, 14), np.linspace(-70, 70, 6))
-    plan = START + along.ravel()[:, None] * WAY - (depth.ravel() / np.tan(DIP))[:, None] * ACROSS
-    return PointSet(np.column_stack([plan + ORIGIN, 1500.0 + depth.ravel()]))
-
 
 @pytest.fixture(scope="module")
 def points():
-    rng = np.random.default_rng(11)
-    wide = rng.uniform(BOUNDARY[0], BOUNDARY[2], (360, 2))
-    # Holes beside the fault, as one drills them where one looks for it.
-    beside = (
-        np.sort(rng.uniform(10, 990, 60))[:, None] * WAY
-        + (rng.uniform(4, 15, 60) * np.tile([1, -1], 30))[:, None] * ACROSS
-    )
-    plan = np.concatenate([wide, beside + START + ORIGIN])
-    # In the heave there is no horizon at all.
-    plan = plan[np.abs(off(*plan.T, truth(*plan.T))) > 2.0]
-    return PointSet(np.column_stack([plan, truth(*plan.T)]), file="holes.csv", row=np.arange(len(plan)) + 2)
+    return horizon_points()
 
 
 @pytest.fixture(scope="module")
@@ -127,6 +98,14 @@ def test_the_blocks_end_at_the_fault_and_make_valid_shells(blocks):
         assert not shape.IsNull()
 
 
+def test_a_block_that_is_changed_by_hand_still_ends_at_its_fault(blocks):
+    block = blocks.blocks[0]
+    assert block.accuracy.max_abs > 0
+    pulled = block.pull_to(block.accuracy.worst[0])
+    assert pulled.accuracy.max_abs < block.accuracy.max_abs
+    np.testing.assert_array_equal(pulled.outline, block.outline)
+
+
 def test_a_trace_in_plan_cuts_upright(points):
     line = np.array([START, START + 1100 * WAY]) + ORIGIN
     upright = PointSet(np.column_stack([points.xyz[:, :2], HEIGHT(*points.xyz[:, :2].T)]))
@@ -171,14 +150,8 @@ def test_what_is_no_fault_is_refused(points):
         fit_blocks(points, [[1.0, 2.0]], None, BOUNDARY)
 
 
-def test_a_site_states_which_fault_cuts_which_horizon(points):
-    site = Site(
-        "site",
-        {"T2": points, "F1": fault_points()},
-        settings={"F1": FitSettings(frame="best-plane")},
-        boundary=BOUNDARY,
-        faults={"F1": ("T2",)},
-    )
+def test_a_site_states_which_fault_cuts_which_horizon():
+    site = faulted_site()
     found = fit_faulted(site, "T2")
     assert found.cuts[0].fault == "F1"
     with pytest.raises(InputError, match="No fault of the site cuts 'F1'"):

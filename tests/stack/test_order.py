@@ -168,7 +168,7 @@ def test_the_check_says_where_how_deep_and_how_much():
     assert (check.name, check.passed, check.unit) == ("order", False, "m")
     assert check.value == pytest.approx(3.6, abs=1e-6)
     assert isinstance(check.text, Said)
-    assert "T3-T2 lies below T2-T1 at 1 places" in check.text
+    assert "T3-T2 lies below T2-T1 (places: 1)" in check.text
     assert "deepest 3.60 m at (500500.0, 3100350.0)" in check.text
 
 

@@ -1,0 +1,18 @@
+"""What a person may have meant: the remedy for a name that is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from geofit.words import Said, Verbatim, said
+
+__all__ = ["nearest"]
+
+
+def nearest(wanted: str, known: Iterable[str], all_of_them: Said, cutoff: float = 0.6) -> Said:
+    """Return a remedy: the nearest of the known names where one comes near, then the sentence that names them all."""
+    near = get_close_matches(wanted, list(known), 1, cutoff)
+    if not near:
+        return all_of_them
+    return said("{first} {second}", first=said("Did you mean '{name}'?", name=Verbatim(near[0])), second=all_of_them)

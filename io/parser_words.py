@@ -1,0 +1,21 @@
+"""What the parsers of text, TOML and JSON say is wrong, parted so that it can be told in another language."""
+
+from __future__ import annotations
+
+import json
+import re
+
+from geofit.words import said
+
+__all__ = ["told_by"]
+
+
+def told_by(error: Exception) -> tuple[str, int | None]:
+    """Return what a parser says is wrong, and the line of the file where it says so."""
+    if isinstance(error, UnicodeDecodeError):
+        return said("byte {place} belongs to no character", place=error.start + 1), None
+    if isinstance(error, json.JSONDecodeError):
+        return error.msg, error.lineno
+    what, place = re.fullmatch(r"(.*?)(?: \(at (.*)\))?", str(error), re.DOTALL).groups()  # type: ignore[union-attr]
+    line = re.match(r"line (\d+)", place or "")
+    return what, int(line[1]) if line else None
