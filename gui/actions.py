@@ -51,6 +51,10 @@ _PLAIN: dict[str, _Spec] = {
     "east": (QT_TRANSLATE_NOOP("Actions", "Towards &east"), "3", "", ""),
     "west": (QT_TRANSLATE_NOOP("Actions", "Towards &west"), "Ctrl+3", "", ""),
     "iso": (QT_TRANSLATE_NOOP("Actions", "Fr&om a corner"), "0", "", ""),
+    "next_panel": (QT_TRANSLATE_NOOP("Actions", "&Next panel"), "Ctrl+Tab",
+                   QT_TRANSLATE_NOOP("Actions", "Give the keyboard to the next panel"), ""),
+    "previous_panel": (QT_TRANSLATE_NOOP("Actions", "Pre&vious panel"), "Ctrl+Shift+Tab",
+                       QT_TRANSLATE_NOOP("Actions", "Give the keyboard to the panel before"), ""),
     "reset_layout": (QT_TRANSLATE_NOOP("Actions", "&Reset panels"), None,
                      QT_TRANSLATE_NOOP("Actions", "Put every panel back where it was at first"), ""),
     "fit": (QT_TRANSLATE_NOOP("Actions", "&Fit"), "F5",
@@ -127,6 +131,7 @@ class Actions(QObject):
 def _action(window: QMainWindow, name: str, text: str, key: Any, tip: str, drawing: str, checkable: bool) -> QAction:
     action = QAction(QCoreApplication.translate("Actions", text), window)
     action.setObjectName(name)
+    action.setIconText(bare(action.text()))
     action.setCheckable(checkable)
     if key is not None:
         action.setShortcut(QKeySequence(key))

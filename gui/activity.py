@@ -37,7 +37,7 @@ class Activity(QObject):
     """
 
     began = Signal(str)
-    progressed = Signal(str, float)
+    progressed = Signal(object, float)
     ended = Signal()
     failed = Signal(str, object)
 

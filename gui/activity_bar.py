@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QLabel, QMainWindow, QProgressBar, QToolButton
 
 from geofit.gui.activity import Activity
 from geofit.gui.icons import icon
+from geofit.gui.words import spoken
 
 __all__ = ["ActivityBar"]
 
@@ -37,6 +38,7 @@ class ActivityBar:
         self._task = (self.stage, self.progress, self.stop)
         bar = window.statusBar()
         bar.setSizeGripEnabled(False)
+        bar.setContentsMargins(0, 0, 8, 0)
         for widget in (*self._task, self.place, self.crs):
             bar.addPermanentWidget(widget)
         self._show_task(False)
@@ -59,7 +61,7 @@ class ActivityBar:
         self._show_task(True)
 
     def _progress(self, stage: str, fraction: float) -> None:
-        self.stage.setText(f"{self._title}: {stage}")
+        self.stage.setText(f"{self._title}: {spoken(stage)}")
         self.progress.setValue(round(1000 * fraction))
 
     def _show_task(self, shown: bool) -> None:

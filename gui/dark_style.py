@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from PySide6.QtCore import QRect
 from PySide6.QtGui import QColor, QPainter, QPalette
-from PySide6.QtWidgets import QProxyStyle, QStyle, QStyleOption, QStyleOptionComplex, QWidget
+from PySide6.QtWidgets import QStyle, QStyleOption, QStyleOptionComplex, QTabBar, QWidget
+
+from geofit.gui.style import Style
 
 __all__ = ["DarkStyle"]
 
@@ -11,18 +14,22 @@ _Primitive, _Control, _Complex = QStyle.PrimitiveElement, QStyle.ControlElement,
 _PRIMITIVES = {
     _Primitive.PE_Frame, _Primitive.PE_FrameLineEdit, _Primitive.PE_FrameTabWidget, _Primitive.PE_IndicatorCheckBox,
     _Primitive.PE_IndicatorItemViewItemCheck, _Primitive.PE_IndicatorRadioButton, _Primitive.PE_PanelButtonCommand,
+    _Primitive.PE_PanelMenu,
 }  # fmt: skip
 _CONTROLS = {_Control.CE_ShapedFrame}
 _COMPLEX = {_Complex.CC_SpinBox, _Complex.CC_ComboBox}
+_SOUTH = {QTabBar.Shape.RoundedSouth, QTabBar.Shape.TriangularSouth}
+#: Pixels of the line at the tab in front.
+_MARK = 2
 #: Fusion draws its frames in the window's colour divided by 1.4: this gives a grey of 3 to 1 against the fields.
 _FRAMES = QColor("#8d99a6")
 
 
-class DarkStyle(QProxyStyle):
+class DarkStyle(Style):
     """Draws what has a frame with a palette whose window is light enough for it."""
 
     def __init__(self, palette: QPalette) -> None:
-        super().__init__("Fusion")
+        super().__init__(palette)
         # One palette for all, so that Fusion's pictures stay in its cache.
         self._framed = QPalette(palette)
         self._framed.setColor(QPalette.ColorRole.Window, _FRAMES)
@@ -38,9 +45,11 @@ class DarkStyle(QProxyStyle):
     def drawControl(  # noqa: N802
         self, element: QStyle.ControlElement, option: QStyleOption, painter: QPainter, widget: QWidget | None = None
     ) -> None:
-        """Draw a frame with a shape."""
+        """Draw a frame with a shape; mark the tab in front."""
         if element not in _CONTROLS:
             super().drawControl(element, option, painter, widget)
+            if element == _Control.CE_TabBarTabShape and option.state & QStyle.StateFlag.State_Selected:
+                _mark_tab(option, painter, widget)
             return
         own = QPalette(option.palette)
         option.palette = self._framed
@@ -58,3 +67,11 @@ class DarkStyle(QProxyStyle):
         if control in _COMPLEX:
             option.palette = self._framed
         super().drawComplexControl(control, option, painter, widget)
+
+
+def _mark_tab(option: QStyleOption, painter: QPainter, widget: QWidget | None) -> None:
+    """Underline a tab at its free edge: its ground hardly differs from that of the others."""
+    south = isinstance(widget, QTabBar) and widget.shape() in _SOUTH
+    box = option.rect
+    edge = box.bottom() - _MARK if south else box.top()
+    painter.fillRect(QRect(box.left() + 2, edge, box.width() - 4, _MARK), option.palette.highlight())

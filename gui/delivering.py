@@ -16,6 +16,7 @@ from geofit.files import file_stems
 from geofit.gui.activity import Activity
 from geofit.gui.document.document import Document
 from geofit.gui.document.exporting import export_surfaces
+from geofit.gui.document.step_files import StepFile
 from geofit.gui.preferences import Preferences
 from geofit.gui.showing import Showing
 from geofit.gui.workspace import Workspace
@@ -51,6 +52,8 @@ class Delivering(QObject):
         self._document, self._activity, self._preferences = document, activity, preferences
         self._panels, self._showing, self._window = workspace, showing, window
         self._reports: list[str] = []
+        #: By horizon: the surface that was exported last, and the file that holds it.
+        self._exported: dict[str, tuple[HorizonSurface, StepFile]] = {}
         workspace.tree.report_chosen.connect(lambda path: QDesktopServices.openUrl(QUrl.fromLocalFile(path)))
 
     def export_step(self) -> None:
@@ -63,6 +66,7 @@ class Delivering(QObject):
             dialog.exec()
             self._showing.show_read_back({name: back for file in dialog.files for name, back in file.read_back.items()})
             if dialog.files:
+                self._exported |= {name: (surfaces[name], file) for file in dialog.files for name in file.read_back}
                 self._written([file.path for file in dialog.files])
 
     def export_other(self) -> None:
@@ -99,13 +103,20 @@ class Delivering(QObject):
 
         surfaces = self._surfaces()
         if surfaces:
-            site = self._document.site_in_use()
-            results = [
-                HorizonResult(surface, site, offdata=self._document.offdata(name)) for name, surface in surfaces.items()
-            ]
-            dialog = ReportDialog(site, results, self._window)
+            site, recipes = self._document.site_in_use(), dict(self._document.state.recipes)
+            results = [self._result(name, surface) for name, surface in surfaces.items()]
+            dialog = ReportDialog(site, results, self._window, self._document.blocks())
             dialog.written.connect(self.list_report)
+            dialog.examined.connect(lambda name, offdata: self._document.put_offdata(recipes[name], offdata))
             dialog.exec()
+
+    def _result(self, name: str, surface: HorizonSurface) -> HorizonResult:
+        """Return what a report says of a surface; of a STEP file only if one was written of this very surface."""
+        site, offdata = self._document.site_in_use(), self._document.offdata(name)
+        exported, file = self._exported.get(name, (None, None))
+        if file is None or exported is not surface:
+            return HorizonResult(surface, site, offdata=offdata)
+        return HorizonResult(surface, site, file.read_back[name], step_bytes=file.size, offdata=offdata)
 
     def list_report(self, path: object) -> None:
         """List a report in the project tree."""

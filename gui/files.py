@@ -201,14 +201,10 @@ class Files(QObject):
                 _LOG.warning("%s: %s since the project was saved.", file, what)
             if found.state.recipes:
                 title = self.tr("Read the surfaces of {name}").format(name=path.name)
+                parted = self._document.site
                 self._activity.do(
-                    title, read_surfaces, found.project, path.parent, site, on_done=self._surfaces_read, apart=True
+                    title, read_surfaces, found.project, path.parent, parted, on_done=self._surfaces_read, apart=True
                 )
-        for fault, cut in site.faults.items():
-            _LOG.warning(
-                "The fault %s cuts %s: the window fits it as one surface; geofit.stack.faults.fit_faulted lays it "
-                "block by block and measures the throw.", fault, ", ".join(cut),
-            )  # fmt: skip
         errors = sum(issue.severity == "error" for issue in site.issues)
         text = self.tr("{name}: {horizons} horizons, {errors} rows not used.")
         self.told.emit(text.format(name=site.name, horizons=len(site.horizons), errors=errors))

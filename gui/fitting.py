@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Sequence
 from typing import Any
 
@@ -15,54 +16,128 @@ from geofit.gui.document.commands import (
     Command,
     ExcludeRow,
     IncludeRow,
+    PartAtFaults,
     PullToPoint,
     SetCore,
     SetSettings,
     SetSurface,
 )
 from geofit.gui.document.making import changed, examined, made
+from geofit.gui.document.parting import Parted, measured, part_at_faults
 from geofit.gui.document.recipe import DocumentError, Recipe, Row
 from geofit.gui.session import Session
 from geofit.gui.words import spoken
 from geofit.offdata import OffData
 from geofit.settings import FitSettings
+from geofit.stack.throw import FaultCut
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = ["Fitting"]
+
+_LOG = logging.getLogger(__name__)
 
 
 class Fitting(QObject):
     """What makes and changes surfaces.
 
     Signals: ``refused(exception)`` for a step that does not apply; ``adjusted(before, after)`` with the two checks
-    after a change by hand.
+    after a change by hand; ``displaced(cuts)`` with what faults displace, ``told(text)`` says it in words.
     """
 
     refused = Signal(object)
     adjusted = Signal(object, object)
+    displaced = Signal(object)
+    told = Signal(str)
 
     def __init__(self, session: Session, activity: Activity, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._session, self._activity = session, activity
         self._document = session.document
-        self._document.result_changed.connect(self._make_missing)
+        self._measuring: set[str] = set()
+        for listener in (self._make_missing, self._measure_throw):
+            self._document.result_changed.connect(listener)
 
     def close(self) -> None:
         """Listen no more; the document may live longer than the window."""
-        self._document.result_changed.disconnect(self._make_missing)
+        for listener in (self._make_missing, self._measure_throw):
+            self._document.result_changed.disconnect(listener)
 
     def fit(self, name: str) -> None:
-        """Fit a horizon with its present settings and rows."""
+        """Fit a horizon with its present settings and rows.
+
+        One that faults cut is parted at them first, and all its blocks are fitted.
+        """
+        if self._document.unparted(name):
+            self._part(self._document.whole(name))
+        else:
+            self._fit(name)
+
+    def fit_all(self) -> None:
+        """Fit every horizon whose surface is missing or stale; all of them if none is."""
+        document = self._document
+        wanted = [name for name in document.horizons if self._needs_fit(name)] or document.horizons
+        # A horizon is parted once, whichever of its blocks is wanted.
+        for name in dict.fromkeys(document.whole(name) if document.unparted(name) else name for name in wanted):
+            if name in document.horizons:
+                self.fit(name)
+            else:
+                self._part(name)
+
+    def _fit(self, name: str) -> None:
         title = self.tr("Fit {name}").format(name=name)
         self._activity.prepare(
             title, lambda: self._fit_work(name), on_done=lambda done: self._fitted(*done), apart=True
         )
 
-    def fit_all(self) -> None:
-        """Fit every horizon whose surface is missing or stale; all of them if none is."""
-        wanted = [name for name in self._document.horizons if self._needs_fit(name)]
-        for name in wanted or self._document.horizons:
-            self.fit(name)
+    def _part(self, whole: str) -> None:
+        """Part a horizon at its faults, then fit its blocks."""
+        title = self.tr("Part {name} at its faults").format(name=whole)
+        self._activity.prepare(title, lambda: self._part_work(whole), on_done=self._parted, apart=True)
+
+    def _part_work(self, whole: str) -> Work:
+        document = self._document
+        given, left_out = document.given_for_parting(whole)
+        return part_at_faults, (whole, document.faults(whole), left_out, given, document.given(whole))
+
+    def _parted(self, found: Parted) -> None:
+        document = self._document
+        for note in found.notes:
+            _LOG.info("%s", spoken(note))
+        for recipe, surface in found.faults.items():
+            self._fitted(recipe, surface)
+        if not found.blocks:
+            self._fit(found.horizon)
+            return
+        self.push(PartAtFaults(found.horizon, dict(found.blocks)))
+        for name in found.blocks:
+            if name in document.horizons:
+                self._fit(name)
+
+    def _measure_throw(self, name: str) -> None:
+        """Measure how far faults displace the horizon of a block, as soon as all its blocks are at hand."""
+        whole = self._document.whole(name)
+        if name not in self._document.state.parts or whole in self._measuring:
+            return
+        self._measuring.add(whole)
+        title = self.tr("Measure the throw of {name}").format(name=whole)
+        self._activity.prepare(title, lambda: self._throw_work(whole), on_done=self._thrown, apart=True)
+
+    def _throw_work(self, whole: str) -> Work:
+        self._measuring.discard(whole)
+        document = self._document
+        names = [name for name, part in document.state.parts.items() if part.horizon == whole]
+        blocks = document.blocks(whole)
+        if not names or len(blocks.surfaces) < len(names):
+            return None
+        return measured, (blocks,)
+
+    def _thrown(self, cuts: tuple[FaultCut, ...]) -> None:
+        for cut in cuts:
+            _LOG.info("%s", spoken(cut.text))
+        if cuts:
+            self.displaced.emit(cuts)
+            self.told.emit(" · ".join(spoken(cut.text) for cut in cuts))
 
     def examine(self, name: str) -> None:
         """Find out how far a surface may lie from the rock where nobody drilled."""
@@ -118,7 +193,7 @@ class Fitting(QObject):
         if surface is not None and surface.model is not None:
             self._fitted(recipe, surface)
             return None
-        return made, (recipe, *self._ingredients(recipe))
+        return made, (recipe, self._document.given_for(recipe))
 
     def _fitted(self, recipe: Recipe, surface: HorizonSurface) -> None:
         self._document.put(recipe, surface)
@@ -142,7 +217,7 @@ class Fitting(QObject):
         surface = self._document.shelf.surface(recipe)
         if not wanted or (surface is not None and surface.model is not None):
             return None
-        return made, (recipe, *self._ingredients(recipe))
+        return made, (recipe, self._document.given_for(recipe))
 
     def complete(self, recipes: Sequence[Recipe]) -> None:
         """Make again what was read from files, so that it can be changed by hand."""
@@ -162,19 +237,17 @@ class Fitting(QObject):
         recipe = self._document.state.recipes.get(command.horizon)
         surface = self._document.shelf.surface(recipe)
         if recipe is None or surface is None:
-            self.refused.emit(DocumentError(f"'{command.horizon}' has no surface to adjust. Fit it first."))
+            text = said("'{name}' has no surface to adjust. Fit it first.", name=command.horizon)
+            self.refused.emit(DocumentError(text))
             return None
         if surface.model is None and not self._document.holds(recipe):
-            text = (
-                f"'{command.horizon}' was read from a file, and its data have changed since. Fit it again, then adjust."
+            text = said(
+                "'{name}' was read from a file, and its data have changed since. Fit it again, then adjust.",
+                name=command.horizon,
             )
             self.refused.emit(DocumentError(text))
             return None
-        return changed, (recipe, surface, command.edit, *self._ingredients(recipe))
-
-    def _ingredients(self, recipe: Recipe) -> tuple[Any, ...]:
-        document = self._document
-        return document.points_of(recipe), document.site.boundary, document.given_for(recipe)
+        return changed, (recipe, surface, command.edit, self._document.given_for(recipe))
 
     def _edited(
         self, command: Command, former: Recipe, recipe: Recipe, before: Accuracy, surface: HorizonSurface
@@ -190,7 +263,8 @@ class Fitting(QObject):
         recipe = self._document.state.recipes.get(name)
         surface = self._document.shelf.surface(recipe)
         if recipe is None or surface is None:
-            self.refused.emit(DocumentError(f"'{name}' has no surface to examine. Fit it first."))
+            text = said("'{name}' has no surface to examine. Fit it first.", name=name)
+            self.refused.emit(DocumentError(text))
             return None
         return examined, (recipe, surface)
 

@@ -15,9 +15,9 @@ FOLDER = Path(__file__).with_name("icons")
 SIZES = (16, 24, 32, 48, 72)
 
 
-def icon(name: str) -> QIcon:
-    """Return an icon for the present theme."""
-    palette = QGuiApplication.palette()
+def icon(name: str, palette: QPalette | None = None) -> QIcon:
+    """Return an icon in the text's colour of a palette; the application's, if none is given."""
+    palette = palette or QGuiApplication.palette()
     drawn = QIcon()
     for mode, group in (
         (QIcon.Mode.Normal, QPalette.ColorGroup.Active),

@@ -27,7 +27,6 @@ def apply_language(code: str) -> None:
     app = QCoreApplication.instance()
     while _loaded:
         QCoreApplication.removeTranslator(_loaded.pop())
-    speak(code)
     if code != "en":
         for name, folder in (
             (f"qtbase_{code}", QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)),
@@ -37,4 +36,5 @@ def apply_language(code: str) -> None:
             if translator.load(name, folder):
                 QCoreApplication.installTranslator(translator)
                 _loaded.append(translator)
+    speak(code)
     QLocale.setDefault(QLocale(QLocale.Language.Chinese) if code.startswith("zh") else QLocale(QLocale.Language.C))

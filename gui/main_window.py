@@ -28,13 +28,13 @@ from geofit.gui.session import Session
 from geofit.gui.showing import Showing
 from geofit.gui.theme import apply_theme, is_dark
 from geofit.gui.worker import finish_all
-from geofit.gui.workspace import LAYOUT_VERSION, Workspace
+from geofit.gui.workspace import Workspace
 
 __all__ = ["MainWindow"]
 
 #: Actions that need no open site.
 _ALWAYS = {
-    "new", "open", "sample", "quit", "preferences", "reset_layout", "tutorial", "shortcuts", "system_report", "about",
+    "new", "open", "sample", "quit", "preferences", "tutorial", "shortcuts", "system_report", "about",
 }  # fmt: skip
 
 
@@ -69,7 +69,7 @@ class MainWindow(QMainWindow):
         self._connect_actions()
         self._connect_panels()
         self._connect_messages()
-        self.menus.show_panels(self.panels.switches())
+        self.menus.show_panels(self.panels.reach.switches)
         self._show_recent()
         self._choose_in(self.actions_.themes, preferences.theme)
         self._choose_in(self.actions_.languages, preferences.language)
@@ -99,7 +99,7 @@ class MainWindow(QMainWindow):
             self.files.leave(self.leave_without_asking)
             return
         self._ready = False
-        self.preferences.layout = (self.saveGeometry(), self.saveState(LAYOUT_VERSION))
+        self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)
         for part in (self.showing, self.selecting, self.fitting):
@@ -117,6 +117,15 @@ class MainWindow(QMainWindow):
     def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802
         """Open or import what is dropped."""
         self.panels.start.dropEvent(event)
+
+    def focusNextPrevChild(self, forward: bool) -> bool:  # noqa: N802
+        """Let Tab pass over docks that stand behind others: Qt would give the keyboard to what nobody sees."""
+        start = QApplication.focusWidget()
+        while super().focusNextPrevChild(forward):
+            now = QApplication.focusWidget()
+            if now is start or not self.panels.reach.behind(now):
+                return True
+        return False
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Draw in the colours of another theme."""
@@ -144,7 +153,9 @@ class MainWindow(QMainWindow):
             "rename": self._rename,
             "preferences": lambda: self.help.preferences(self.preferences, self._set_theme, self.language_chosen.emit),
             "home": view.reset_camera,
-            "reset_layout": self.panels.arrange,
+            "next_panel": lambda: self.panels.reach.step(1),
+            "previous_panel": lambda: self.panels.reach.step(-1),
+            "reset_layout": self.panels.layout.arrange,
             "fit": self._with_horizon(self.fitting.fit),
             "fit_all": self.fitting.fit_all,
             "examine": self._with_horizon(self.fitting.examine),
@@ -202,8 +213,9 @@ class MainWindow(QMainWindow):
         for refusing in (self.fitting, self.delivering, self.ordering):
             refusing.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
-        for part in (self.files, self.delivering, self.ordering):
+        for part in (self.files, self.delivering, self.ordering, self.fitting):
             part.told.connect(self.tell)
+        self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.said.connect(self.tell)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (
@@ -219,6 +231,7 @@ class MainWindow(QMainWindow):
         self._show_title()
         self._enable()
         self.actions_["section"].setChecked(False)
+        self.statusBar().clearMessage()
 
     def _show_title(self) -> None:
         document = self.session.document
@@ -242,6 +255,7 @@ class MainWindow(QMainWindow):
                 action.setEnabled(is_open)
         self.actions_["stop"].setEnabled(self.activity.busy)
         self.actions_.exaggerations.setEnabled(is_open)
+        self.menus.panels.setEnabled(is_open)
 
     def _horizon(self) -> str | None:
         return self.session.document.selection.horizon
@@ -292,12 +306,8 @@ class MainWindow(QMainWindow):
     def _restore_layout(self) -> None:
         layout = self.preferences.layout
         if layout is not None:
-            self.panels.give_docks()
-        if layout is None or not self.restoreState(layout[1], LAYOUT_VERSION):
-            # Only then: docks that are put in tabs twice before the window is shown leave their first tab bars behind.
-            self.panels.arrange()
-        if layout is not None:
             self.restoreGeometry(layout[0])
+            self.panels.layout.state = layout[1]
 
 
 def _plain(do: Callable[[], object]) -> Callable[..., None]:

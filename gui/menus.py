@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QMainWindow, QMenu, QSizePolicy, QToolBar, QWidget
 
 from geofit.gui.actions import Actions
 from geofit.gui.icons import icon
+from geofit.gui.words import bare
 
 __all__ = ["Menus"]
 
@@ -27,10 +28,10 @@ class Menus(QObject):
     def __init__(self, window: QMainWindow, actions: Actions, stack: QUndoStack) -> None:
         super().__init__(window)
         self._window, self._actions = window, actions
-        self.undo = stack.createUndoAction(window, self.tr("&Undo"))
-        self.redo = stack.createRedoAction(window, self.tr("&Redo"))
+        self.undo, self.redo = QAction(window), QAction(window)
         self.undo.setShortcut(QKeySequence("Ctrl+Z"))
         self.redo.setShortcuts([QKeySequence("Ctrl+Y"), QKeySequence("Ctrl+Shift+Z")])
+        self._connect(stack)
         self.draw_icons()
         bar = window.menuBar()
         file = self._menu(bar.addMenu(self.tr("&File")), "new open sample")
@@ -50,6 +51,30 @@ class Menus(QObject):
         self._menu(bar.addMenu(self.tr("&Help")), "tutorial shortcuts | system_report about")
         self.tools = self._tool_bar()
 
+    def _connect(self, stack: QUndoStack) -> None:
+        """Let undo and redo follow the stack; not Qt's own actions, which put the key's mark amid a Chinese text."""
+        self.undo.triggered.connect(stack.undo)
+        self.redo.triggered.connect(stack.redo)
+        for action, words, able, changed in (
+            (self.undo, self.tr("&Undo"), stack.canUndo(), stack.canUndoChanged),
+            (self.redo, self.tr("&Redo"), stack.canRedo(), stack.canRedoChanged),
+        ):
+            action.setIconText(bare(words))
+            action.setEnabled(able)
+            changed.connect(action.setEnabled)
+        stack.undoTextChanged.connect(self._name_undo)
+        stack.redoTextChanged.connect(self._name_redo)
+        self._name_undo(stack.undoText())
+        self._name_redo(stack.redoText())
+
+    def _name_undo(self, step: str) -> None:
+        named = self.tr("&Undo {step}").format(step=step.replace("&", "&&"))
+        self.undo.setText(named if step else self.tr("&Undo"))
+
+    def _name_redo(self, step: str) -> None:
+        named = self.tr("&Redo {step}").format(step=step.replace("&", "&&"))
+        self.redo.setText(named if step else self.tr("&Redo"))
+
     def draw_icons(self) -> None:
         """Draw the icons anew, in the colours of the present theme."""
         self.undo.setIcon(icon("undo"))
@@ -68,7 +93,8 @@ class Menus(QObject):
     def show_panels(self, switches: Sequence[QAction]) -> None:
         """Fill the menu of panels."""
         self.panels.clear()
-        self.panels.addActions([*switches, self.panels.addSeparator(), self._actions["reset_layout"]])
+        self.panels.addActions(list(switches))
+        self._menu(self.panels, "| next_panel previous_panel | reset_layout")
 
     def _menu(self, menu: QMenu, names: str) -> QMenu:
         for name in names.split():

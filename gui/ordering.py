@@ -12,12 +12,13 @@ from geofit.gui.activity import Activity
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.gui.document.commands import PushApart, SetOrder
 from geofit.gui.document.document import Document
-from geofit.gui.document.ordering import all_orders, over_map, pushed_apart
+from geofit.gui.document.ordering import all_orders, comparable, over_map, pushed_apart
 from geofit.gui.document.recipe import DocumentError
 from geofit.gui.fitting import Fitting
 from geofit.gui.showing import Showing
 from geofit.gui.words import spoken
 from geofit.gui.workspace import Workspace
+from geofit.site import Site
 from geofit.stack.repair import Repair
 from geofit.surface import HorizonSurface
 
@@ -58,16 +59,19 @@ class Ordering(QObject):
         """Compare the strata at hand, in the document's order."""
         # What stands behind the patches is not needed there, and is much to send to another process.
         surfaces = {name: one.with_(model=None) for name, one in self._strata().items()}
-        if len(surfaces) < 2:
+        document = self._document
+        pairs = comparable(tuple(surfaces), document.state.parts)
+        if not pairs:
             self.told.emit(self.tr("Two fitted horizons are needed to check their order."))
             return
         title = self.tr("Check the order")
-        self._activity.do(title, all_orders, surfaces, self._document.site.ground, on_done=self._found, apart=True)
+        self._activity.do(title, all_orders, surfaces, pairs, document.site.ground, on_done=self._found, apart=True)
 
     def _strata(self) -> dict[str, HorizonSurface]:
         """Return the surfaces over the map; where the site states an order, those that it names (weathering cuts)."""
-        stated = self._document.site.order
-        return {n: one for n, one in over_map(self._document.surfaces()).items() if not stated or n in stated}
+        document, stated = self._document, self._document.site.order
+        over = over_map(document.surfaces())
+        return {name: one for name, one in over.items() if not stated or document.whole(name) in stated}
 
     def ask_repair(self) -> None:
         """Ask how thick the rock between two horizons is at least, and push them apart."""
@@ -82,7 +86,13 @@ class Ordering(QObject):
 
     def repair(self, minimum: float = 0.0) -> None:
         """Push the horizons apart where they cross; exact points stay."""
-        surfaces = self._strata()
+        parts = self._document.state.parts
+        strata = self._strata()
+        blocks = [name for name in strata if name in parts]
+        if blocks:
+            names = ", ".join(blocks)
+            _LOG.warning("%s", self.tr("Cut by a fault, so not pushed apart from others: {names}").format(names=names))
+        surfaces = {name: one for name, one in strata.items() if name not in parts}
         unready = [name for name, surface in surfaces.items() if surface.model is None]
         if len(surfaces) < 2 or unready:
             text = (
@@ -99,6 +109,7 @@ class Ordering(QObject):
             pushed_apart,
             surfaces,
             minimum,
+            Site("", {}, ground=self._document.site.ground, orientations=self._document.site.orientations),
             on_done=lambda found: self._repaired(surfaces, minimum, found),
             apart=True,
         )

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, Signal
 from geofit.gui.document.document import Document, Selection
 from geofit.gui.document.recipe import Row
 from geofit.gui.showing import Showing
+from geofit.gui.words import spoken
 from geofit.gui.workspace import Workspace
 from geofit.points import PointSet
 
@@ -31,6 +32,7 @@ class Selecting(QObject):
         panels.view.point_picked.connect(self._picked)
         panels.view.hole_picked.connect(self._hole_picked)
         panels.view.control_picked.connect(self._control_picked)
+        panels.adjust.control_chosen.connect(self._mark_control)
         panels.view.section_changed.connect(self._line_drawn)
         panels.section.line_changed.connect(self._line_edited)
         panels.section.thickness_changed.connect(self._thickness_edited)
@@ -95,7 +97,7 @@ class Selecting(QObject):
             panels.view.focus_point(chosen.horizon, index)
         panels.adjust.choose_point(index)
         points = self._points(chosen.horizon)
-        self.said.emit(f"{chosen.horizon}: {points.describe(index)}")
+        self.said.emit(f"{chosen.horizon}: {spoken(points.describe(index))}")
 
     def _go_to_hole(self, name: str) -> None:
         self._panels.view.focus_hole(name)
@@ -109,7 +111,12 @@ class Selecting(QObject):
         self._document.select(horizon)
         self._showing.now()
         self._panels.adjust.choose_control(patch, i, j)
+        self._mark_control(patch, i, j)
         self._panels.reveal("adjust")
+
+    def _mark_control(self, patch: str, i: int, j: int) -> None:
+        if self._document.selection.horizon is not None:
+            self._panels.view.highlight_control(self._document.selection.horizon, patch, i, j)
 
     def _go_to_section(self, name: str) -> None:
         section = next(one for one in self._document.site.sections if one.name == name)

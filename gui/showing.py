@@ -15,6 +15,7 @@ from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.workspace import Workspace
 from geofit.settings import FitSettings
 from geofit.stack.order import Order
+from geofit.stack.throw import FaultCut
 from geofit.surface import HorizonSurface
 
 __all__ = ["Showing"]
@@ -42,6 +43,7 @@ class Showing(QObject):
         self.line: ArrayLike | None = None
         self.thickness = THICKNESS
         self.orders: tuple[Order, ...] = ()
+        self.cuts: tuple[FaultCut, ...] = ()
         self._read_back: dict[str, tuple[HorizonSurface, ReadBack]] = {}
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.now)
@@ -118,6 +120,12 @@ class Showing(QObject):
         self.orders = orders
         self._show_horizon()
 
+    def show_cuts(self, cuts: tuple[FaultCut, ...]) -> None:
+        """Show how far faults displace horizons, in the checks of their blocks."""
+        horizons = {cut.horizon for cut in cuts}
+        self.cuts = (*(cut for cut in self.cuts if cut.horizon not in horizons), *cuts)
+        self._show_horizon()
+
     def show_read_back(self, found: Mapping[str, ReadBack]) -> None:
         """Show what the reader found in the files of surfaces, for as long as these are the ones."""
         surfaces = self._document.surfaces()
@@ -162,7 +170,11 @@ class Showing(QObject):
         panels.seams.show_surface(surface)
         written, back = self._read_back.get(name or "", (None, None))
         panels.checks.show_surface(
-            surface, offdata, self._orders_of(name), back if surface is not None and written is surface else None
+            surface,
+            offdata,
+            self._orders_of(name),
+            back if surface is not None and written is surface else None,
+            tuple(cut for cut in self.cuts if name in (cut.up, cut.down)),
         )
         panels.offdata.show_offdata(offdata, None if surface is None else surface.points, fitted=surface is not None)
         panels.adjust.show_surface(surface)
@@ -173,7 +185,7 @@ class Showing(QObject):
 
     def _on_site(self) -> None:
         self._site = True
-        self.line, self.orders = None, ()
+        self.line, self.orders, self.cuts = None, (), ()
         self._read_back.clear()
         self._later.start()
 
@@ -192,6 +204,7 @@ class Showing(QObject):
     def _on_result(self, name: str) -> None:
         self._results.add(name)
         self.orders = ()
+        self.cuts = tuple(cut for cut in self.cuts if name not in (cut.up, cut.down))
         self._later.start()
 
     def _on_selection(self, _: object) -> None:

@@ -137,6 +137,7 @@ class StartPage(QWidget):
         text = QVBoxLayout()
         text.setSpacing(0)
         first = QHBoxLayout()
+        first.setSpacing(8)
         first.addWidget(words)
         first.addWidget(version, 0, Qt.AlignmentFlag.AlignBottom)
         first.addStretch(1)

@@ -9,6 +9,7 @@ from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication
 
 from geofit.gui.dark_style import DarkStyle
+from geofit.gui.style import Style
 
 __all__ = ["THEMES", "Theme", "apply_theme", "is_dark", "missing_chinese", "set_font"]
 
@@ -41,7 +42,7 @@ def apply_theme(app: QApplication, theme: Theme) -> None:
     for role in ("WindowText", "Text", "ButtonText"):
         muted = QColor(_MUTED["dark" if dark else "light"])
         palette.setColor(QPalette.ColorGroup.Disabled, getattr(QPalette.ColorRole, role), muted)
-    app.setStyle(DarkStyle(palette) if dark else "Fusion")
+    app.setStyle(DarkStyle(palette) if dark else Style(palette))
     app.setPalette(palette)
 
 

@@ -3,43 +3,48 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
-from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication
+from PySide6.QtCore import QCoreApplication
 
+from geofit.errors import GeofitError
+from geofit.gui.sentences import SENTENCES
 from geofit.report.language import EN, ZH, Language, tell
-from geofit.words import Said
+from geofit.words import Verbatim, said
 
-__all__ = ["SENTENCES", "bare", "speak", "spoken"]
-
-#: Sentences that the windows' own model says (geofit.gui.document), for the translators.
-SENTENCES = (
-    QT_TRANSLATE_NOOP("Said", "Settings of {name}"),
-    QT_TRANSLATE_NOOP("Said", "Core of {name}"),
-    QT_TRANSLATE_NOOP("Said", "Exclude {file} row {row} from {name}"),
-    QT_TRANSLATE_NOOP("Said", "Include {file} row {row} in {name}"),
-    QT_TRANSLATE_NOOP("Said", "Fit {name}"),
-    QT_TRANSLATE_NOOP("Said", "Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})"),
-    QT_TRANSLATE_NOOP("Said", "Weight {weight:g} for control point {i}, {j} of {patch} ({name})"),
-    QT_TRANSLATE_NOOP("Said", "Pull {name} to point {number}"),
-    QT_TRANSLATE_NOOP("Said", "Push apart {names}"),
-    QT_TRANSLATE_NOOP("Said", "Order of the horizons"),
-    QT_TRANSLATE_NOOP("Said", "Rename the site to {name}"),
-)
+__all__ = ["bare", "failure", "speak", "spoken", "spoken_language"]
 
 _language: Language = EN
 
 
 def speak(code: str) -> None:
-    """Choose the language of :func:`spoken`: "en" or "zh_CN"."""
+    """Choose the language of :func:`spoken`: "en" or "zh_CN", whose translations must be at hand."""
     global _language
-    _language = ZH if code.startswith("zh") else EN
+    own = {text: QCoreApplication.translate("Said", text) for text in SENTENCES}
+    texts = {text: told for text, told in own.items() if told != text}
+    _language = replace(ZH, texts={**ZH.texts, **texts}) if code.startswith("zh") else EN
+
+
+def spoken_language() -> Language:
+    """Return the language of :func:`spoken`, for files that the windows write."""
+    return _language
 
 
 def spoken(text: str) -> str:
     """Return a sentence of the core as it is shown; what nobody translated stays English."""
-    if isinstance(text, Said) and text.template in SENTENCES:
-        return QCoreApplication.translate("Said", text.template).format(**text.values)
     return tell(text, _language)
+
+
+def failure(error: BaseException) -> str:
+    """Return what an error says: geofit's own sentence, the system's with the file, or Python's with its kind."""
+    if isinstance(error, GeofitError):
+        return spoken(str(error))
+    if isinstance(error, OSError) and error.strerror:
+        reason = error.strerror
+        return spoken(
+            said("{place}: {sentence}", place=Verbatim(error.filename), sentence=reason) if error.filename else reason
+        )
+    return str(error) if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
 
 
 def bare(text: str) -> str:

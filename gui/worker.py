@@ -20,6 +20,7 @@ from PySide6.QtCore import QCoreApplication, QObject, QRunnable, Qt, QThreadPool
 from shiboken6 import isValid
 
 from geofit.errors import Cancelled, GeofitError
+from geofit.words import said
 
 __all__ = ["Task", "finish_all", "run", "run_apart", "tasks", "warm"]
 
@@ -54,7 +55,8 @@ class _Line:
 class Task(QObject):
     """A task under way. Signals come in the thread that started it; after ``ended`` nothing more comes."""
 
-    progressed = Signal(str, float)
+    # Objects: of a sentence Qt would keep the letters only, not what another language is told from.
+    progressed = Signal(object, float)
     done = Signal(object)
     failed = Signal(object)
     cancelled = Signal()
@@ -117,7 +119,7 @@ class _Job(QRunnable):
 class _Bridge(QObject):
     """Carries news from the tasks' threads to the window's; it outlives them all."""
 
-    heard = Signal(int, str, float)
+    heard = Signal(int, object, float)
     ended = Signal(int, str, object)
 
     def __init__(self) -> None:
@@ -237,11 +239,14 @@ class _Helper:
                 continue
             try:
                 kind, value = self.pipe.recv()
-            except EOFError:
+            except (EOFError, ConnectionResetError):
                 self._process.join(5)
                 raise GeofitError(
-                    f"The process that did the work ended by itself (exit code {self._process.exitcode}). Memory may "
-                    "have run out: close other programs and try again."
+                    said(
+                        "The process that did the work ended by itself (exit code {code}). Memory may have run out: "
+                        "close other programs and try again.",
+                        code=self._process.exitcode,
+                    )
                 ) from None
             if kind == "progress":
                 name, fraction = value

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject, Qt
-from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QDockWidget, QMainWindow, QStackedWidget, QTabBar, QVBoxLayout, QWidget
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QDockWidget, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
 
+from geofit.gui.layout import Layout
 from geofit.gui.panels.adjust import AdjustPanel
 from geofit.gui.panels.checks import ChecksPanel
 from geofit.gui.panels.fit_panel import FitPanel
@@ -19,14 +19,11 @@ from geofit.gui.panels.scene_list import SceneList
 from geofit.gui.panels.seams import SeamTable
 from geofit.gui.panels.section import SectionPanel
 from geofit.gui.panels.verdict import VerdictBadge
+from geofit.gui.reach import Reach
 from geofit.gui.start_page import StartPage
 from geofit.gui.view3d.view import SceneView
 
 __all__ = ["Workspace"]
-
-#: Of the layout of docks that is remembered; one more when docks come or go.
-LAYOUT_VERSION = 1
-_Area = Qt.DockWidgetArea
 
 
 class Workspace(QObject):
@@ -59,64 +56,19 @@ class Workspace(QObject):
             "offdata": self._dock("offdata", self.tr("Off the data"), self.offdata),
             "log": self._dock("log", self.tr("Log"), self.log),
         }
-        window.setDockOptions(
-            QMainWindow.DockOption.AnimatedDocks
-            | QMainWindow.DockOption.AllowTabbedDocks
-            | QMainWindow.DockOption.AllowNestedDocks
-        )
-        window.setCorner(Qt.Corner.BottomLeftCorner, _Area.LeftDockWidgetArea)
-        window.setCorner(Qt.Corner.BottomRightCorner, _Area.RightDockWidgetArea)
-
-    def give_docks(self) -> None:
-        """Hand the docks to the window, for a layout that is remembered."""
-        for dock in self.docks.values():
-            self._window.addDockWidget(_Area.LeftDockWidgetArea, dock)
-
-    def arrange(self) -> None:
-        """Put every dock where it is at first."""
-        window, docks = self._window, self.docks
-        for area, names, tabbed in (
-            (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
-            (_Area.RightDockWidgetArea, ("fit", "adjust"), True),
-            (
-                _Area.BottomDockWidgetArea,
-                ("residuals", "section", "histogram", "plan", "seams", "checks", "offdata", "log"),
-                True,
-            ),
-        ):
-            for name in names:
-                if tabbed and name != names[0]:
-                    window.tabifyDockWidget(docks[names[0]], docks[name])
-                else:
-                    window.addDockWidget(area, docks[name])
-                docks[name].show()
-            docks[names[0]].raise_()
-        width, height = window.width(), window.height()
-        window.resizeDocks([docks["tree"], docks["fit"]], [width // 6, width // 5], Qt.Orientation.Horizontal)
-        window.resizeDocks([docks["residuals"]], [height // 3], Qt.Orientation.Vertical)
-        window.resizeDocks([docks["tree"], docks["scene"]], [height // 2, height // 2], Qt.Orientation.Vertical)
-        self._hide_lost_tabs()
-
-    def _hide_lost_tabs(self) -> None:
-        """Hide tab bars that Qt makes while it puts docks into tabs, and forgets: another one has all their tabs."""
-        bars = self._window.findChildren(QTabBar, options=Qt.FindChildOption.FindDirectChildrenOnly)
-        held = [{bar.tabText(k) for k in range(bar.count())} for bar in bars]
-        for bar, tabs in zip(bars, held, strict=True):
-            if any(tabs < other for other in held):
-                bar.hide()
-
-    def switches(self) -> list[QAction]:
-        """Return an action for each dock that shows and hides it."""
-        return [dock.toggleViewAction() for dock in self.docks.values()]
+        self.layout, self.reach = Layout(window, self.docks), Reach(self.docks, self.view)
 
     def reveal(self, name: str) -> None:
         """Bring a dock to the front."""
-        self.docks[name].show()
-        self.docks[name].raise_()
+        self.reach.reveal(name)
 
     def show_scene(self, shown: bool) -> None:
-        """Show the 3D view, or the start page."""
+        """Show the 3D view among its docks, or the start page alone."""
         self.centre.setCurrentWidget(self.view if shown else self.start)
+        if shown:
+            self.layout.show()
+        else:
+            self.layout.hide()
 
     def close(self) -> None:
         """Let go of what outlives a widget: the 3D view's context, the log's handler."""

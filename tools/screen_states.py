@@ -28,6 +28,7 @@ from geofit.gui.worker import tasks
 from geofit.report.result import HorizonResult
 from geofit.sample import write_site
 from geofit.site import Site
+from geofit.words import said
 
 __all__ = ["take"]
 
@@ -77,7 +78,6 @@ class _Set:
         self.desktop.change_language(language)
         self.window.show()
         self.window.resize(*SIZE)
-        self.window.panels.arrange()
         QSettings().setValue("folder", str(FOLDER))
         self.idle()
         for state in (
@@ -102,17 +102,18 @@ class _Set:
             shutil.copy(FOLDER / name, folder / name)
         wizard = ImportWizard(sorted(folder.glob("*.csv")), folder, self.window)
         wizard.show()
-        self.until(lambda: wizard._task is None and wizard.list.count() > 0)
+        self.until(lambda: not wizard.running and wizard.list.count() > 0)
         wizard.list.setCurrentRow(0)
         self.shoot("02_import", wizard)
-        wizard.forward.click()
-        self.until(lambda: wizard._task is None)
+        wizard.go.click()
+        self.until(lambda: not wizard.running)
         self.shoot("03_import_result", wizard)
         self.close(wizard)
 
     def site(self) -> None:
         self.window.files.open(FOLDER / "site.toml")
         self.idle()
+        self.window.panels.layout.arrange()
         self.window.actions_.exaggerations.actions()[1].trigger()
         self.shoot("04_site", self.window)
 
@@ -156,7 +157,7 @@ class _Set:
 
     def adjust(self) -> None:
         self.window.actions_["control_points"].setChecked(True)
-        panel = self.window.panels.adjust
+        control = self.window.panels.adjust.control
         surface = self.window.session.document.surface(SHOWN)
         assert surface is not None
         assert surface.accuracy is not None
@@ -166,10 +167,10 @@ class _Set:
         i, j = np.unravel_index(nearest.argmin(), nearest.shape)
         self.window.panels.view.control_picked.emit(SHOWN, patch.name, int(i), int(j))
         self.window.panels.reveal("residuals")
-        panel.dz.setValue(0.5)
+        control.dz.setValue(0.5)
         self.idle(1.5)
         self.shoot("11_adjust", self.window)
-        panel.dz.setValue(0.0)
+        control.dz.setValue(0.0)
         self.window.actions_["control_points"].setChecked(False)
         self.window.panels.reveal("fit")
 
@@ -188,8 +189,8 @@ class _Set:
         for row in range(2, dialog.horizons.count()):
             dialog.horizons.item(row).setCheckState(Qt.CheckState.Unchecked)
         dialog.show()
-        dialog.write.click()
-        self.until(lambda: dialog._task is None)
+        dialog.go.click()
+        self.until(lambda: not dialog.running)
         self.shoot("14_export_step", dialog)
         self.close(dialog)
 
@@ -201,10 +202,9 @@ class _Set:
 
     def small(self) -> None:
         error = InputError(
-            "The separator is ';' in the first rows and ',' further down",
-            "Write the file with one separator, or name it in the site file.",
+            said("The separator {sep!r} is not one character", sep=";;"),
+            said("Give one character, 'tab' or 'space'."),
             file="lithology.csv",
-            row=41,
         )
         self.dialog("16_error", ErrorDialog(self.window.files.tr("Open {name}").format(name="site.toml"), error,
                                             self.window))  # fmt: skip

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 
 from geofit import __version__
 from geofit.errors import GeofitError, InputError
-from geofit.gui.words import spoken
+from geofit.gui.words import failure, spoken
 
 __all__ = ["ErrorDialog"]
 
@@ -80,14 +80,14 @@ class ErrorDialog(QDialog):
             return spoken(str(error))
         if isinstance(error, OSError):
             return self.tr("{reason}\n\nCheck that the folder is there, can be written, and has room.").format(
-                reason=error
+                reason=failure(error)
             )
         if isinstance(error, MemoryError):
             return self.tr("There is not enough memory. Close other programs, or work with fewer points.")
         return self.tr(
             "This is a mistake in geofit, not in your data. Your work is still here: save it. Then copy the details "
             "and send them to whoever looks after geofit.\n\n{error}"
-        ).format(error=f"{type(error).__name__}: {error}")
+        ).format(error=failure(error))
 
     def _show_details(self, shown: bool) -> None:
         self._text.setVisible(shown)

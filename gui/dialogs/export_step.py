@@ -8,13 +8,11 @@ from glob import escape
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import QSettings, Qt, QUrl
-from PySide6.QtGui import QCloseEvent, QDesktopServices
+from PySide6.QtCore import QSettings, QSize, Qt, QUrl
+from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QButtonGroup,
     QComboBox,
-    QDialog,
-    QDialogButtonBox,
     QFileDialog,
     QFormLayout,
     QHBoxLayout,
@@ -23,7 +21,6 @@ from PySide6.QtWidgets import (
     QLineEdit,
     QListWidget,
     QListWidgetItem,
-    QProgressBar,
     QPushButton,
     QRadioButton,
     QVBoxLayout,
@@ -31,13 +28,12 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.accuracy import Check
-from geofit.errors import GeofitError
 from geofit.files import file_stems
+from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.document.step_files import StepFile, step_paths, write_step_files
-from geofit.gui.panels.marks import icon, verdict_mark
+from geofit.gui.panels.marks import verdict_mark
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
-from geofit.gui.worker import Task, run_apart
 from geofit.report import digits
 from geofit.surface import HorizonSurface
 
@@ -46,7 +42,7 @@ __all__ = ["ExportDialog"]
 _FOLDER = "folder"
 
 
-class ExportDialog(QDialog):
+class ExportDialog(TaskDialog):
     """Asks which horizons go where, writes them in a process of its own, and lists the checks of the read-back.
 
     ``files`` holds what was written last.
@@ -57,7 +53,6 @@ class ExportDialog(QDialog):
         self.setWindowTitle(self.tr("Export STEP"))
         # The patches are all that a file holds; what stands behind them need not travel to the other process.
         self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
-        self._task: Task | None = None
         self.files: list[StepFile] = []
         self.horizons = self._list()
         self.target = QLineEdit(str(Path(str(QSettings().value(_FOLDER, ""))) / self._proposed()))
@@ -68,44 +63,27 @@ class ExportDialog(QDialog):
             self.tr("The file says which unit it has, and CAD systems convert. The surfaces are the same.")
         )
         self.together, self.apart = QRadioButton(self.tr("&One file")), QRadioButton(self.tr("One file a &horizon"))
-        self.message, self.sign = QLabel(), QLabel()
-        self.message.setWordWrap(True)
-        self.message.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.table = DataTable()
         self.table.setAccessibleName(self.tr("What the reader found in the file"))
-        self.progress = QProgressBar()
-        self.progress.setRange(0, 0)
-        self.progress.setTextVisible(False)
-        self.write = QPushButton(self.tr("&Write"))
-        self.write.setDefault(True)
-        self.stop = QPushButton(self.tr("&Stop"))
+        # The form stays where it is when the table comes.
+        policy = self.table.sizePolicy()
+        policy.setRetainSizeWhenHidden(True)
+        self.table.setSizePolicy(policy)
+        self.go.setText(self.tr("&Write"))
         self.folder = QPushButton(self.tr("Open &folder"))
-        self.close_box = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         self._lay_out()
-        self.horizons.itemChanged.connect(self._refresh)
-        self.target.textChanged.connect(self._refresh)
-        self.apart.toggled.connect(self._refresh)
-        self.write.clicked.connect(self._write)
-        self.stop.clicked.connect(self._cancel)
+        self.horizons.itemChanged.connect(self.refresh)
+        self.target.textChanged.connect(self.refresh)
+        self.apart.toggled.connect(self.refresh)
+        self.go.clicked.connect(self._write)
         self.folder.clicked.connect(self._open_folder)
-        self.close_box.rejected.connect(self.reject)
-        self._say(self.tr("After writing, OpenCASCADE reads the file back; what it finds is listed here."), "none")
-        self._refresh()
+        self.say(self.tr("After writing, OpenCASCADE reads the file back; what it finds is listed here."))
+        self.refresh()
 
     def chosen(self) -> list[str]:
         """Return the horizons that will be written."""
         items = (self.horizons.item(row) for row in range(self.horizons.count()))
         return [item.data(Qt.ItemDataRole.UserRole) for item in items if item.checkState() == Qt.CheckState.Checked]
-
-    def reject(self) -> None:
-        """Stop what runs, and close."""
-        self._cancel()
-        super().reject()
-
-    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Stop what runs."""
-        self._cancel()
-        super().closeEvent(event)
 
     def _list(self) -> QListWidget:
         made = QListWidget()
@@ -148,23 +126,13 @@ class ExportDialog(QDialog):
             label.setBuddy(field)
             form.addRow(label, row)
         form.insertRow(2, "", choice)
-        said = QHBoxLayout()
-        said.addWidget(self.sign, 0, Qt.AlignmentFlag.AlignTop)
-        said.addWidget(self.message, 1)
-        foot = QHBoxLayout()
-        foot.addWidget(self.progress, 1)
-        foot.addStretch(1)
-        foot.addWidget(self.folder)
-        foot.addWidget(self.stop)
-        foot.addWidget(self.write)
-        foot.addWidget(self.close_box)
-        self._fields = (self.horizons, self.target, browse, self.together, self.apart, self.unit)
+        self.fields = (self.horizons, self.target, browse, self.together, self.apart, self.unit)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
-        layout.addLayout(said)
+        layout.addLayout(self.said)
         layout.addWidget(self.table, 1)
-        layout.addLayout(foot)
-        self.resize(960, 640)
+        layout.addLayout(self.foot(self.folder))
+        self.resize(QSize(960, 640).boundedTo(self.screen().availableSize()))
 
     def _browse(self) -> None:
         path, _ = QFileDialog.getSaveFileName(
@@ -181,19 +149,10 @@ class ExportDialog(QDialog):
         names = self.chosen()
         surfaces = {name: self._surfaces[name] for name in names}
         self.files = []
-        self._say(self.tr("Writing, and reading back what was written…"), "none")
+        self.say(self.tr("Writing, and reading back what was written…"))
         work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked())
-        self._task = run_apart(
-            self,
-            write_step_files,
-            *work,
-            title=self.windowTitle(),
-            on_done=self._written,
-            on_failed=self._failed,
-            on_cancelled=partial(self._stopped, list(step_paths(names, work[1], separate=work[3]))),
-        )
-        self._task.ended.connect(self._rested)
-        self._refresh()
+        paths = list(step_paths(names, work[1], separate=work[3]))
+        self.begin(write_step_files, *work, on_done=self._written, on_stopped=partial(self._stopped, paths))
 
     def _written(self, files: list[StepFile]) -> None:
         self.files = files
@@ -202,7 +161,7 @@ class ExportDialog(QDialog):
         size = digits.size(sum(file.size for file in files))
         names = ", ".join(file.path.name for file in files)
         if all(back.passed for back in found.values()):
-            self._say(self.tr("Wrote {names} ({size}). Every check of the file holds.").format(names=names, size=size),
+            self.say(self.tr("Wrote {names} ({size}). Every check of the file holds.").format(names=names, size=size),
                       "passed")  # fmt: skip
         else:
             bad = ", ".join(name for name, back in found.items() if not back.passed)
@@ -210,7 +169,7 @@ class ExportDialog(QDialog):
                 "Wrote {names} ({size}), but the file does not hold what it should for: {bad}. Look at the failed "
                 "checks below; fit these horizons with a smaller tolerance or another core before you pass the file on."
             )
-            self._say(text.format(names=names, size=size, bad=bad), "failed")
+            self.say(text.format(names=names, size=size, bad=bad), "failed")
         self._show_checks([(name, check) for name, back in found.items() for check in self._checks(name, files)])
 
     def _checks(self, name: str, files: list[StepFile]) -> list[Check]:
@@ -255,52 +214,23 @@ class ExportDialog(QDialog):
         header = self.table.horizontalHeader()
         header.setSectionResizeMode(header.count() - 1, QHeaderView.ResizeMode.Stretch)
 
-    def _failed(self, error: Exception) -> None:
-        if isinstance(error, GeofitError):
-            text = spoken(str(error))
-        elif isinstance(error, OSError):
-            text = self.tr("{reason}. Check that the folder is there, can be written, and has room.").format(
-                reason=error
-            )
-        else:
-            text = self.tr("This is a mistake in geofit, not in your data; please report it: {error}").format(
-                error=f"{type(error).__name__}: {error}"
-            )
-        self._say(text, "failed")
-
     def _stopped(self, files: list[Path]) -> None:
         """Sweep away what the ended process left half written."""
         for file in files:
             for rest in file.parent.glob(f".{escape(file.stem)}-????????.step"):
                 rest.unlink(missing_ok=True)
-        self._say(self.tr("Stopped. A file that was not finished is not there."), "none")
-
-    def _rested(self) -> None:
-        self._task = None
-        self._refresh()
-
-    def _cancel(self) -> None:
-        if self._task is not None:
-            self._task.cancel()
+        self.say(self.tr("Stopped. A file that was not finished is not there."))
 
     def _open_folder(self) -> None:
         QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.files[0].path.parent)))
 
-    def _say(self, text: str, mark: str) -> None:
-        self.message.setText(text)
-        self.sign.setPixmap(icon(mark).pixmap(16))
-
-    def _refresh(self) -> None:
+    def refresh(self) -> None:
         """Enable what can be done, and say which files there will be."""
-        running, names = self._task is not None, self.chosen()
-        for field in self._fields:
-            field.setEnabled(not running)
-        self.apart.setEnabled(not running and len(names) > 1)
-        self.write.setVisible(not running)
-        self.write.setEnabled(bool(names) and bool(self.target.text().strip()))
-        self.stop.setVisible(running)
-        self.progress.setVisible(running)
-        self.folder.setVisible(bool(self.files) and not running)
-        self.table.setVisible(bool(self.files) and not running)
+        super().refresh()
+        names, idle = self.chosen(), not self.running
+        self.apart.setEnabled(idle and len(names) > 1)
+        self.go.setEnabled(idle and bool(names) and bool(self.target.text().strip()))
+        self.folder.setVisible(bool(self.files) and idle)
+        self.table.setVisible(bool(self.files) and idle)
         files = [path.name for path in step_paths(names, self._path(), separate=self.apart.isChecked())]
         self.target.setToolTip("\n".join(files))

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.gui.words import spoken
+from geofit.gui.words import spoken, spoken_language
 from geofit.site import ImportIssue, Site
 
 __all__ = ["IssuesDialog"]
@@ -34,7 +34,7 @@ class IssuesDialog(QDialog):
         self.setWindowTitle(self.tr("Import problems"))
         self._site = site
         read, used, listed = (sum(getattr(c, key) for c in site.counts) for key in ("read", "used", "listed"))
-        text = self.tr("{read} rows read = {used} used + {listed} listed here.")
+        text = self.tr("Rows read: {read} = {used} used + {listed} listed here.")
         self.balance = QLabel(text.format(read=read, used=used, listed=listed))
         self.table = QTableView()
         rows = QSortFilterProxyModel(self)
@@ -71,7 +71,7 @@ class IssuesDialog(QDialog):
 
         path, _ = QFileDialog.getSaveFileName(self, self.windowTitle(), "import_issues.csv", "CSV (*.csv)")
         if path:
-            write_issues(self._site.issues, Path(path))
+            write_issues(self._site.issues, Path(path), spoken_language())
 
 
 class _Issues(QAbstractTableModel):

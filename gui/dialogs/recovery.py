@@ -67,7 +67,7 @@ class RecoveryDialog(QDialog):
         steps = [spoken(command.text) for command in session.commands]
         last = "; ".join(steps[-_NAMED:])
         more = "… " if len(steps) > _NAMED else ""
-        return self.tr("{site} – {when} – {count} steps: {steps}\n{file}").format(
+        return self.tr("{site} – {when} – steps ({count}): {steps}\n{file}").format(
             site=session.base.name, when=when, count=len(steps), steps=more + last, file=file or ""
         )
 

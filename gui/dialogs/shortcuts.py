@@ -6,7 +6,6 @@ from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
-    QHeaderView,
     QMenu,
     QMenuBar,
     QTreeWidget,
@@ -19,6 +18,10 @@ from geofit.gui.words import bare
 __all__ = ["ShortcutsDialog"]
 
 
+#: Pixels between an action and its keys.
+GAP = 16
+
+
 class ShortcutsDialog(QDialog):
     """Lists every action of a menu bar that has a key."""
 
@@ -27,7 +30,6 @@ class ShortcutsDialog(QDialog):
         self.setWindowTitle(self.tr("Keyboard shortcuts"))
         self.tree = QTreeWidget()
         self.tree.setHeaderLabels([self.tr("Action"), self.tr("Key")])
-        self.tree.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         for entry in bar.actions():
             menu = entry.menu()
             rows = _rows(menu.actions()) if isinstance(menu, QMenu) else []
@@ -35,6 +37,8 @@ class ShortcutsDialog(QDialog):
                 item = QTreeWidgetItem(self.tree, [bare(entry.text())])
                 item.addChildren([QTreeWidgetItem(list(row)) for row in rows])
         self.tree.expandAll()
+        self.tree.resizeColumnToContents(0)
+        self.tree.setColumnWidth(0, self.tree.columnWidth(0) + GAP)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)
         layout = QVBoxLayout(self)
@@ -45,8 +49,11 @@ class ShortcutsDialog(QDialog):
 
 def _rows(actions: list[QAction]) -> list[tuple[str, str]]:
     native = QKeySequence.SequenceFormat.NativeText
-    return [
-        (bare(action.text()), ", ".join(key.toString(native) for key in action.shortcuts()))
-        for action in actions
-        if action.shortcuts() and action.menu() is None
-    ]
+    rows = []
+    for action in actions:
+        below = action.menu()
+        if isinstance(below, QMenu):
+            rows += _rows(below.actions())
+        elif action.shortcuts():
+            rows.append((action.iconText(), ", ".join(key.toString(native) for key in action.shortcuts())))
+    return rows

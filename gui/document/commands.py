@@ -6,11 +6,22 @@ A command is checked by :meth:`Command.on` before anything changes; the document
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from geofit.gui.document.recipe import Apart, DocumentError, HandEdit, Move, Pull, Recipe, Row, Weigh, settings_from
+from geofit.gui.document.recipe import (
+    Apart,
+    DocumentError,
+    HandEdit,
+    Move,
+    Part,
+    Pull,
+    Recipe,
+    Row,
+    Weigh,
+    settings_from,
+)
 from geofit.gui.document.state import State
 from geofit.settings import FitSettings
 from geofit.words import Said, said
@@ -25,6 +36,7 @@ __all__ = [
     "Command",
     "ExcludeRow",
     "IncludeRow",
+    "PartAtFaults",
     "PullToPoint",
     "PushApart",
     "RenameSite",
@@ -64,7 +76,7 @@ class Command(ABC):
     def undo(self, document: Document) -> None:
         """Take it back."""
         if self._before is None:
-            raise DocumentError(f"'{self.text}' was not done yet and cannot be undone. Call redo() first.")
+            raise DocumentError(said("'{step}' was not done yet and cannot be undone.", step=self.text))
         document.become(self._before)
 
     def to_data(self) -> dict[str, Any]:
@@ -152,7 +164,14 @@ class ExcludeRow(_RowCommand):
     def on(self, state: State) -> State:  # noqa: D102
         rows = self._excluded(state)
         if self.row in rows:
-            raise DocumentError(f"{self.row.file} row {self.row.row} is excluded from '{self.horizon}' already.")
+            raise DocumentError(
+                said(
+                    "{file} row {row} is excluded from '{name}' already.",
+                    file=self.row.file,
+                    row=self.row.row,
+                    name=self.horizon,
+                )
+            )
         return self._with(state, rows | {self.row})
 
 
@@ -169,7 +188,14 @@ class IncludeRow(_RowCommand):
     def on(self, state: State) -> State:  # noqa: D102
         rows = self._excluded(state)
         if self.row not in rows:
-            raise DocumentError(f"{self.row.file} row {self.row.row} is not excluded from '{self.horizon}'.")
+            raise DocumentError(
+                said(
+                    "{file} row {row} is not excluded from '{name}'.",
+                    file=self.row.file,
+                    row=self.row.row,
+                    name=self.horizon,
+                )
+            )
         return self._with(state, rows - {self.row})
 
 
@@ -194,6 +220,52 @@ class SetSurface(Command):
 
 
 @dataclass
+class PartAtFaults(Command):
+    """Blocks take the place of a horizon that faults cut, or of its former blocks."""
+
+    kind = "part"
+    horizon: str
+    blocks: dict[str, Part]
+
+    @property
+    def text(self) -> Said:  # noqa: D102
+        faults = dict.fromkeys(fault.horizon for part in self.blocks.values() for fault in part.faults)
+        return said("Part {name} at {faults}", name=self.horizon, faults=", ".join(faults))
+
+    def on(self, state: State) -> State:  # noqa: D102
+        former = [name for name, part in state.parts.items() if part.horizon == self.horizon] or [self.horizon]
+        _known(state, former[0])
+        taken = [name for name in self.blocks if name in state.settings and name not in former]
+        if taken:
+            raise DocumentError(
+                said(
+                    "A block of '{name}' is called '{block}', and so is a horizon. Rename the horizon.",
+                    name=self.horizon,
+                    block=taken[0],
+                )
+            )
+        at = min(state.order.index(name) for name in former)
+        order = [name for name in state.order if name not in former]
+        order[at:at] = self.blocks
+        # A row that was excluded from a block may lie in another one now.
+        rows = frozenset[Row]().union(*(state.excluded.get(name, ()) for name in former if name != self.horizon))
+        model = state.settings[former[0]]
+        return replace(
+            state,
+            order=tuple(order),
+            settings=_without(state.settings, former, self.horizon)
+            | {name: state.settings.get(name, model) for name in self.blocks},
+            excluded=_without(state.excluded, former, self.horizon) | {name: rows for name in self.blocks if rows},
+            recipes=_without(state.recipes, (*former, self.horizon)),
+            parts=_without(state.parts, former) | self.blocks,
+        )
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
+        return cls(data["horizon"], {name: Part.from_data(part) for name, part in data["blocks"].items()})
+
+
+@dataclass
 class _HandCommand(Command):
     horizon: str
 
@@ -205,7 +277,7 @@ class _HandCommand(Command):
     def on(self, state: State) -> State:
         recipe = state.recipes.get(self.horizon)
         if recipe is None:
-            raise DocumentError(f"'{self.horizon}' has no surface to adjust. Fit it first.")
+            raise DocumentError(said("'{name}' has no surface to adjust. Fit it first.", name=self.horizon))
         changed = replace(recipe, edits=(*recipe.edits, self.edit))
         return replace(state, recipes={**state.recipes, self.horizon: changed})
 
@@ -288,7 +360,7 @@ class PushApart(Command):
         """Return the new recipes of the horizons that move."""
         missing = [name for name in self.sequence if name not in state.recipes]
         if missing:
-            raise DocumentError(f"'{missing[0]}' has no surface that could be moved. Fit it first.")
+            raise DocumentError(said("'{name}' has no surface that could be moved. Fit it first.", name=missing[0]))
         return {
             name: replace(former, edits=(*former.edits, Apart(self.sequence, self.minimum, others)))
             for name in self.moved
@@ -317,7 +389,7 @@ class SetOrder(Command):
 
     def on(self, state: State) -> State:  # noqa: D102
         if sorted(self.order) != sorted(state.order):
-            raise DocumentError(f"The order must name each horizon once: {', '.join(state.order)}.")
+            raise DocumentError(said("The order must name each horizon once: {names}.", names=", ".join(state.order)))
         return replace(state, order=self.order)
 
     @classmethod
@@ -346,8 +418,8 @@ class RenameSite(Command):
 COMMANDS: dict[str, type[Command]] = {
     command.kind: command
     for command in (
-        SetSettings, SetCore, ExcludeRow, IncludeRow, SetSurface, AdjustControlPoint, ChangeWeight, PullToPoint,
-        PushApart, SetOrder, RenameSite,
+        SetSettings, SetCore, ExcludeRow, IncludeRow, SetSurface, PartAtFaults, AdjustControlPoint, ChangeWeight,
+        PullToPoint, PushApart, SetOrder, RenameSite,
     )
 }  # fmt: skip
 
@@ -358,13 +430,20 @@ def command_from(data: Mapping[str, Any]) -> Command:
 
 
 def _known(state: State, horizon: str) -> None:
-    if horizon not in state.settings:
-        raise DocumentError(f"The site has no horizon '{horizon}'. It has {', '.join(state.settings) or 'none'}.")
+    if horizon not in state.order:
+        names = ", ".join(state.order) or said("none")
+        raise DocumentError(said("The site has no horizon '{name}'. It has {names}.", name=horizon, names=names))
+
+
+def _without(values: Mapping[str, Any], names: Collection[str], kept: str = "") -> dict[str, Any]:
+    return {name: value for name, value in values.items() if name not in names or name == kept}
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, Recipe):
+    if isinstance(value, (Recipe, Part)):
         return value.to_data()
+    if isinstance(value, dict):
+        return {name: _plain(one) for name, one in value.items()}
     if isinstance(value, (FitSettings, Row)):
         return asdict(value)
     return value

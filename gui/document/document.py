@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from geofit.gui.document.making import Given
+from geofit.gui.document.parting import Blocks, parted_site
 from geofit.gui.document.recipe import DocumentError, Recipe, Row, fingerprint, without_rows
 from geofit.gui.document.shelf import Shelf
 from geofit.gui.document.signal import Signal
@@ -15,6 +17,7 @@ from geofit.points import PointSet
 from geofit.settings import FitSettings
 from geofit.site import Site
 from geofit.surface import HorizonSurface
+from geofit.words import said
 
 __all__ = ["Document", "Selection"]
 
@@ -38,7 +41,7 @@ class Document:
     Signals
     -------
     site_changed()
-        Another site was opened: look at everything anew.
+        Another site was opened, or a horizon was parted into blocks: look at everything anew.
     settings_changed(horizon), points_changed(horizon), result_changed(horizon)
         Settings; rows that take part; the surface, its check or what is known off the data.
     order_changed(), name_changed()
@@ -50,7 +53,7 @@ class Document:
     """
 
     def __init__(self) -> None:
-        self.site: Site = _EMPTY
+        self._read = self._site = _EMPTY
         self.site_file: Path | None = None
         self.project_file: Path | None = None
         self.selection = Selection()
@@ -72,26 +75,25 @@ class Document:
         self, site: Site, site_file: Path | None, state: State | None = None, project_file: Path | None = None
     ) -> None:
         """Begin with a site, and with the work that a project or a journal holds."""
-        self.site, self.site_file, self.project_file = site, site_file, project_file
+        self.site_file, self.project_file = site_file, project_file
         self.shelf.clear()
-        self._points.clear()
-        self._fingerprints.clear()
-        self._used = site
         self._state = self._saved = state or State.of_site(site)
+        self._read = site
+        self._take_parts()
         worked_on = [name for name in self._state.order if name in self._state.recipes]
         self.selection = Selection(next(iter((*worked_on, *self._state.order)), None))
         self.site_changed.emit()
         self.saved_changed.emit()
 
     @property
+    def site(self) -> Site:
+        """The site, blocks in the place of horizons that were parted at their faults."""
+        return self._site
+
+    @property
     def state(self) -> State:
         """What commands change."""
         return self._state
-
-    @property
-    def saved_state(self) -> State:
-        """The state that the project file holds."""
-        return self._saved
 
     @property
     def dirty(self) -> bool:
@@ -107,6 +109,11 @@ class Document:
         """Take another state, and tell what is different. For commands only."""
         former, was_dirty = self._state, self.dirty
         self._state = state
+        if former.parts != state.parts:
+            self._take_parts()
+            if self.selection.horizon not in state.order:
+                self.selection = Selection(self._nearest(self.selection.horizon))
+            self.site_changed.emit()
         for name in state.settings:
             if former.settings.get(name) != state.settings[name]:
                 self.settings_changed.emit(name)
@@ -154,13 +161,33 @@ class Document:
     def recipe(self, name: str) -> Recipe:
         """Return from what the next fit of a horizon will be made."""
         excluded = tuple(sorted(self._state.excluded.get(name, ())))
-        return Recipe(name, self.settings(name), self.given(name), excluded)
+        return Recipe(name, self.settings(name), self.given(name), excluded, part=self._state.parts.get(name))
 
     def given(self, name: str) -> str:
-        """Return the fingerprint of the site's points and study area for a horizon."""
+        """Return the fingerprint of the site for a horizon, or for the whole of one that was parted."""
         if name not in self._fingerprints:
-            self._fingerprints[name] = fingerprint(self._given(name), self.site.boundary)
+            points = self._given(name) if name in self._site.horizons else self._read.horizons.get(name)
+            self._fingerprints[name] = "" if points is None else fingerprint(points, self._read)
         return self._fingerprints[name]
+
+    def whole(self, name: str) -> str:
+        """Return the horizon that a block is a part of; a horizon that was not parted is its own whole."""
+        part = self._state.parts.get(name)
+        return name if part is None else part.horizon
+
+    def faults(self, name: str) -> tuple[Recipe, ...]:
+        """Return from what the faults are made that cut a horizon or the whole of a block, as they are now."""
+        whole = self.whole(name)
+        cutting = [fault for fault, cut in self._read.faults.items() if whole in cut and fault in self._state.settings]
+        known = self._state.recipes
+        return tuple(known[f] if f in known and not self.stale(f) else self.recipe(f) for f in cutting)
+
+    def unparted(self, name: str) -> bool:
+        """Whether faults cut a horizon that was not parted at them, or not as they are now."""
+        faults, part = self.faults(name), self._state.parts.get(name)
+        if part is None:
+            return bool(faults)
+        return part.faults != faults or part.given != self.given(part.horizon)
 
     def surface(self, name: str) -> HorizonSurface | None:
         """Return the surface of a horizon; None if there is none, or if it is wanted but not made yet."""
@@ -188,7 +215,10 @@ class Document:
     def stale(self, name: str) -> bool:
         """Whether the surface was made from other settings, rows or files than the horizon has now."""
         recipe = self._state.recipes.get(name)
-        return recipe is not None and replace(recipe, edits=()) != self.recipe(name)
+        if recipe is None:
+            return False
+        parted = recipe.part is not None
+        return replace(recipe, edits=()) != self.recipe(name) or (parted and self.unparted(name))
 
     def missing(self) -> tuple[Recipe, ...]:
         """Return recipes whose surfaces are wanted, not at hand, and can be made from the site as it is."""
@@ -208,15 +238,36 @@ class Document:
 
     def holds(self, recipe: Recipe) -> bool:
         """Whether a surface can be made again as it was: the site has the data that the recipe was for."""
-        return all(part.given == self.given(part.horizon) for part in recipe.parts())
+        return all(one.given == self.given(one.horizon) for one in recipe.ingredients())
 
-    def given_for(self, recipe: Recipe) -> dict[str, PointSet]:
-        """Return all points of the other horizons that a recipe names."""
-        return {part.horizon: self._given(part.horizon) for part in recipe.parts() if part.horizon != recipe.horizon}
+    def given_for(self, *recipes: Recipe) -> Given:
+        """Return all that surfaces are made from: of the site what the recipes name, and faults at hand."""
+        named = [one for recipe in recipes for one in recipe.ingredients()]
+        faults = [fault for one in named if one.part is not None for fault in one.part.faults]
+        return self._give({one.horizon: self._given(one.horizon) for one in named}, faults)
 
-    def points_of(self, recipe: Recipe) -> PointSet:
-        """Return the points that a recipe is made from."""
-        return without_rows(self._given(recipe.horizon), recipe.excluded)
+    def given_for_parting(self, whole: str) -> tuple[Given, tuple[int, ...]]:
+        """Return what a horizon is parted from, and the numbers of its points whose rows were excluded."""
+        points, faults = self._read.horizons[whole], self.faults(whole)
+        named = {one.horizon for fault in faults for one in fault.ingredients()}
+        out = {
+            index
+            for name, rows in self._state.excluded.items()
+            if self.whole(name) == whole
+            for row in rows
+            if (index := row.find(points)) is not None
+        }
+        return self._give({whole: points, **{name: self._given(name) for name in named}}, faults), tuple(sorted(out))
+
+    def blocks(self, whole: str | None = None) -> Blocks:
+        """Return the blocks whose surfaces are at hand: those of a horizon, or all."""
+        surfaces = self.surfaces()
+        found = {
+            name: (part, surfaces[name].with_(model=None))
+            for name, part in self._state.parts.items()
+            if name in surfaces and whole in (None, part.horizon)
+        }
+        return Blocks(found, self.given_for(*(self._state.recipes[name] for name in found)))
 
     def select(self, horizon: str | None, row: Row | None = None) -> None:
         """Choose a horizon, and a row of its data."""
@@ -226,9 +277,32 @@ class Document:
             self.selection_changed.emit(chosen)
 
     def _given(self, name: str) -> PointSet:
-        if name not in self.site.horizons:
-            raise DocumentError(f"The site has no horizon '{name}'. It has {', '.join(self.site.horizons) or 'none'}.")
-        return self.site.horizons[name]
+        horizons = self._site.horizons
+        if name not in horizons:
+            names = ", ".join(horizons) or said("none")
+            raise DocumentError(said("The site has no horizon '{name}'. It has {names}.", name=name, names=names))
+        return horizons[name]
+
+    def _give(self, horizons: Mapping[str, PointSet], faults: Iterable[Recipe]) -> Given:
+        site = self._site
+        reduced = Site(site.name, horizons, boundary=site.boundary, ground=site.ground, orientations=site.orientations)
+        # One that was read from a file has lost its last digits; what stands behind the patches need not travel.
+        made = {fault: one.with_(model=None) for fault in faults if (one := self.shelf.surface(fault)) and one.model}
+        return Given(reduced, made)
+
+    def _take_parts(self) -> None:
+        self._site = self._used = parted_site(self._read, self._state.parts)
+        self._points.clear()
+        self._fingerprints.clear()
+
+    def _nearest(self, former: str | None) -> str | None:
+        """Return a block of the horizon that was chosen, or the whole of the block; else the highest horizon."""
+        near = [
+            name
+            for name in self._state.order
+            if former and (self.whole(name) == former or former.startswith(f"{name} ("))
+        ]
+        return next(iter((*near, *self._state.order)), None)
 
     def _tell_of(self, recipe: Recipe) -> None:
         if self._state.recipes.get(recipe.horizon) == recipe:

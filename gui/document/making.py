@@ -5,64 +5,88 @@ What stands here runs in a process of its own, and tells by plain values what it
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
-
-import numpy as np
-from numpy.typing import NDArray
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 from geofit.accuracy import Accuracy
-from geofit.gui.document.recipe import Apart, HandEdit, Move, Pull, Recipe, without_rows
+from geofit.gui.document.recipe import Apart, HandEdit, Move, Part, Pull, Recipe, without_rows
 from geofit.offdata import OffData
 from geofit.points import PointSet
 from geofit.progress import Progress, tell
+from geofit.site import Site
 from geofit.surface import HorizonSurface
 
-__all__ = ["changed", "edited", "examined", "get_ready", "made", "make"]
-
-Floats = NDArray[np.float64]
-#: Points by horizon.
-Given = Mapping[str, PointSet]
+__all__ = ["Given", "beside", "changed", "edited", "examined", "fault_surfaces", "get_ready", "made", "make"]
 
 
-def make(
-    recipe: Recipe,
-    points: PointSet,
-    boundary: Floats | None,
-    progress: Progress | None = None,
-    given: Given | None = None,
-) -> HorizonSurface:
+@dataclass(frozen=True, eq=False)
+class Given:
+    """What surfaces are made from.
+
+    The ``site`` has all points of the horizons that recipes name, study area, dips and ground; ``faults`` are surfaces
+    that were made already.
+    """
+
+    site: Site
+    faults: Mapping[Recipe, HorizonSurface] = field(default_factory=dict)
+
+
+def make(recipe: Recipe, given: Given, progress: Progress | None = None) -> HorizonSurface:
     """Make a surface; the same recipe gives the same surface to the last bit.
-
-    ``points`` are those that take part; ``given`` all points of the other horizons that its changes name.
 
     Raises
     ------
     GeofitError
-        As :func:`geofit.pipeline.fit_horizon` and the changes by hand.
+        As :func:`geofit.pipeline.fit_horizon`, :func:`geofit.stack.faults.fit_block` and the changes by hand.
     """
     from geofit.pipeline import fit_horizon
 
-    surface = fit_horizon(points, recipe.settings, boundary, progress, name=recipe.horizon)
+    points = without_rows(given.site.horizons[recipe.horizon], recipe.excluded)
+    if recipe.part is None:
+        surface = fit_horizon(points, recipe.settings, given.site.boundary, progress, name=recipe.horizon)
+    else:
+        surface = _block(recipe, recipe.part, points, given, progress)
     for edit in recipe.edits:
         tell(progress, "changes by hand", 1.0)
-        if isinstance(edit, Apart):
-            surface = _pushed(surface, edit, boundary, given or {}, progress)
-        else:
-            surface = edited(surface, edit)
-    return surface
+        surface = _pushed(surface, edit, given, progress) if isinstance(edit, Apart) else edited(surface, edit)
+    return beside(surface, recipe, given.site)
 
 
-def _pushed(
-    surface: HorizonSurface, edit: Apart, boundary: Floats | None, given: Given, progress: Progress | None
-) -> HorizonSurface:
+def beside(surface: HorizonSurface, recipe: Recipe, site: Site) -> HorizonSurface:
+    """Return a surface whose checks also ask whether it agrees with the site's dips and ground."""
+    from geofit.checks.surroundings import check_surroundings
+
+    return check_surroundings(surface, site, "" if recipe.part is None else recipe.part.horizon)
+
+
+def fault_surfaces(
+    faults: Iterable[Recipe], given: Given, progress: Progress | None = None
+) -> dict[Recipe, HorizonSurface]:
+    """Return the surfaces of faults; those that are not at hand are made."""
+    return {one: given.faults[one] if one in given.faults else make(one, given, progress) for one in faults}
+
+
+def _block(recipe: Recipe, part: Part, points: PointSet, given: Given, progress: Progress | None) -> HorizonSurface:
+    """Fit a block between its faults."""
+    import shapely
+
+    from geofit.stack.fault import Fault
+    from geofit.stack.faults import fit_block
+
+    area = shapely.Polygon(part.area)
+    surfaces = fault_surfaces(
+        (f for f, side in zip(part.faults, part.sides, strict=True) if side >= 0), given, progress
+    )
+    faults = [Fault.of(surface, k, area) for k, surface in enumerate(surfaces.values())]
+    sides = tuple(side for side in part.sides if side >= 0)
+    return fit_block(points, faults, sides, recipe.settings, area, progress, name=recipe.horizon)
+
+
+def _pushed(surface: HorizonSurface, edit: Apart, given: Given, progress: Progress | None) -> HorizonSurface:
     """Make the neighbours as they were, and push all apart once more."""
     from geofit.stack.repair import repair
 
-    stack = {surface.name: surface}
-    for other in edit.others:
-        points = without_rows(given[other.horizon], other.excluded)
-        stack[other.horizon] = make(other, points, boundary, progress, given)
+    stack = {surface.name: surface, **{other.horizon: make(other, given, progress) for other in edit.others}}
     return repair(stack, edit.sequence, edit.minimum).surfaces[surface.name]
 
 
@@ -78,28 +102,20 @@ def edited(surface: HorizonSurface, edit: HandEdit, progress: Progress | None = 
     return weigh(surface, edit.patch, edit.i, edit.j, edit.weight)
 
 
-def made(
-    recipe: Recipe, points: PointSet, boundary: Floats | None, given: Given, *, progress: Progress
-) -> tuple[Recipe, HorizonSurface]:
+def made(recipe: Recipe, given: Given, *, progress: Progress) -> tuple[Recipe, HorizonSurface]:
     """Make a surface, and say from what."""
-    return recipe, make(recipe, points, boundary, progress, given)
+    return recipe, make(recipe, given, progress)
 
 
 def changed(
-    recipe: Recipe,
-    surface: HorizonSurface,
-    edit: HandEdit,
-    points: PointSet,
-    boundary: Floats | None,
-    given: Given,
-    *,
-    progress: Progress,
+    recipe: Recipe, surface: HorizonSurface, edit: HandEdit, given: Given, *, progress: Progress
 ) -> tuple[Recipe, Recipe, Accuracy | None, HorizonSurface]:
     """Change a surface by hand; return its recipe before and after, the check before, and the new surface."""
     before = surface.accuracy
     if surface.model is None:
-        surface = make(recipe, points, boundary, progress, given)
-    return recipe, replace(recipe, edits=(*recipe.edits, edit)), before, edited(surface, edit, progress)
+        surface = make(recipe, given, progress)
+    after = replace(recipe, edits=(*recipe.edits, edit))
+    return recipe, after, before, beside(edited(surface, edit, progress), after, given.site)
 
 
 def examined(recipe: Recipe, surface: HorizonSurface, *, progress: Progress) -> tuple[Recipe, OffData]:

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
 
 from threadpoolctl import threadpool_limits
 
+from geofit.checks.surroundings import check_surroundings
 from geofit.geometry.elevation import plan_map
+from geofit.gui.document.parting import same_side
+from geofit.gui.document.recipe import Part
 from geofit.progress import Progress, tell
-from geofit.site import Ground
-from geofit.stack.order import Order, orders
+from geofit.site import Ground, Site
+from geofit.stack.order import Order, order_of
 from geofit.stack.repair import Repair, repair
 from geofit.surface import HorizonSurface
 
-__all__ = ["all_orders", "over_map", "pushed_apart"]
+__all__ = ["all_orders", "comparable", "over_map", "pushed_apart"]
 
 
 def over_map(surfaces: Mapping[str, HorizonSurface]) -> dict[str, HorizonSurface]:
@@ -25,16 +30,30 @@ def over_map(surfaces: Mapping[str, HorizonSurface]) -> dict[str, HorizonSurface
     }
 
 
+def comparable(names: Sequence[str], parts: Mapping[str, Part]) -> tuple[tuple[str, str], ...]:
+    """Return every two surfaces, given the highest first, that no fault parts."""
+    return tuple((one, other) for one, other in combinations(names, 2) if same_side(parts, one, other))
+
+
 def all_orders(
-    surfaces: Mapping[str, HorizonSurface], ground: Ground | None, *, progress: Progress
+    surfaces: Mapping[str, HorizonSurface],
+    pairs: Sequence[tuple[str, str]],
+    ground: Ground | None,
+    *,
+    progress: Progress,
 ) -> tuple[Order, ...]:
-    """Compare every two horizons, given the highest first."""
-    tell(progress, "order", 0.1)
+    """Compare pairs of horizons, the upper one first."""
+    found = []
     with threadpool_limits(limits=1):
-        return orders(surfaces, tuple(surfaces), ground)
+        for k, (upper, lower) in enumerate(pairs):
+            tell(progress, "order", k / len(pairs))
+            found.append(order_of(surfaces[upper], surfaces[lower], ground))
+    return tuple(found)
 
 
-def pushed_apart(surfaces: Mapping[str, HorizonSurface], minimum: float, *, progress: Progress) -> Repair:
-    """Push horizons apart, given the highest first."""
+def pushed_apart(surfaces: Mapping[str, HorizonSurface], minimum: float, site: Site, *, progress: Progress) -> Repair:
+    """Push horizons apart, given the highest first; those that moved are asked again what the ``site`` says of them."""
     tell(progress, "push apart", 0.1)
-    return repair(surfaces, tuple(surfaces), minimum)
+    found = repair(surfaces, tuple(surfaces), minimum)
+    moved = {name: check_surroundings(found.surfaces[name], site) for name in found.moved}
+    return replace(found, surfaces={**found.surfaces, **moved})

@@ -13,12 +13,14 @@ from numpy.typing import NDArray
 from geofit.errors import GeofitError
 from geofit.points import PointSet
 from geofit.settings import FitSettings
+from geofit.site import Site
 
 __all__ = [
     "Apart",
     "DocumentError",
     "HandEdit",
     "Move",
+    "Part",
     "Pull",
     "Recipe",
     "Row",
@@ -90,6 +92,62 @@ class Apart:
     others: tuple[Recipe, ...]
 
 
+@dataclass(frozen=True)
+class Part:
+    """One block of a horizon that faults cut.
+
+    Parameters
+    ----------
+    horizon : str
+        Name of the whole.
+    given : str
+        :func:`fingerprint` of the whole.
+    faults : tuple of Recipe
+        The faults that the site states to cut it.
+    sides : tuple of int
+        On which side of each of them the block lies, 0 or 1; -1 of one that has all points on one side.
+    members : str
+        Its points among those of the whole, as :func:`runs` writes them.
+    area : tuple of (x, y)
+        Corners of the study area, map coordinates.
+    """
+
+    horizon: str
+    given: str
+    faults: tuple[Recipe, ...]
+    sides: tuple[int, ...]
+    members: str
+    area: tuple[tuple[float, float], ...]
+
+    def of(self, whole: PointSet) -> PointSet:
+        """Return its points; numbers that the whole does not have any more are passed over."""
+        index = indices(self.members)
+        return whole[index[index < len(whole)]]
+
+    def to_data(self) -> dict[str, Any]:
+        """Return numbers, words, lists and mappings only."""
+        return {
+            "horizon": self.horizon,
+            "given": self.given,
+            "faults": [fault.to_data() for fault in self.faults],
+            "sides": list(self.sides),
+            "members": self.members,
+            "area": [list(corner) for corner in self.area],
+        }
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Part:
+        """Return what :meth:`to_data` was called on."""
+        return cls(
+            data["horizon"],
+            data["given"],
+            tuple(Recipe.from_data(fault) for fault in data["faults"]),
+            tuple(data["sides"]),
+            data["members"],
+            tuple((x, y) for x, y in data["area"]),
+        )
+
+
 HandEdit = Move | Pull | Weigh
 _EDITS: dict[str, type[HandEdit]] = {"move": Move, "pull": Pull, "weigh": Weigh}
 
@@ -105,11 +163,13 @@ class Recipe:
     settings : FitSettings
         Settings of the fit.
     given : str
-        :func:`fingerprint` of the site's points and study area.
+        :func:`fingerprint` of the site for the horizon.
     excluded : tuple of Row
         Rows that were left out, sorted.
     edits : tuple of HandEdit or Apart
         Changes after the fit, in their order.
+    part : Part or None
+        What the horizon is a block of.
     """
 
     horizon: str
@@ -117,6 +177,7 @@ class Recipe:
     given: str
     excluded: tuple[Row, ...] = ()
     edits: tuple[HandEdit | Apart, ...] = field(default=())
+    part: Part | None = None
 
     def to_data(self) -> dict[str, Any]:
         """Return numbers, words, lists and mappings only."""
@@ -126,6 +187,7 @@ class Recipe:
             "given": self.given,
             "excluded": [asdict(row) for row in self.excluded],
             "edits": [_edit_data(edit) for edit in self.edits],
+            "part": None if self.part is None else self.part.to_data(),
         }
 
     @classmethod
@@ -137,15 +199,18 @@ class Recipe:
             data["given"],
             tuple(Row(**row) for row in data["excluded"]),
             tuple(_edit_from(edit) for edit in data["edits"]),
+            None if data.get("part") is None else Part.from_data(data["part"]),
         )
 
-    def parts(self) -> Iterator[Recipe]:
-        """Return this recipe, and all that its changes name."""
+    def ingredients(self) -> Iterator[Recipe]:
+        """Return this recipe, and all that its changes and its faults name."""
         yield self
+        for fault in () if self.part is None else self.part.faults:
+            yield from fault.ingredients()
         for edit in self.edits:
             if isinstance(edit, Apart):
                 for other in edit.others:
-                    yield from other.parts()
+                    yield from other.ingredients()
 
 
 def settings_from(data: Mapping[str, Any]) -> FitSettings:
@@ -163,15 +228,46 @@ def without_rows(points: PointSet, rows: Iterable[Row]) -> PointSet:
     return points[kept]
 
 
-def fingerprint(points: PointSet, boundary: NDArray[np.float64] | None) -> str:
-    """Return a hash of everything in the points and the study area that a fit depends on."""
-    digest = hashlib.sha256()
+def runs(index: NDArray[np.intp]) -> str:
+    """Return ascending numbers in short.
+
+    Examples
+    --------
+    >>> runs(np.array([0, 1, 2, 5, 7, 8]))
+    '0-2 5 7-8'
+    """
+    parts = np.split(index, np.flatnonzero(np.diff(index) != 1) + 1) if len(index) else []
+    return " ".join(f"{one[0]}-{one[-1]}" if len(one) > 1 else f"{one[0]}" for one in parts)
+
+
+def indices(text: str) -> NDArray[np.intp]:
+    """Return the numbers that :func:`runs` wrote."""
+    ends = ([int(word) for word in run.split("-")] for run in text.split())
+    return np.concatenate([np.arange(0), *(np.arange(end[0], end[-1] + 1) for end in ends)])
+
+
+def fingerprint(points: PointSet, site: Site) -> str:
+    """Return a hash of everything that a fit of points of a site, and its check, depend on."""
+    digest = hashlib.sha256(surroundings_digest(site))
     for array in (points.xyz, points.accuracy, points.row):
         digest.update(np.ascontiguousarray(array).tobytes())
     for words in (points.kind, points.hole, points.section, points.file):
         digest.update("\n".join(words.tolist()).encode())
-    digest.update(b"" if boundary is None else np.ascontiguousarray(boundary, dtype=np.float64).tobytes())
     return digest.hexdigest()[:16]
+
+
+def surroundings_digest(site: Site) -> bytes:
+    """Return a hash of the study area, the ground and the measured dips."""
+    digest = hashlib.sha256()
+    arrays = [site.boundary]
+    if site.ground is not None:
+        arrays += [site.ground.x, site.ground.y, site.ground.z]
+    if site.orientations is not None:
+        arrays += [site.orientations.xyz, site.orientations.azimuth, site.orientations.dip]
+        digest.update("\n".join(site.orientations.horizon.tolist()).encode())
+    for array in arrays:
+        digest.update(b"" if array is None else np.ascontiguousarray(array, dtype=np.float64).tobytes())
+    return digest.digest()
 
 
 def _same(points: PointSet, file: str, row: int) -> NDArray[np.intp]:

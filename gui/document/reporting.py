@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
-from geofit.deliver import Form, Reports, write_reports
-from geofit.progress import Progress
+from geofit.deliver import Form, write_reports
+from geofit.gui.document.parting import Blocks, site_fit
+from geofit.offdata import OffData
+from geofit.progress import Progress, tell
 from geofit.report.language import language
 from geofit.report.result import HorizonResult
 
-__all__ = ["write_report_files"]
+__all__ = ["ReportFiles", "write_report_files"]
+
+
+@dataclass(frozen=True, eq=False)
+class ReportFiles:
+    """What was written, by form, and what is to be told about it.
+
+    ``offdata`` is what was found out for it off the data, a horizon; not of surfaces with nothing behind them: of those
+    nothing can be found out yet.
+    """
+
+    files: Mapping[Form, Path]
+    warnings: tuple[str, ...]
+    offdata: Mapping[str, OffData]
 
 
 def write_report_files(
     results: Sequence[HorizonResult],
+    blocks: Blocks,
     folder: Path,
     code: str,
     forms: Sequence[Form],
@@ -22,9 +39,19 @@ def write_report_files(
     date: str,
     *,
     progress: Progress,
-) -> Reports:
+) -> ReportFiles:
     """Write the accuracy report of surfaces; errors as :func:`geofit.deliver.write_reports`.
 
     ``code`` is the language's ("en", "zh"): its catalogue need not travel to another process.
     """
-    return write_reports(results, folder, progress, language=language(code), forms=forms, examined=examined, date=date)
+    tell(progress, "order", 0.0)
+    fits = site_fit({result.name: result.surface for result in results}, blocks, progress)
+    made = write_reports(
+        results, folder, progress, language=language(code), forms=forms, examined=examined, date=date, fits=fits
+    )
+    new = {
+        after.name: after.offdata
+        for before, after in zip(results, made.results, strict=True)
+        if before.offdata is None and after.offdata is not None and before.surface.model is not None
+    }
+    return ReportFiles(made.files, made.warnings, new)

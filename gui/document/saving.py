@@ -11,7 +11,9 @@ import numpy as np
 
 from geofit.check import check
 from geofit.errors import InputError
-from geofit.gui.document.recipe import Recipe, Row, without_rows
+from geofit.gui.document.making import beside
+from geofit.gui.document.parting import parted_site
+from geofit.gui.document.recipe import Part, Recipe, Row, without_rows
 from geofit.gui.document.state import State
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
 from geofit.io.site_file import read_site
@@ -96,7 +98,7 @@ def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progr
     found = saved_surfaces(project, folder)
     tell(progress, "check", 0.7)
     return {
-        recipe: checked(surface, recipe, site)
+        recipe: beside(checked(surface, recipe, site), recipe, site)
         for recipe, surface in found.items()
         if len(site.horizons.get(recipe.horizon, ()))
     }
@@ -118,22 +120,25 @@ def checked(surface: HorizonSurface, recipe: Recipe, site: Site) -> HorizonSurfa
 
 def state_of(project: Project, site: Site) -> State:
     """Return the work that a project holds, as far as its site still has the horizons."""
-    fresh = State.of_site(site)
+    parts = {edit.horizon: Part.from_data(edit.values) for edit in project.edits if edit.kind == "part"}
+    parts = {name: part for name, part in parts.items() if part.horizon in site.horizons}
+    whole = State.of_site(site).settings
+    default = {**whole, **{name: whole[part.horizon] for name, part in parts.items()}}
     excluded: dict[str, frozenset[Row]] = {}
-    order = fresh.order
+    order = tuple(parted_site(site, parts).horizons)
     for edit in project.edits:
-        if edit.kind == "exclude" and edit.horizon in fresh.settings:
+        if edit.kind == "exclude" and edit.horizon in default:
             excluded[edit.horizon] = excluded.get(edit.horizon, frozenset()) | {Row(**edit.values)}
         elif edit.kind == "order":
-            named = [name for name in edit.values["horizons"] if name in fresh.settings]
-            order = (*named, *(name for name in fresh.order if name not in named))
-    settings = {name: project.settings.get(name, known) for name, known in fresh.settings.items()}
+            named = [name for name in edit.values["horizons"] if name in order]
+            order = (*named, *(name for name in order if name not in named))
+    settings = {name: project.settings.get(name, known) for name, known in default.items()}
     recipes = {
         result.horizon: Recipe.from_data(result.recipe)
         for result in project.results
-        if result.recipe and result.horizon in fresh.settings
+        if result.recipe and result.horizon in order
     }
-    return State(project.name, order, settings, excluded, recipes)
+    return State(project.name, order, settings, excluded, recipes, parts)
 
 
 def project_of(state: State, site: Site, site_file: Path, target: Path, former: Project | None) -> Project:
@@ -150,6 +155,7 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
         for name, rows in state.excluded.items()
         for row in sorted(rows)
     ]
+    edits += [Edit(kind="part", horizon=name, values=part.to_data()) for name, part in state.parts.items()]
     edits.append(Edit(kind="order", values={"horizons": list(state.order)}))
     kept = () if former is None else tuple(
         result

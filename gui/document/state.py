@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
-from geofit.gui.document.recipe import Recipe, Row, settings_from
+from geofit.gui.document.recipe import Part, Recipe, Row, settings_from
 from geofit.settings import FitSettings
 from geofit.site import Site
 
@@ -18,7 +18,8 @@ class State:
     """The work on a site.
 
     ``name`` of the site; ``order`` of the horizons, the highest first; ``settings``, ``excluded`` rows and the
-    ``recipes`` of the surfaces by horizon.
+    ``recipes`` of the surfaces by horizon. ``parts`` names the blocks that stand in the place of horizons that faults
+    cut: each is a horizon like the others.
     """
 
     name: str = ""
@@ -26,6 +27,7 @@ class State:
     settings: Mapping[str, FitSettings] = field(default_factory=dict)
     excluded: Mapping[str, frozenset[Row]] = field(default_factory=dict)
     recipes: Mapping[str, Recipe] = field(default_factory=dict)
+    parts: Mapping[str, Part] = field(default_factory=dict)
 
     @classmethod
     def of_site(cls, site: Site) -> State:
@@ -41,6 +43,7 @@ class State:
             "settings": {name: asdict(settings) for name, settings in self.settings.items()},
             "excluded": {name: [asdict(row) for row in sorted(rows)] for name, rows in self.excluded.items()},
             "recipes": {name: recipe.to_data() for name, recipe in self.recipes.items()},
+            "parts": {name: part.to_data() for name, part in self.parts.items()},
         }
 
     @classmethod
@@ -52,4 +55,5 @@ class State:
             {name: settings_from(settings) for name, settings in data["settings"].items()},
             {name: frozenset(Row(**row) for row in rows) for name, rows in data["excluded"].items()},
             {name: Recipe.from_data(recipe) for name, recipe in data["recipes"].items()},
+            {name: Part.from_data(part) for name, part in data.get("parts", {}).items()},
         )

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QRect, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QKeySequence, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QApplication,
     QHeaderView,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
     QTreeWidget,
     QTreeWidgetItem,
     QVBoxLayout,
@@ -23,12 +25,14 @@ from geofit.gui.words import spoken
 from geofit.offdata import OffData
 from geofit.report.digits import measured
 from geofit.stack.order import Order
+from geofit.stack.throw import FaultCut
 from geofit.surface import HorizonSurface
 
 __all__ = ["ChecksPanel"]
 
 _POINT = Qt.ItemDataRole.UserRole
 _PLACE = Qt.ItemDataRole.UserRole + 1
+_WORDS = 4
 
 
 class ChecksPanel(QWidget):
@@ -48,6 +52,7 @@ class ChecksPanel(QWidget):
         self.tree.setHeaderLabels([self.tr("Check"), self.tr("Result"), self.tr("Value"), self.tr("Limit"), ""])
         self.tree.headerItem().setText(4, self.tr("In words"))
         self.tree.setWordWrap(True)
+        self.tree.setItemDelegate(_Wrapping(self.tree))
         self.tree.setIndentation(8)
         self.tree.setAlternatingRowColors(True)
         self.tree.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
@@ -55,6 +60,7 @@ class ChecksPanel(QWidget):
         header = self.tree.header()
         header.setSectionResizeMode(QHeaderView.ResizeMode.Interactive)
         header.setStretchLastSection(True)
+        header.sectionResized.connect(lambda *_: self.tree.scheduleDelayedItemsLayout())
         copy = QAction(self.tr("Copy"), self.tree)
         copy.setShortcut(QKeySequence.StandardKey.Copy)
         copy.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
@@ -77,6 +83,7 @@ class ChecksPanel(QWidget):
         offdata: OffData | None = None,
         orders: Sequence[Order] = (),
         read_back: ReadBack | None = None,
+        cuts: Sequence[FaultCut] = (),
     ) -> None:
         """Show what was asked of a surface.
 
@@ -90,6 +97,8 @@ class ChecksPanel(QWidget):
             How the horizon lies to its neighbours.
         read_back : ReadBack or None
             What the reader found in the STEP file.
+        cuts : sequence of FaultCut
+            How far faults displace the block beside others.
         """
         self._rows.clear()
         self.tree.clear()
@@ -99,6 +108,7 @@ class ChecksPanel(QWidget):
         accuracy = surface.accuracy
         self._group(self.tr("Surface"), [self._sigma(accuracy), *map(self._check, accuracy.checks)])
         self._group(self.tr("Order of horizons"), [self._order(order) for order in orders])
+        self._group(self.tr("Throw at faults"), [self._cut(cut) for cut in cuts])
         self._group(self.tr("Away from the data"), self._away(offdata))
         self._group(self.tr("Conflicts"), self._conflicts(surface, accuracy))
         self._group(self.tr("Notes"), [self._note(note) for note in accuracy.notes])
@@ -165,6 +175,11 @@ class ChecksPanel(QWidget):
         item.setData(0, _PLACE, _places(check))
         return item
 
+    def _cut(self, cut: FaultCut) -> QTreeWidgetItem:
+        name = self.tr("{up} above {down}, at {fault}").format(up=cut.up, down=cut.down, fault=cut.fault)
+        mean = measured(float(cut.throw.mean()), "m")
+        return self._row(name, None, mean, words=spoken(cut.text), word=self.tr("for knowledge"))
+
     def _away(self, offdata: OffData | None) -> list[QTreeWidgetItem]:
         if offdata is None:
             return []
@@ -175,9 +190,9 @@ class ChecksPanel(QWidget):
             "block": self.tr("blocks left out"),
         }
         for left in offdata.left_out:
-            words = self.tr("{share:.0%} of the left-out points lie in the 90 % band; mean error {bias:+.2f} m").format(
-                share=left.inside, bias=left.bias
-            )
+            words = self.tr(
+                "{share:.0f} % of the left-out points lie in the 90 % band; mean error {bias:+.2f} m"
+            ).format(share=100 * left.inside, bias=left.bias)
             name = schemes.get(left.scheme, left.scheme)
             rows.append(self._row(name, None, measured(left.rms, "m"), words=words, word=self.tr("for knowledge")))
         return rows + [self._note(note) for note in offdata.notes]
@@ -185,7 +200,7 @@ class ChecksPanel(QWidget):
     def _conflicts(self, surface: HorizonSurface, a: Accuracy) -> list[QTreeWidgetItem]:
         rows = []
         for conflict in a.conflicts:
-            name = surface.points.describe(conflict.dropped)
+            name = spoken(surface.points.describe(conflict.dropped))
             value = measured(conflict.difference, "m")
             item = self._row(name, None, value, words=spoken(conflict.text), word=self.tr("gave way"))
             item.setIcon(0, icon("stale"))
@@ -202,18 +217,18 @@ class ChecksPanel(QWidget):
     def _file(self, back: ReadBack | None) -> list[QTreeWidgetItem]:
         if back is None:
             return []
-        words = self.tr("{faces} faces, {edges} free edges, edge tolerance {tolerance:.1e} m").format(
+        words = self.tr("Faces: {faces}, free edges: {edges}, edge tolerance {tolerance:.1e} m").format(
             faces=back.faces, edges=back.free_edges, tolerance=back.edge_tolerance
         )
         return [self._row(back.file, back.passed, words=words), *map(self._check, back.checks)]
 
     def _fit_columns(self) -> None:
-        for column in range(4):
-            self.tree.resizeColumnToContents(column)
-            self.tree.setColumnWidth(column, min(self.tree.columnWidth(column), max(self.tree.width() - 110, 130)))
         for row in self._rows:
             # A note has no figures; it takes the whole line.
             row.setFirstColumnSpanned(not row.text(1))
+        for column in range(4):
+            self.tree.resizeColumnToContents(column)
+            self.tree.setColumnWidth(column, min(self.tree.columnWidth(column), max(self.tree.width() - 110, 130)))
 
     def _tell(self, current: QTreeWidgetItem | None) -> None:
         index = None if current is None else current.data(0, _POINT)
@@ -222,6 +237,26 @@ class ChecksPanel(QWidget):
             self.point_chosen.emit(int(index))
         elif place is not None:
             self.place_chosen.emit(*place)
+
+
+class _Wrapping(QStyledItemDelegate):
+    """Makes rows as high as their words need: Qt's tree asks for heights without saying how wide a column is."""
+
+    def __init__(self, tree: QTreeWidget) -> None:
+        super().__init__(tree)
+        self._tree = tree
+
+    def sizeHint(self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> QSize:  # noqa: N802
+        """Return the size of a cell whose words are broken into lines."""
+        tree = self._tree
+        spanned = tree.isFirstColumnSpanned(index.row(), QModelIndex(index.parent()))
+        if not spanned and index.column() != _WORDS:
+            return super().sizeHint(option, index)
+        narrow = QStyleOptionViewItem(option)
+        width = tree.viewport().width() - 2 * tree.indentation() if spanned else tree.columnWidth(_WORDS)
+        narrow.rect = QRect(0, 0, width, 1)
+        # What takes the whole line makes its first column no wider.
+        return QSize(0, super().sizeHint(narrow, index).height())
 
 
 def _places(check: Check) -> tuple[float, float, float] | None:

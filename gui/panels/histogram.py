@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from textwrap import fill
 from typing import Any, cast
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from geofit.gui.panels.canvas import Canvas, Ink, recolour
+from geofit.gui.panels.canvas import Canvas, Ink, place, recolour, wrapped
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken
 from geofit.report.histogram import histogram, normal_plot
@@ -22,10 +20,10 @@ from geofit.words import said
 
 __all__ = ["HistogramPanel"]
 
-#: Width of a letter of the pictures, pixels.
-LETTER = 7
-#: Height of a line of the legend, as a share of the bars' height.
-LINE_SHARE = 0.14
+#: Room beside a picture for its scale, logical pixels.
+BESIDE = 76
+#: Letters of the legend in points, and the height of its lines, logical pixels.
+LETTERS, LINE = 7.5, 14.5
 
 
 class HistogramPanel(QWidget):
@@ -36,12 +34,13 @@ class HistogramPanel(QWidget):
         content = QWidget()
         column = QVBoxLayout(content)
         column.setContentsMargins(8, 8, 8, 8)
-        self.canvas = Canvas(self._paint)
+        self.canvas = Canvas(self._paint, self._arrange)
         self.canvas.setAccessibleName(self.tr("Histogram and normal plot of the residuals"))
         column.addWidget(self.canvas)
         self.pages = Placeholder(content)
         self.setLayout(self.pages)
         self._result: HorizonResult | None = None
+        self._texts: list[tuple[str, str, tuple[float, float]]] = []
         self.show_surface(None)
 
     def show_surface(self, surface: HorizonSurface | None) -> None:
@@ -60,16 +59,35 @@ class HistogramPanel(QWidget):
         self.pages.reveal()
         self.canvas.repaint_figure()
 
-    def _paint(self, figure: Figure, ink: Ink) -> None:
+    def _paint(self, ink: Ink) -> None:
         if self._result is None:
             return
-        left, right = figure.subplots(2, 1) if self.canvas.narrow else figure.subplots(1, 2)
+        left, right = self.canvas.axes(2)
         told = cast(Language, _told)
         histogram(left, self._result, told)
         normal_plot(right, self._result, told)
+        self._texts = []
         for axes in (left, right):
             recolour(axes, ink)
-            _fit_texts(axes, ink, self.canvas.width() // (1 if self.canvas.narrow else 2))
+            self._texts.append((axes.get_title("left"), axes.get_xlabel(), axes.get_ylim()))
+
+    def _arrange(self, ink: Ink) -> None:
+        """Put the pictures beside each other, or one above the other; break texts that are too long for them."""
+        width, height = int(self.canvas.width()), int(self.canvas.height())
+        narrow = self.canvas.narrow
+        wide, high = (width, height / 2) if narrow else (width / 2, height)
+        for k, axes in enumerate(self.canvas.figure.axes):
+            title, below, limits = self._texts[k]
+            axes.set_title(wrapped(title, wide - BESIDE, 10.0), loc="left", color=ink.text)
+            axes.set_xlabel(wrapped(below, wide - BESIDE, 9.0))
+            axes.xaxis.set_major_locator(MaxNLocator(max(2, min(9, int(wide) // 80))))
+            axes.set_ylim(limits)
+            corner: tuple[float, float] = (0.0, k * high) if narrow else (k * wide, 0.0)
+            inner = place(axes, *corner, wide, high)
+            if axes.get_legend() is not None:
+                _explain(axes, ink, limits, inner)
+                # The scale may have got longer numbers.
+                place(axes, *corner, wide, high)
 
 
 def _told(template: str, /, **values: Any) -> str:
@@ -77,20 +95,17 @@ def _told(template: str, /, **values: Any) -> str:
     return spoken(said(template, **values))
 
 
-def _fit_texts(axes: Axes, ink: Ink, width: int) -> None:
-    """Break texts and thin out ticks so that they fit into so many pixels; the legend stands above the bars."""
-    letters = max((width - 70) // LETTER, 12)
-    axes.set_title(fill(axes.get_title("left"), letters), loc="left", color=ink.text)
-    axes.set_xlabel(fill(axes.get_xlabel(), letters))
-    axes.xaxis.set_major_locator(MaxNLocator(max(2, min(9, width // 80))))
-    legend = axes.get_legend()
-    if legend is None:
-        return
+def _explain(axes: Axes, ink: Ink, limits: tuple[float, float], inner: tuple[float, float]) -> None:
+    """Write the legend above what is drawn, which makes room for it."""
     handles, labels = axes.get_legend_handles_labels()
-    labels = [fill(label, letters) for label in labels]
-    lines = sum(label.count("\n") + 1 for label in labels)
-    low, high = axes.get_ylim()
-    axes.set_ylim(low, high + (LINE_SHARE * lines + 0.04) * (high - low))
+    labels = [wrapped(label, inner[0] - 44, LETTERS) for label in labels]
+    room = LINE * sum(label.count("\n") + 1 for label in labels) + 8
+    low, high = limits
+    share = room / max(inner[1], room + 10.0)
+    axes.set_ylim(low, high + (high - low) * share / (1 - share))
+    for line in axes.lines:
+        if line.get_transform() == axes.get_xaxis_transform("grid"):
+            line.set_ydata([0.0, 1 - share])
     axes.legend(
-        handles, labels, loc="upper left", fontsize=7.5, borderaxespad=0.2, labelcolor=ink.text, labelspacing=0.3
+        handles, labels, loc="upper left", fontsize=LETTERS, borderaxespad=0.2, labelcolor=ink.text, labelspacing=0.3
     )

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Mapping
 
 from PySide6.QtCore import QMessageLogContext, QObject, QtMsgType, Signal, qInstallMessageHandler
 from PySide6.QtGui import QColor, QGuiApplication, QPalette, QTextCharFormat, QTextCursor
 from PySide6.QtWidgets import QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
+from geofit.gui.words import failure, spoken
 from geofit.report.style import FAIL
 
 __all__ = ["LogPanel", "qt_to_logging"]
@@ -80,7 +82,9 @@ class LogPanel(QWidget):
         layout.addWidget(self.text)
         layout.addLayout(buttons)
         self._handler = _Handler()
-        self._handler.setFormatter(_Formatter())
+        self._handler.setFormatter(_Formatter({
+            logging.WARNING: self.tr("warning"), logging.ERROR: self.tr("error"), logging.CRITICAL: self.tr("error"),
+        }))  # fmt: skip
         self._handler.bridge.heard.connect(self._write)
         self._root = logging.getLogger()
         self._geofit = logging.getLogger("geofit")
@@ -108,7 +112,24 @@ class LogPanel(QWidget):
 
 
 class _Formatter(logging.Formatter):
+    """The time, a word for what is graver than news, and the message in the user's language."""
+
+    def __init__(self, words: Mapping[int, str]) -> None:
+        super().__init__()
+        self._words = words
+
     def format(self, record: logging.LogRecord) -> str:
         at = time.strftime("%H:%M:%S", time.localtime(record.created))
-        word = "" if record.levelno < logging.WARNING else f"{record.levelname.lower()}: "
-        return f"{at}  {word}{record.getMessage()}"
+        word = f"{self._words[record.levelno]}: " if record.levelno in self._words else ""
+        return f"{at}  {word}{_message(record)}"
+
+
+def _message(record: logging.LogRecord) -> str:
+    """Return a record's message as the window speaks; what other libraries say stays as it is."""
+    if not isinstance(record.msg, str) or not isinstance(record.args, tuple):
+        return record.getMessage()
+    told = tuple(
+        failure(value) if isinstance(value, BaseException) else spoken(value) if isinstance(value, str) else value
+        for value in record.args
+    )
+    return spoken(record.msg) % told if told else spoken(record.msg)

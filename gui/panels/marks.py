@@ -8,7 +8,7 @@ from functools import lru_cache
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPalette, QPen, QPixmap, QPolygonF
 
-from geofit.report.style import CORE, FAIL, PASS, QUIET
+from geofit.report.style import FAIL, PASS, QUIET
 
 __all__ = ["icon", "is_dark", "readable", "verdict_mark"]
 
@@ -36,9 +36,9 @@ def verdict_mark(passed: bool | None, *, stale: bool = False) -> QIcon:
     return icon("none" if passed is None else "passed" if passed else "failed")
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=128)
 def icon(name: str) -> QIcon:
-    """Return a mark by name: passed, failed, none, stale; hole, section, ...; up, down, dot with a colour."""
+    """Return a mark by name: passed, failed, none, stale; hole, section, ...; up, down, dot, horizon with a colour."""
     made = QIcon()
     for ratio in _RATIOS:
         pixmap = QPixmap(round(_SIZE * ratio), round(_SIZE * ratio))
@@ -92,7 +92,7 @@ def paint(painter: QPainter, box: QRectF, name: str) -> None:
 
 def _things(painter: QPainter, box: QRectF, name: str, at: Callable[[float, float], QPointF]) -> None:
     side = box.width()
-    line = QPen(QColor("#8d6b3f" if name == "horizon" else "#3f86b8"), side / 8)
+    line = QPen(QColor("#3f86b8"), side / 8)
     line.setCapStyle(Qt.PenCapStyle.RoundCap)
     painter.setPen(line)
     if name == "hole":
@@ -110,10 +110,11 @@ def _things(painter: QPainter, box: QRectF, name: str, at: Callable[[float, floa
         line.setColor(QColor(QUIET))
         painter.setPen(line)
         painter.drawLine(at(0.05, 0.85), at(0.95, 0.15))
-    elif name in {"horizon", "patch"}:
+    elif name.startswith(("horizon:", "patch:")):
+        kind, _, colour = name.partition(":")
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QBrush(QColor("#b98d57" if name == "horizon" else CORE)))
-        shift = 0.0 if name == "horizon" else 0.12
+        painter.setBrush(QBrush(QColor(colour)))
+        shift = 0.0 if kind == "horizon" else 0.12
         painter.drawPolygon(QPolygonF([at(0.0, 0.6), at(0.45, 0.2 + shift), at(1.0, 0.4), at(0.55, 0.85 - shift)]))
     elif name == "report":
         painter.setPen(QPen(QColor(QUIET), side / 12))

@@ -66,6 +66,8 @@ class OffDataPanel(QWidget):
         for label in (self.figures, self.notes):
             label.setWordWrap(True)
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        # Three rows at most: marks of a sorting would only take room.
+        self.left_out.setSortingEnabled(False)
         for table in (self.left_out, self.suggestions, self.outliers):
             table.setVerticalScrollMode(DataTable.ScrollMode.ScrollPerPixel)
         scroll = QScrollArea()
@@ -140,9 +142,11 @@ class OffDataPanel(QWidget):
             lines.append(words.format(factor=sd.factor))
         for left in offdata.left_out:
             words = self.tr(
-                "{name}: {inside:.0%} of the left-out points lie in the 90 % band ({raw:.0%} before calibration)."
+                "{name}: {inside:.0f} % of the left-out points lie in the 90 % band ({raw:.0f} % before calibration)."
             )
-            lines.append(words.format(name=self._scheme(left.scheme), inside=left.inside, raw=left.inside_raw))
+            lines.append(
+                words.format(name=self._scheme(left.scheme), inside=100 * left.inside, raw=100 * left.inside_raw)
+            )
         self.figures.setText("\n".join(lines) or self.tr("No figure could be found; the notes say why."))
 
     def _scheme(self, scheme: str) -> str:
@@ -196,7 +200,7 @@ class OffDataPanel(QWidget):
     def _outlier_columns(self, offdata: OffData) -> list[Column]:
         outliers = offdata.outliers
         named = [
-            str(o.index) if self._points is None else self._points.describe(o.index) for o in outliers
+            str(o.index) if self._points is None else spoken(self._points.describe(o.index)) for o in outliers
         ]  # fmt: skip
         return [
             Column(self.tr("Point"), np.array(named)),

@@ -13,6 +13,7 @@ from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.plan_view import PlanData, PlanView
 from geofit.gui.words import spoken
+from geofit.report.style import horizon_colours
 from geofit.report.view import rims
 from geofit.settings import FitSettings
 from geofit.site import Site
@@ -113,6 +114,8 @@ class PlanPanel(QWidget):
                 patches=() if surface is None else tuple(rim[:, :2] for rim in rims(surface).values()),
                 sections=tuple((section.name, section.line) for section in site.sections),
                 holes=tuple((hole.name, hole.xyz[:, :2]) for hole in site.holes),
+                name=name,
+                colour=horizon_colours([*site.horizons, name])[name],
             ),
             keep_view=same,
         )

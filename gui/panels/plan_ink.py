@@ -7,12 +7,20 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QImage, QPainter, QPen, QPolygonF
+from PySide6.QtGui import QColor, QImage, QPainter, QPainterPath, QPen, QPolygonF
 
-__all__ = ["draw_cloud", "draw_labels", "draw_north", "draw_scale_bar", "round_length"]
+__all__ = ["draw_cloud", "draw_labels", "draw_north", "draw_scale_bar", "draw_title", "round_length"]
 
-#: A name may cover so many points.
-CROWDED = 2
+#: Left, top, width and height, logical pixels.
+Box = tuple[float, float, float, float]
+#: Side of the cells in which room is looked for, and the distance of a name from its place, logical pixels.
+CELL, GAP = 4, 8.0
+#: How a name costs that covers a point, or the mark of another name; dearer than DEAREST it is left out.
+POINT, MARK, DEAREST = 1.0, 4.0, 12.0
+#: Where a name may stand about its place, the best first: the share of its width and height to the right and below.
+SIDES = ((1, 0), (-1, 0), (0, -1), (0, 1), (1, -1), (1, 1), (-1, -1), (-1, 1))
+#: Width of the paper-coloured rim of the letters, logical pixels.
+HALO = 3.0
 #: Longest scale bar, pixels.
 LONGEST = 110
 
@@ -45,23 +53,111 @@ def draw_cloud(painter: QPainter, places: NDArray[np.float64], colour: QColor, s
 
 
 def draw_labels(
-    painter: QPainter, named: Sequence[tuple[str, NDArray[np.float64]]], busy: NDArray[np.float64], within: QRect
-) -> None:
-    """Write names beside their places, the first come first.
+    painter: QPainter,
+    named: Sequence[tuple[str, NDArray[np.float64]]],
+    busy: NDArray[np.float64],
+    within: QRect,
+    paper: QColor,
+    title: str = "",
+) -> list[tuple[str, Box]]:
+    """Write as many names beside their places as do not cover each other; return them with where they stand.
 
-    A name that would cover another, or more than two of the ``busy`` (n, 2) places, is left out: it is seen when the
-    plan is magnified.
+    Each stands where it covers least of the ``busy`` (n, 2) places; names with much room come first. Where the crowd
+    is too dense a name is left out: it is seen when the plan is magnified. ``paper`` rims the letters, ``title`` stands
+    in the upper left corner.
     """
     metrics = painter.fontMetrics()
-    # The corners are taken by the legend, the scale bar and north.
-    taken = [QRectF(0, within.height() - 40, within.width(), 40), QRectF(within.width() - 40, 0, 40, 52)]
-    for name, (x, y) in named:
-        box = QRectF(x + 7, y - metrics.ascent() / 2 - 1, metrics.horizontalAdvance(name), metrics.height())
-        inside = (busy > [box.left(), box.top()]) & (busy < [box.right(), box.bottom()])
-        free = inside.all(axis=1).sum() <= CROWDED and not any(box.intersects(other) for other in taken)
-        if free and QRectF(within).contains(box):
-            painter.drawText(box, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, name)
-            taken.append(box)
+    room = _Room(within, busy, np.array([place for _, place in named]).reshape(-1, 2))
+    # The corners are taken by the legend, the scale bar, the horizon's name and north.
+    width, height = within.width(), within.height()
+    for corner in (
+        (0, height - 40, width, 40),
+        (width - 40, 0, 40, 52),
+        (0, 0, 34 + 1.2 * metrics.horizontalAdvance(title), 22),
+    ):
+        room.take(corner)
+    offers = []
+    for k, (name, place) in enumerate(named):
+        size = metrics.horizontalAdvance(name), metrics.height() - 2
+        boxes = sorted((room.cost(box) + 0.1 * i, i, box) for i, box in enumerate(_about(place, size)))
+        offers.append((boxes[0][0], k, boxes))
+    written: list[tuple[str, Box]] = []
+    for _, k, boxes in sorted(offers, key=lambda offer: offer[:2]):
+        free = next((box for cost, _, box in boxes if cost <= DEAREST and not room.taken(box)), None)
+        if free is not None:
+            room.take(free)
+            _write(painter, named[k][0], QPointF(free[0], free[1] + metrics.ascent() - 1), paper)
+            written.append((named[k][0], free))
+    return written
+
+
+def _about(place: NDArray[np.float64], size: tuple[float, float]) -> list[Box]:
+    """Return left, top, width and height of a name at each side of its place."""
+    (x, y), (wide, high) = place.tolist(), size
+    return [
+        (x + right * GAP - wide * (1 - right) / 2, y + down * GAP * 0.8 - high * (1 - down) / 2, wide, high)
+        for right, down in SIDES
+    ]
+
+
+class _Room:
+    """What of a plan is taken already, and how crowded the rest is, in cells."""
+
+    def __init__(self, within: QRect, points: NDArray[np.float64], marks: NDArray[np.float64]) -> None:
+        self._shape = max(within.height() // CELL, 1), max(within.width() // CELL, 1)
+        self._taken = np.zeros(self._shape, bool)
+        crowd = np.zeros(self._shape)
+        for places, cost in ((points, POINT), (marks, MARK)):
+            cells = np.floor(places / CELL).astype(int)
+            seen = ((cells >= 0) & (cells < self._shape[::-1])).all(axis=1)
+            np.add.at(crowd, (cells[seen, 1], cells[seen, 0]), cost)
+        # Sums up to each cell: what a box covers is read from its four corners.
+        self._sums = np.pad(crowd, ((1, 0), (1, 0))).cumsum(axis=0).cumsum(axis=1)
+
+    def cost(self, box: Box) -> float:
+        """Return what a box covers; infinite where it is not all inside."""
+        cells = self._cells(box)
+        if cells is None:
+            return np.inf
+        top, bottom, left, right = cells
+        s = self._sums
+        return float(s[bottom, right] - s[top, right] - s[bottom, left] + s[top, left])
+
+    def taken(self, box: Box) -> bool:
+        """Whether something was written there."""
+        cells = self._cells(box)
+        return cells is None or bool(self._taken[cells[0] : cells[1], cells[2] : cells[3]].any())
+
+    def take(self, box: Box) -> None:
+        """Keep others from a box."""
+        left, top, wide, high = box
+        rows = slice(max(int(top // CELL), 0), max(int((top + high) // CELL) + 1, 0))
+        self._taken[rows, max(int(left // CELL), 0) : max(int((left + wide) // CELL) + 1, 0)] = True
+
+    def _cells(self, box: Box) -> tuple[int, int, int, int] | None:
+        left, top, wide, high = box
+        cells = (
+            int(top // CELL), int((top + high) // CELL) + 1, int(left // CELL), int((left + wide) // CELL) + 1,
+        )  # fmt: skip
+        inside = left >= 0 and top >= 0 and cells[1] <= self._shape[0] and cells[3] <= self._shape[1]
+        return cells if inside else None
+
+
+def _write(painter: QPainter, text: str, at: QPointF, paper: QColor) -> None:
+    """Write letters with a rim of paper, that they can be read over anything."""
+    path = QPainterPath()
+    path.addText(at, painter.font(), text)
+    rim = QPen(paper, HALO)
+    rim.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+    painter.strokePath(path, rim)
+    painter.fillPath(path, painter.pen().color())
+
+
+def draw_title(painter: QPainter, name: str, colour: QColor, paper: QColor) -> None:
+    """Write what is shown into the upper left corner, after a square in its colour."""
+    metrics = painter.fontMetrics()
+    painter.fillRect(QRectF(10, 8, 10, 10), colour)
+    _write(painter, name, QPointF(25, 13 + metrics.capHeight() / 2), paper)
 
 
 def draw_scale_bar(painter: QPainter, within: QRect, scale: float) -> None:

@@ -24,7 +24,7 @@ from PySide6.QtWidgets import QWidget
 
 from geofit.gui.panels.core_box import CoreBox
 from geofit.gui.panels.marks import readable
-from geofit.gui.panels.plan_ink import draw_cloud, draw_labels, draw_north, draw_scale_bar
+from geofit.gui.panels.plan_ink import draw_cloud, draw_labels, draw_north, draw_scale_bar, draw_title
 from geofit.report.style import CORE, QUIET
 
 __all__ = ["PERIPHERY", "PlanData", "PlanView"]
@@ -41,7 +41,10 @@ HANDLE, NEAR = 9, 10
 
 @dataclass(frozen=True, eq=False)
 class PlanData:
-    """What the plan shows, in map coordinates: points (n, 2), which are exact, and lines with their names."""
+    """What the plan shows, in map coordinates: points (n, 2), which are exact, and lines with their names.
+
+    ``name`` and ``colour`` are the horizon's.
+    """
 
     points: Floats = field(default_factory=lambda: np.zeros((0, 2)))
     exact: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
@@ -49,6 +52,8 @@ class PlanData:
     patches: tuple[Floats, ...] = ()
     sections: tuple[tuple[str, Floats], ...] = ()
     holes: tuple[tuple[str, Floats], ...] = ()
+    name: str = ""
+    colour: str = QUIET
 
 
 class PlanView(QWidget):
@@ -176,7 +181,7 @@ class PlanView(QWidget):
         painter.setFont(self.font())
         quiet = QColor(palette.color(QPalette.ColorRole.Text))
         quiet.setAlpha(60)
-        painter.setPen(QPen(quiet, 1))
+        painter.setPen(QPen(QColor(self.data.colour), 1))
         for rim in self.data.patches:
             painter.drawPolyline(self._line(rim))
         painter.setPen(QPen(quiet, 1, Qt.PenStyle.DotLine))
@@ -197,8 +202,15 @@ class PlanView(QWidget):
         ]
         labels = [(name, self.to_widget(place)) for name, place in named]
         few = self.data.points[: MANY if len(self.data.points) <= MANY else 0]
-        busy = np.concatenate([self.to_widget(few), *(place[None] for _, place in labels)])
-        draw_labels(painter, labels, busy, self.rect())
+        paper = palette.color(QPalette.ColorRole.Base)
+        painter.setPen(palette.color(QPalette.ColorRole.Text))
+        small = self.font()
+        small.setPointSizeF(max(small.pointSizeF() - 1.5, 7.0))
+        painter.setFont(small)
+        draw_labels(painter, labels, self.to_widget(few), self.rect(), paper, self.data.name)
+        painter.setFont(self.font())
+        draw_title(painter, self.data.name, QColor(self.data.colour), paper)
+        painter.setPen(QPen(quiet, 1))
         draw_scale_bar(painter, self.rect(), self._scale)
         draw_north(painter, self.rect())
         self._paint_legend(painter)

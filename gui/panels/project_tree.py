@@ -14,6 +14,7 @@ from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import natural
 from geofit.gui.words import spoken
 from geofit.report.digits import given, metres
+from geofit.report.style import horizon_colours
 from geofit.site import Site
 from geofit.surface import HorizonSurface
 
@@ -48,7 +49,7 @@ class ProjectTree(QWidget):
         self.view.setUniformRowHeights(True)
         self.view.setIndentation(16)
         self.view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.view.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        self.view.setTextElideMode(Qt.TextElideMode.ElideRight)
         self.search.textChanged.connect(self._filter)
         self.view.selectionModel().currentChanged.connect(self._tell)
         self.view.activated.connect(self._tell)
@@ -121,15 +122,19 @@ class ProjectTree(QWidget):
         self, name: str, site: Site, surfaces: Mapping[str, HorizonSurface], stale: Container[str]
     ) -> list[QStandardItem]:
         surface = surfaces.get(name)
-        count = len(site.horizons[name])
+        count, colour = len(site.horizons[name]), horizon_colours(site.horizons)[name]
         if surface is None or surface.accuracy is None:
             row = _row(
-                name, count, icon("horizon"), ("horizon", name), self.tr("{name}: not fitted yet").format(name=name)
+                name,
+                count,
+                icon(f"horizon:{colour}"),
+                ("horizon", name),
+                self.tr("{name}: not fitted yet").format(name=name),
             )
             return row
         a, old = surface.accuracy, name in stale
         verdict = self.tr("PASS") if a.passed else self.tr("FAIL")
-        words = self.tr("{name}: {verdict}, σ {sigma} m, ε {epsilon} m, {patches} patches, {n} points").format(
+        words = self.tr("{name}: {verdict}, σ {sigma} m, ε {epsilon} m; patches: {patches}, points: {n}").format(
             name=name,
             verdict=verdict,
             sigma=metres(a.sigma),
@@ -157,7 +162,7 @@ class ProjectTree(QWidget):
                 _row(
                     spoken(patch.name),
                     group.n if group else 0,
-                    icon("patch"),
+                    icon(f"patch:{colour}"),
                     ("patch", f"{name}\n{patch.name}"),
                     about,
                 )

@@ -12,7 +12,7 @@ from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QCheckBox, QLabel, QLineEdit, QMenu, QVBoxLayout, QWidget
 
 from geofit.gui.panels.flow import FlowLayout
-from geofit.gui.panels.marks import icon
+from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable, spoken_words
 from geofit.report.style import bands
@@ -141,7 +141,7 @@ class ResidualTable(QWidget):
     def _columns(self, surface: HorizonSurface, core: NDArray[np.bool_]) -> list[Column]:
         points, a = surface.points, surface.accuracy
         assert a is not None
-        marks = _marks(surface)
+        marks = _marks(surface, self)
         notes = np.full(len(points), "", dtype=object)
         for conflict in a.conflicts:
             notes[conflict.dropped] = str(conflict.text)
@@ -184,9 +184,9 @@ class ResidualTable(QWidget):
     def _tell_count(self) -> None:
         shown, total = self.table.rows.rowCount(), self.table.rows.total
         self.count.setText(
-            self.tr("{n} points").format(n=total)
+            self.tr("Points: {n}").format(n=total)
             if shown == total
-            else self.tr("{shown} of {n} points").format(shown=shown, n=total)
+            else self.tr("Points: {shown} of {n}").format(shown=shown, n=total)
         )
 
 
@@ -197,15 +197,15 @@ def _joined(parts: tuple[NDArray[np.str_], ...]) -> NDArray[np.str_]:
     return np.char.lower(joined)
 
 
-def _marks(surface: HorizonSurface) -> Callable[[int], QIcon]:
-    """Return the mark of each residual's band, as the deviation map draws it."""
+def _marks(surface: HorizonSurface, panel: QWidget) -> Callable[[int], QIcon]:
+    """Return the mark of each residual's band, as the deviation map draws it in the panel's theme."""
     assert surface.accuracy is not None
     d = surface.accuracy.residuals
-    limits = bands(surface.settings)
-    band = np.searchsorted([limit.low for limit in limits], np.abs(d), side="right") - 1
+    themes = bands(surface.settings), bands(surface.settings, dark=True)
+    band = np.searchsorted([limit.low for limit in themes[0]], np.abs(d), side="right") - 1
 
     def mark(i: int) -> QIcon:
-        limit = limits[band[i]]
+        limit = themes[is_dark(panel.palette())][band[i]]
         if band[i] == 0:
             return icon(f"dot:{limit.below}")
         return icon(f"down:{limit.below}" if d[i] < 0 else f"up:{limit.above}")

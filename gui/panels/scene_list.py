@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QPoint, QRectF, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QRectF, QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QIcon, QPainter, QPaintEvent, QPixmap
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -148,6 +148,9 @@ class SceneList(QWidget):
             self._place.say(self.tr("Nothing to show yet: open or import a site."))
         key = self.chosen()
         self.form.show_layer(self.layers[key] if key is not None else None)
+        if key is not None:
+            # Once the form has taken its room.
+            QTimer.singleShot(0, self.tree, lambda: self.tree.scrollTo(self.tree.currentIndex()))
 
     def _menu(self, at: QPoint) -> None:
         row = self.tree.itemAt(at)

@@ -60,9 +60,9 @@ class SeamTable(QWidget):
         held = [seam_holds(seam, surface.settings) for seam in seams]
         gap = min(GAP_LIMIT, surface.settings.boundary_tolerance)
         if surface.settings.seam == "tangent":
-            words = self.tr("{n} seams; gaps up to {gap:g} mm and angles up to {angle:g}° are allowed")
+            words = self.tr("Seams: {n}; gaps up to {gap:g} mm and angles up to {angle:g}° are allowed")
         else:
-            words = self.tr("{n} seams; gaps up to {gap:g} mm are allowed, and breaks of any angle")
+            words = self.tr("Seams: {n}; gaps up to {gap:g} mm are allowed, and breaks of any angle")
         self.head.setText(words.format(n=len(seams), gap=1000 * gap, angle=ANGLE_LIMIT))
         self.table.show_columns(
             [

@@ -5,20 +5,27 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backend_bases import MouseEvent
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QPaintEvent
 from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
-from geofit.errors import GeofitError
-from geofit.gui.panels.canvas import Canvas, Ink
+from geofit.gui.panels.canvas import Canvas, Ink, place
 from geofit.gui.panels.curtain import Curtain, Meshes, Traces, extent, trace
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.section_ink import SectionData, draw_section, near_points
-from geofit.gui.words import spoken
+from geofit.gui.panels.section_ink import (
+    SectionData,
+    draw_section,
+    explain,
+    near_points,
+    seen_in,
+    thin_names,
+)
+from geofit.gui.panels.section_scale import automatic, grown, window
+from geofit.gui.words import failure
 from geofit.gui.worker import Task, run
 from geofit.offdata import Uncertainty
 from geofit.site import Site
@@ -28,10 +35,10 @@ __all__ = ["SectionPanel"]
 
 #: Wait for the next step of a spin box, milliseconds.
 PAUSE = 120
-#: Vertical exaggerations on offer.
-FACTORS = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0)
-#: Room for the names of holes above the drawing, as a share of its height.
-NAMES = 0.25
+#: Vertical exaggerations on offer, besides the one that is found by itself.
+FACTORS = (1.0, 1.5, 2.0, 3.0, 5.0, 10.0, 20.0)
+#: A drawing lower than this has no line to spare, logical pixels.
+LOW = 220.0
 #: A point is picked within so many pixels.
 NEAR = 8
 
@@ -57,6 +64,7 @@ class SectionPanel(QWidget):
         self.position = _spin(-1e6, 1e6, 10, self.tr(" m"), "-9999.9 m")
         self.thickness = _spin(0.1, 1e5, 10, self.tr(" m"), "999.9 m")
         self.factor = QComboBox()
+        self.factor.addItem(self.tr("Auto"), None)
         for factor in FACTORS:
             self.factor.addItem(f"× {factor:g}", factor)
         tools = FlowLayout()
@@ -65,10 +73,10 @@ class SectionPanel(QWidget):
             (self.tr("Azimuth"), self.azimuth, self.tr("Direction of the section, clockwise from north.")),
             (self.tr("Position"), self.position, self.tr("Right of the site's middle, looking along the azimuth.")),
             (self.tr("Thickness"), self.thickness, self.tr("Holes and points within half of this to each side.")),
-            (self.tr("Height"), self.factor, self.tr("How much higher elevations are drawn than distances.")),
+            (self.tr("Height"), self.factor, self.tr("How much higher elevations are drawn; numbers stay true.")),
         ):  # fmt: skip
             tools.addWidget(_labelled(words, widget, about))
-        self.canvas = Canvas(self._paint)
+        self.canvas = Canvas(self._paint, self._arrange)
         self.canvas.setAccessibleName(self.tr("Section drawing"))
         self.state = QLabel()
         self.state.setWordWrap(True)
@@ -87,6 +95,8 @@ class SectionPanel(QWidget):
         self._task: Task | None = None
         self._again = self._due = False
         self._grip: tuple[float, float] | None = None
+        # Size of the drawing, its edges and exaggeration; magnified or moved, they stay until another line is shown.
+        self._size, self._edges, self._shown, self._moved = (1.0, 1.0), ((0.0, 1.0), (0.0, 1.0)), 1.0, False
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._tell_line)
         self.azimuth.valueChanged.connect(lambda _: self._edit_line())
@@ -116,6 +126,7 @@ class SectionPanel(QWidget):
         new = self._data is None or self._data.site is not site
         box = extent(site, surfaces)
         curtain = Curtain.straight(90.0, 0.0, box) if line is None else Curtain.along(line)
+        self._moved &= self._data is not None and np.array_equal(curtain.line, self._data.curtain.line)
         self._surfaces = surfaces
         for gone in self._meshes.keys() - surfaces.keys():
             del self._meshes[gone]
@@ -171,11 +182,15 @@ class SectionPanel(QWidget):
 
     def _rescale(self) -> None:
         if self._data is not None:
-            self._say_line()
-            self.canvas.repaint_figure()
+            self._show_all()
+
+    def _show_all(self) -> None:
+        self._moved = False
+        self.canvas.repaint_figure()
 
     def _take(self, curtain: Curtain) -> None:
         assert self._data is not None
+        self._moved = False
         self._data = SectionData(
             self._data.site, curtain, self._data.thickness, self._data.traces, self._data.uncertainty
         )
@@ -226,7 +241,7 @@ class SectionPanel(QWidget):
             self.canvas.repaint_figure()
 
     def _tell_failure(self, error: Exception) -> None:
-        self.state.setText(spoken(str(error)) if isinstance(error, GeofitError) else str(error))
+        self.state.setText(failure(error))
         self.failed.emit(error)
 
     def _ended(self) -> None:
@@ -235,54 +250,76 @@ class SectionPanel(QWidget):
             self._again = False
             self._cut()
 
-    def _scale(self) -> str:
-        factor = float(self.factor.currentData())
-        return self.tr("true to scale") if factor == 1 else self.tr("elevations × {factor:g}").format(factor=factor)
-
     def _say_line(self) -> None:
         assert self._data is not None
         (x0, y0), (x1, y1) = self._data.curtain.line[[0, -1]]
         self.state.setText(
-            self.tr("From ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m; {scale}").format(
-                x0=x0, y0=y0, x1=x1, y1=y1, length=self._data.curtain.length, scale=self._scale()
+            self.tr("From ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m").format(
+                x0=x0, y0=y0, x1=x1, y1=y1, length=self._data.curtain.length
             )
         )
 
-    def _paint(self, figure: Figure, ink: Ink) -> None:
+    def _paint(self, ink: Ink) -> None:
         if self._data is None:
             return
-        axes = figure.subplots()
-        factor = float(self.factor.currentData())
         words = {
             "ground": self.tr("ground"),
             "band": self.tr("90 % band"),
-            "distance": self.tr("Distance along the section, m"),
             "elevation": self.tr("Elevation, m"),
         }
-        draw_section(axes, self._data, ink, words)
-        low, high = axes.dataLim.intervaly
-        # The names of the holes stand above everything else.
-        axes.update_datalim([(0.0, low), (self._data.curtain.length, high + NAMES * (high - low))])
-        axes.autoscale_view()
-        axes.set_aspect(factor, adjustable="datalim")
-        if axes.get_legend_handles_labels()[0]:
-            figure.legend(
-                loc="outside lower center" if self.canvas.narrow else "outside right upper", labelcolor=ink.text,
-                ncols=3 if self.canvas.narrow else 1, fontsize=7.5,
-            )  # fmt: skip
+        draw_section(self.canvas.axes(1)[0], self._data, ink, words)
+
+    def _arrange(self, ink: Ink) -> None:
+        """Put the drawing beside or above its legend, with all of the section in it unless somebody moved it."""
+        assert self._data is not None
+        axes = self.canvas.figure.axes[0]
+        note, room = explain(self.canvas.figure, ink, narrow=self.canvas.narrow)
+        # Other limits have other numbers, which may leave more or less room.
+        for _ in range(2):
+            size = self._place(axes, room)
+            if self._moved:
+                beside, levels = grown(*self._edges, self._size, size)
+            else:
+                seen, chosen = seen_in(axes, self._data.curtain), self.factor.currentData()
+                self._shown = automatic(seen, size) if chosen is None else float(chosen)
+                beside, levels = window(seen, size, self._shown)
+            self._size = size
+            self._look(axes, beside, levels)
+        note.set_text(self.tr("Vertical {factor}×").format(factor=f"{self._shown:g}"))
+
+    def _place(self, axes: Axes, room: tuple[float, float, float, float]) -> tuple[float, float]:
+        """Place the drawing; where it is low, what the distances are stands beside their numbers, not below."""
+        low = room[3] < LOW and not self.canvas.narrow
+        axes.set_xlabel("" if low else self.tr("Distance along the section, m"), ha="left" if low else "center")
+        size = place(axes, *room)
+        if low:
+            axes.set_xlabel(self.tr("Distance, m"), ha="left")
+            axes.xaxis.set_label_coords(1 + 14 / size[0], -8 / size[1])
+        return size
+
+    def _look(self, axes: Axes, beside: tuple[float, float], levels: tuple[float, float]) -> None:
+        self._edges = beside, levels
+        axes.set_xlim(beside)
+        axes.set_ylim(levels)
+        thin_names(axes)
+
+    def _look_at(self, axes: Axes, beside: tuple[float, float], levels: tuple[float, float]) -> None:
+        """Show another part, as somebody wishes."""
+        self._moved = True
+        self._look(axes, beside, levels)
+        self.canvas.refresh()
 
     def _zoom(self, event: MouseEvent) -> None:
         if event.inaxes is None or event.xdata is None or event.ydata is None:
             return
-        factor = 0.83 if event.step > 0 else 1.2
-        axes = event.inaxes
-        axes.set_xlim(*(event.xdata + factor * (x - event.xdata) for x in axes.get_xlim()))
-        axes.set_ylim(*(event.ydata + factor * (z - event.ydata) for z in axes.get_ylim()))
-        self.canvas.refresh()
+        factor, axes = 0.83 if event.step > 0 else 1.2, event.inaxes
+        beside = [event.xdata + factor * (x - event.xdata) for x in axes.get_xlim()]
+        levels = [event.ydata + factor * (z - event.ydata) for z in axes.get_ylim()]
+        self._look_at(axes, (beside[0], beside[1]), (levels[0], levels[1]))
 
     def _press(self, event: MouseEvent) -> None:
         if event.dblclick:
-            self.canvas.repaint_figure()
+            self._show_all()
         elif event.inaxes is not None and event.xdata is not None and event.ydata is not None:
             self._grip = (event.xdata, event.ydata)
             self._pressed = (event.x, event.y)
@@ -293,9 +330,9 @@ class SectionPanel(QWidget):
         axes = event.inaxes
         if np.hypot(event.x - self._pressed[0], event.y - self._pressed[1]) < 4:
             return
-        axes.set_xlim(*(x + self._grip[0] - event.xdata for x in axes.get_xlim()))
-        axes.set_ylim(*(z + self._grip[1] - event.ydata for z in axes.get_ylim()))
-        self.canvas.refresh()
+        beside = [x + self._grip[0] - event.xdata for x in axes.get_xlim()]
+        levels = [z + self._grip[1] - event.ydata for z in axes.get_ylim()]
+        self._look_at(axes, (beside[0], beside[1]), (levels[0], levels[1]))
 
     def _release(self, event: MouseEvent) -> None:
         held, self._grip = self._grip, None

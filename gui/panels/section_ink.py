@@ -7,21 +7,26 @@ from dataclasses import dataclass, field
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.text import Annotation, Text
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from geofit.gui.panels.canvas import Ink
+from geofit.gui.panels.canvas import DOT, Ink
 from geofit.gui.panels.curtain import Curtain, Traces
+from geofit.gui.panels.section_scale import Extent
 from geofit.offdata import Uncertainty
-from geofit.report.section import COLOURS
-from geofit.report.style import kind_style, quiet
+from geofit.report.style import horizon_colours, kind_style, quiet
 from geofit.site import Ground, Site
 
-__all__ = ["SectionData", "draw_section", "near_points"]
+__all__ = ["SectionData", "draw_section", "explain", "near_points", "seen_in", "thin_names"]
 
 Floats = NDArray[np.float64]
 
-#: Distance between the names of two holes, pixels at 100 dots an inch.
-NAME = 14
+#: Distance between the names of two holes, logical pixels; their letters, and those of the legend, in points.
+NAME, LETTERS, LEGEND = 12, 7.0, 7.5
+#: Free room between the legend and the edge, and the height of the line that tells the exaggeration, logical pixels.
+FREE, NOTE = 8.0, 20.0
 #: Half width of a 90 % band in standard deviations.
 NINETY = 1.6449
 GROUND = "#6b7d3a"
@@ -39,8 +44,25 @@ class SectionData:
 
     def colour(self, name: str) -> str:
         """Return the colour of a horizon, the same wherever it stands."""
-        names = list(self.site.horizons)
-        return COLOURS[(names.index(name) if name in names else len(names)) % len(COLOURS)]
+        return horizon_colours([*self.site.horizons, *self.traces])[name]
+
+
+class _Along(MaxNLocator):
+    """Numbers of the distance, from end to end of the section only."""
+
+    def __init__(self, length: float) -> None:
+        super().__init__(steps=[1, 2, 2.5, 5, 10])
+        self._length = length
+
+    def __call__(self) -> list[float]:
+        assert self.axis is not None
+        low, high = sorted(self.axis.get_view_interval())
+        ends = max(low, 0.0), min(high, self._length)
+        if ends[0] >= ends[1]:
+            return []
+        share = (ends[1] - ends[0]) / (high - low)
+        self.set_params(nbins=max(min(int(share * self.axis.get_tick_space()), 9), 1))
+        return [float(value) for value in self.tick_values(*ends) if ends[0] <= value <= ends[1]]
 
 
 def near_points(data: SectionData, name: str) -> tuple[Floats, NDArray[np.int64]]:
@@ -52,7 +74,7 @@ def near_points(data: SectionData, name: str) -> tuple[Floats, NDArray[np.int64]
 
 
 def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, str]) -> None:
-    """Draw a section to scale; ``words`` holds the texts ground, band, distance and elevation."""
+    """Draw a section to scale; ``words`` holds the texts ground, band and elevation."""
     for bend in data.curtain.starts[1:-1]:
         axes.axvline(bend, color=ink.line, lw=0.9, zorder=0)
     if data.site.ground is not None:
@@ -61,7 +83,7 @@ def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, st
         axes.plot(distance, z, color=ink.of(GROUND), lw=1.3, label=words["ground"], zorder=2)
     banded = False
     for name, lines in data.traces.items():
-        colour = ink.of(data.colour(name))
+        colour = data.colour(name)
         for line in lines:
             label = name if line is lines[0] else None
             axes.plot(line.distance, line.xyz[:, 2], color=colour, lw=1.7, label=label, zorder=4)
@@ -81,10 +103,10 @@ def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, st
             marker = kind_style(kind)[0]
             axes.plot(
                 places[of, 0], places[of, 1], ls="none", marker=marker, ms=6 if marker == "." else 4.5,
-                color=ink.of(data.colour(name)), mec=ink.paper, mew=0.5, zorder=5, rasterized=of.sum() > 5_000,
+                color=data.colour(name), mec=ink.paper, mew=0.5, zorder=5, rasterized=of.sum() > 5_000,
             )  # fmt: skip
-    axes.set_xlabel(words["distance"], wrap=True)
     axes.set_ylabel(words["elevation"])
+    axes.xaxis.set_major_locator(_Along(data.curtain.length))
     axes.yaxis.grid(True, color=ink.line, lw=0.6)
     axes.set_axisbelow(True)
     quiet(axes)
@@ -99,25 +121,82 @@ def _band(xyz: Floats, uncertainty: Uncertainty | None) -> Floats | None:
 
 
 def _holes(axes: Axes, data: SectionData, ink: Ink) -> None:
-    last = -np.inf
-    shown = []
+    """Draw the holes within the thickness: one line for all, as each costs as much as all."""
+    tracks, heads = [np.full((1, 2), np.nan)], []
     for hole in data.site.holes:
         along, beside = data.curtain.project(hole.xyz[:, :2])
         near = beside <= data.thickness / 2
         if near.any():
-            shown.append(
-                (float(along[near][0]), hole, np.where(near, along, np.nan), np.where(near, hole.xyz[:, 2], np.nan))
-            )
-    room = data.curtain.length * NAME / max(axes.figure.bbox.width / axes.figure.dpi * 100 * 0.75, 1.0)
-    for at, hole, along, z in sorted(shown, key=lambda one: one[0]):
-        axes.plot(along, z, color=ink.muted, lw=1.1, zorder=3)
-        top = float(np.nanmax(z))
-        place = float(along[np.nanargmax(z)])
-        axes.plot([place], [top], marker="_", color=ink.muted, ms=6, zorder=3)
-        # Names that would stand on one another are left out; the 3D view has them all.
-        if at - last >= room:
-            last = at
-            axes.annotate(
-                hole.name, (place, top), xytext=(0, 3), textcoords="offset points", ha="center", va="bottom",
-                rotation=90, size=7, color=ink.text, annotation_clip=True, zorder=6,
-            )  # fmt: skip
+            track = np.where(near[:, None], np.column_stack([along, hole.xyz[:, 2]]), np.nan)
+            tracks += [track, tracks[0]]
+            heads.append((hole.name, track[np.nanargmax(track[:, 1])]))
+    if not heads:
+        return
+    axes.plot(*np.concatenate(tracks).T, color=ink.muted, lw=1.1, zorder=3)
+    axes.plot(*np.array([head for _, head in heads]).T, ls="none", marker="_", color=ink.muted, ms=6, zorder=3)
+    for name, head in heads:
+        axes.annotate(
+            name, head, xytext=(0, 3), textcoords="offset points", ha="center", va="bottom", rotation=90,
+            size=LETTERS, color=ink.text, annotation_clip=True, zorder=6,
+        )  # fmt: skip
+
+
+def seen_in(axes: Axes, curtain: Curtain) -> Extent:
+    """Return what a drawing has to show: all that is drawn, and the names over the holes."""
+    low, high = (float(level) for level in axes.dataLim.intervaly)
+    if not np.isfinite([low, high]).all():
+        low, high = 0.0, 1.0
+    if low == high:
+        low, high = low - 1.0, high + 1.0
+    names = _names(axes)
+    if not names:
+        return Extent(curtain.length, low, high)
+    letters = max(sum(1.0 if c >= "\u2e80" else 0.64 for c in name.get_text()) for name in names)
+    return Extent(curtain.length, low, high, max(float(name.xy[1]) for name in names), letters * LETTERS * DOT + 8)
+
+
+def _names(axes: Axes) -> list[Annotation]:
+    return [text for text in axes.texts if isinstance(text, Annotation)]
+
+
+def thin_names(axes: Axes) -> None:
+    """Hide names that would stand on one another; the 3D view has them all."""
+    apart = NAME * axes.figure.dpi / 100
+    last = -np.inf
+    for text in sorted(_names(axes), key=lambda one: one.xy[0]):
+        at = float(axes.transData.transform(text.xy)[0])
+        text.set_visible(at - last >= apart)
+        last = at if at - last >= apart else last
+
+
+def explain(figure: Figure, ink: Ink, *, narrow: bool) -> tuple[Text, tuple[float, float, float, float]]:
+    """Write the legend beside the drawing, or below where that is narrow, and the exaggeration above.
+
+    Returns
+    -------
+    tuple
+        The text that tells the exaggeration, still empty, and the room that is left: left, top, width and height in
+        logical pixels.
+    """
+    for old in (*figure.legends, *figure.texts):
+        old.remove()
+    width, height = (100 * float(inches) for inches in figure.get_size_inches())
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    column = row = 0.0
+    if handles:
+        legend = figure.legend(
+            handles, labels, labelcolor=ink.text, fontsize=LEGEND, borderpad=0, borderaxespad=0,
+            loc="lower center" if narrow else "upper left", ncols=3 if narrow else 1,
+        )  # fmt: skip
+        box = legend.get_window_extent()
+        column, row = (100 * float(side) / figure.dpi for side in (box.width, box.height))
+    column = 0.0 if narrow else max(column, 88.0) + FREE
+    if handles:
+        at = (0.5, 4 / height) if narrow else (1 - column / width, 1 - (NOTE + 4) / height)
+        legend.set_bbox_to_anchor(at, figure.transFigure)
+    note = figure.text(
+        1 - (FREE if narrow else column) / width, 1 - 4 / height, "", ha="right" if narrow else "left", va="top",
+        size=8.0, weight="bold", color=ink.text,
+    )  # fmt: skip
+    top = NOTE if narrow else 0.0
+    return note, (0.0, top, width - column, height - top - (row + 4 if narrow else 0.0))

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QPoint, Qt, Signal
-from PySide6.QtGui import QAction, QIcon, QKeySequence
+from PySide6.QtGui import QAction, QIcon, QKeySequence, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHeaderView, QMenu, QTableView, QWidget
 
 from geofit.files import replacing
@@ -26,6 +26,8 @@ from geofit.gui.words import spoken
 
 __all__ = ["ArrayModel", "Column", "DataTable", "natural", "spoken_words"]
 
+#: Pixels that are put between columns where there is room.
+GAP = 12
 Ints = NDArray[np.int64]
 Index = QModelIndex | QPersistentModelIndex
 _NOWHERE = QModelIndex()
@@ -223,7 +225,7 @@ class DataTable(QTableView):
         self.export_action.triggered.connect(self._ask_where)
         self.addAction(self.copy_action)
         self._silent = False
-        self._sized = False
+        self._sized = self._spaced = False
         self.selectionModel().currentRowChanged.connect(self._tell)
 
     def show_columns(self, columns: Sequence[Column]) -> None:
@@ -234,6 +236,20 @@ class DataTable(QTableView):
         if columns and not self._sized:
             self.resizeColumnsToContents()
             self._sized = self.rows.total > 0
+            self._spaced = False
+            self._space()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Put the columns apart once there is room."""
+        super().resizeEvent(event)
+        self._space()
+
+    def _space(self) -> None:
+        count = self.rows.columnCount()
+        if not self._spaced and count and self.horizontalHeader().length() + GAP * count <= self.viewport().width():
+            self._spaced = True
+            for column in range(count):
+                self.setColumnWidth(column, self.columnWidth(column) + GAP)
 
     def keep(self, mask: NDArray[np.bool_] | None) -> None:
         """Show only some rows; the current one stays current if it is among them."""

@@ -125,6 +125,22 @@
         <translation>轴测视图(&amp;O)</translation>
     </message>
     <message>
+        <source>&amp;Next panel</source>
+        <translation>下一面板(&amp;N)</translation>
+    </message>
+    <message>
+        <source>Give the keyboard to the next panel</source>
+        <translation>将键盘焦点移到下一面板</translation>
+    </message>
+    <message>
+        <source>Pre&amp;vious panel</source>
+        <translation>上一面板(&amp;V)</translation>
+    </message>
+    <message>
+        <source>Give the keyboard to the panel before</source>
+        <translation>将键盘焦点移到上一面板</translation>
+    </message>
+    <message>
         <source>&amp;Reset panels</source>
         <translation>恢复面板布局(&amp;R)</translation>
     </message>
@@ -292,7 +308,7 @@
     <name>AdjustPanel</name>
     <message>
         <source>Control point</source>
-        <extracomment>Steps of the buttons, metres. Wait for the next step before an effect is asked for, milliseconds.</extracomment>
+        <extracomment>Wait for the next step before an effect is asked for, milliseconds.</extracomment>
         <translation>控制点</translation>
     </message>
     <message>
@@ -318,96 +334,6 @@
     <message>
         <source>This surface was read from a file: it has no control net of its own. Fit it, then adjust.</source>
         <translation>该曲面读自文件，没有自己的控制网。请先拟合，再调整。</translation>
-    </message>
-    <message>
-        <source>Choose a point in the view or in the residual table.</source>
-        <translation>在三维视图或残差表中选取一点。</translation>
-    </message>
-    <message>
-        <source>{point}
-Elevation {z:.3f} m, residual {d:+.3f} m</source>
-        <translation>{point}
-高程 {z:.3f} m，残差 {d:+.3f} m</translation>
-    </message>
-    <message>
-        <source>The surface meets this point already.</source>
-        <translation>曲面已通过该点。</translation>
-    </message>
-    <message>
-        <source> m</source>
-        <translation> m</translation>
-    </message>
-    <message>
-        <source>row</source>
-        <translation>行</translation>
-    </message>
-    <message>
-        <source>column</source>
-        <translation>列</translation>
-    </message>
-    <message>
-        <source>Move by {step:+g} m</source>
-        <translation>移动 {step:+g} m</translation>
-    </message>
-    <message>
-        <source>Patch</source>
-        <translation>曲面片</translation>
-    </message>
-    <message>
-        <source>Move by</source>
-        <translation>移动量</translation>
-    </message>
-    <message>
-        <source>Elevation</source>
-        <translation>高程</translation>
-    </message>
-    <message>
-        <source>Elevation of the control point; the surface follows it part of the way.</source>
-        <translation>控制点的高程；曲面随之移动一部分。</translation>
-    </message>
-    <message>
-        <source>Weight</source>
-        <translation>权</translation>
-    </message>
-    <message>
-        <source> %</source>
-        <translation> %</translation>
-    </message>
-    <message>
-        <source>Share of the distance</source>
-        <translation>距离的百分比</translation>
-    </message>
-    <message>
-        <source>100 % lets the surface pass through the point, 50 % takes half of the distance away.</source>
-        <translation>100 % 使曲面通过该点，50 % 使距离减半。</translation>
-    </message>
-    <message>
-        <source>The control points around the point move as little as possible. Points that are met exactly stay exact, and may leave no freedom.</source>
-        <translation>该点周围的控制点移动量尽可能小。精确通过的点保持精确，可能因此没有调整余地。</translation>
-    </message>
-    <message>
-        <source>Pull by</source>
-        <translation>拉近</translation>
-    </message>
-    <message>
-        <source>Row of the control point, 0 to {most}.</source>
-        <translation>控制点的行号，0 至 {most}。</translation>
-    </message>
-    <message>
-        <source>Column of the control point, 0 to {most}.</source>
-        <translation>控制点的列号，0 至 {most}。</translation>
-    </message>
-    <message>
-        <source>At ({x:.1f}, {y:.1f}, {z:.2f})</source>
-        <translation>位于（{x:.1f}，{y:.1f}，{z:.2f}）</translation>
-    </message>
-    <message>
-        <source>Moves the surface in a field of {width:.0f} m × {height:.0f} m around it, and nothing outside. {n} points lie there.</source>
-        <translation>只影响其周围 {width:.0f} m × {height:.0f} m 范围内的曲面，其外不变。范围内有 {n} 个点。</translation>
-    </message>
-    <message>
-        <source>{n} of them are met exactly and hold this control point. Choose one farther from them, or exclude them.</source>
-        <translation>其中 {n} 个点被精确通过，约束了该控制点。请选较远的控制点，或剔除这些点。</translation>
     </message>
 </context>
 <context>
@@ -453,6 +379,10 @@ Elevation {z:.3f} m, residual {d:+.3f} m</source>
         <translation>层面上下次序</translation>
     </message>
     <message>
+        <source>Throw at faults</source>
+        <translation>断层落差</translation>
+    </message>
+    <message>
         <source>Away from the data</source>
         <translation>数据点以外</translation>
     </message>
@@ -489,6 +419,10 @@ Elevation {z:.3f} m, residual {d:+.3f} m</source>
         <translation>{upper} 在 {lower} 之上</translation>
     </message>
     <message>
+        <source>{up} above {down}, at {fault}</source>
+        <translation>{fault}：{up} 高于 {down}</translation>
+    </message>
+    <message>
         <source>holes left out</source>
         <translation>留一钻孔法</translation>
     </message>
@@ -501,26 +435,126 @@ Elevation {z:.3f} m, residual {d:+.3f} m</source>
         <translation>留一分块法</translation>
     </message>
     <message>
-        <source>{share:.0%} of the left-out points lie in the 90 % band; mean error {bias:+.2f} m</source>
-        <translation>留出点的 {share:.0%} 在 90 % 置信带内；平均误差 {bias:+.2f} m</translation>
+        <source>Faces: {faces}, free edges: {edges}, edge tolerance {tolerance:.1e} m</source>
+        <translation>面 {faces} 个，自由边 {edges} 条，边容差 {tolerance:.1e} m</translation>
     </message>
     <message>
         <source>for knowledge</source>
         <translation>供参考</translation>
     </message>
     <message>
+        <source>{share:.0f} % of the left-out points lie in the 90 % band; mean error {bias:+.2f} m</source>
+        <translation>留出点有 {share:.0f} % 落在 90 % 置信带内；平均误差 {bias:+.2f} m</translation>
+    </message>
+    <message>
         <source>gave way</source>
         <translation>舍去</translation>
     </message>
+</context>
+<context>
+    <name>ControlPointPage</name>
     <message>
-        <source>{faces} faces, {edges} free edges, edge tolerance {tolerance:.1e} m</source>
-        <translation>{faces} 个面，{edges} 条自由边，边容差 {tolerance:.1e} m</translation>
+        <source>Patch</source>
+        <extracomment>Steps of the buttons, metres.</extracomment>
+        <translation>曲面片</translation>
+    </message>
+    <message>
+        <source>Row</source>
+        <translation>行</translation>
+    </message>
+    <message>
+        <source>Column</source>
+        <translation>列</translation>
+    </message>
+    <message>
+        <source>Move by</source>
+        <translation>移动</translation>
+    </message>
+    <message>
+        <source>Elevation</source>
+        <translation>高程</translation>
+    </message>
+    <message>
+        <source> m</source>
+        <translation> m</translation>
+    </message>
+    <message>
+        <source>Elevation of the control point; the surface follows it part of the way.</source>
+        <translation>控制点的高程；曲面只部分跟随移动。</translation>
+    </message>
+    <message>
+        <source>Move by {step:+g} m</source>
+        <translation>移动 {step:+g} m</translation>
+    </message>
+    <message>
+        <source>Weight</source>
+        <translation>权重</translation>
+    </message>
+    <message>
+        <source>Row of the control point, 0 to {most}.</source>
+        <translation>控制点的行号，0 至 {most}。</translation>
+    </message>
+    <message>
+        <source>Column of the control point, 0 to {most}.</source>
+        <translation>控制点的列号，0 至 {most}。</translation>
+    </message>
+    <message>
+        <source>At ({x:.1f}, {y:.1f}, {z:.2f})</source>
+        <translation>位于（{x:.1f}，{y:.1f}，{z:.2f}）</translation>
+    </message>
+    <message>
+        <source>Moves the surface in a field of {width:.0f} m × {height:.0f} m around it, and nothing outside. Data points there: {n}.</source>
+        <translation>只影响其周围 {width:.0f} m × {height:.0f} m 范围内的曲面，范围外不变。其中有数据点 {n} 个。</translation>
+    </message>
+    <message>
+        <source>It is held by points that are met exactly: {n}. Choose one farther from them, or exclude them.</source>
+        <translation>它受 {n} 个精确通过的点制约。请选择离这些点较远的控制点，或先剔除这些点。</translation>
+    </message>
+</context>
+<context>
+    <name>DataPointPage</name>
+    <message>
+        <source> %</source>
+        <translation> %</translation>
+    </message>
+    <message>
+        <source>Share of the distance</source>
+        <translation>距离的百分比</translation>
+    </message>
+    <message>
+        <source>100 % lets the surface pass through the point, 50 % takes half of the distance away.</source>
+        <translation>100 % 使曲面通过该点，50 % 使距离减半。</translation>
+    </message>
+    <message>
+        <source>The control points around the point move as little as possible. Points that are met exactly stay exact, and may leave no freedom.</source>
+        <translation>该点周围的控制点移动量取最小。精确通过的点保持精确，可能不留余地。</translation>
+    </message>
+    <message>
+        <source>Pull by</source>
+        <translation>拉近</translation>
+    </message>
+    <message>
+        <source>Choose a point in the view or in the residual table.</source>
+        <translation>在三维视图或残差表中选取一点。</translation>
+    </message>
+    <message>
+        <source>{point}
+Elevation {z:.3f} m
+Residual {d:+.3f} m</source>
+        <translation>{point}
+高程 {z:.3f} m
+残差 {d:+.3f} m</translation>
+    </message>
+    <message>
+        <source>The surface meets this point already.</source>
+        <translation>曲面已通过该点。</translation>
     </message>
 </context>
 <context>
     <name>DataTable</name>
     <message>
         <source>Copy</source>
+        <extracomment>Pixels that are put between columns where there is room.</extracomment>
         <translation>复制</translation>
     </message>
     <message>
@@ -540,7 +574,7 @@ Elevation {z:.3f} m, residual {d:+.3f} m</source>
     <name>Delivering</name>
     <message>
         <source>Export</source>
-        <extracomment>File endings of the formats that are named otherwise. Times the view&apos;s own size: an A4 page at 300 dots an inch from half a screen.</extracomment>
+        <extracomment>File endings of the formats that are named otherwise. Times the view&apos;s own size: an A4 page at 300 dots an inch from half a screen. By horizon: the surface that was exported last, and the file that holds it.</extracomment>
         <translation>导出</translation>
     </message>
     <message>
@@ -684,10 +718,6 @@ Check that the folder is there, can be written, and has room.</source>
         <translation>写出(&amp;W)</translation>
     </message>
     <message>
-        <source>&amp;Stop</source>
-        <translation>停止(&amp;S)</translation>
-    </message>
-    <message>
         <source>Open &amp;folder</source>
         <translation>打开文件夹(&amp;F)</translation>
     </message>
@@ -778,14 +808,6 @@ Check that the folder is there, can be written, and has room.</source>
     <message>
         <source>In words</source>
         <translation>说明</translation>
-    </message>
-    <message>
-        <source>{reason}. Check that the folder is there, can be written, and has room.</source>
-        <translation>{reason}。请确认文件夹存在、可写且有足够空间。</translation>
-    </message>
-    <message>
-        <source>This is a mistake in geofit, not in your data; please report it: {error}</source>
-        <translation>这是 geofit 的错误，与您的数据无关，请反馈：{error}</translation>
     </message>
 </context>
 <context>
@@ -1081,6 +1103,14 @@ Check that the folder is there, can be written, and has room.</source>
         <translation>拟合 {name}</translation>
     </message>
     <message>
+        <source>Part {name} at its faults</source>
+        <translation>沿断层划分 {name}</translation>
+    </message>
+    <message>
+        <source>Measure the throw of {name}</source>
+        <translation>量测 {name} 的落差</translation>
+    </message>
+    <message>
         <source>Examine {name} off its data</source>
         <translation>检验 {name} 数据点以外的误差</translation>
     </message>
@@ -1113,7 +1143,7 @@ Check that the folder is there, can be written, and has room.</source>
     <name>HistogramPanel</name>
     <message>
         <source>Histogram and normal plot of the residuals</source>
-        <extracomment>Width of a letter of the pictures, pixels. Height of a line of the legend, as a share of the bars&apos; height.</extracomment>
+        <extracomment>Room beside a picture for its scale, logical pixels. Letters of the legend in points, and the height of its lines, logical pixels.</extracomment>
         <translation>残差直方图与正态概率图</translation>
     </message>
     <message>
@@ -1129,10 +1159,12 @@ Check that the folder is there, can be written, and has room.</source>
     <name>ImportWizard</name>
     <message>
         <source>Import</source>
+        <extracomment>Tables that are named where many are to be settled.</extracomment>
         <translation>导入</translation>
     </message>
     <message>
         <source>Tables</source>
+        <extracomment>Files that this wizard wrote where there were none.</extracomment>
         <translation>数据表</translation>
     </message>
     <message>
@@ -1152,12 +1184,24 @@ Check that the folder is there, can be written, and has room.</source>
         <translation>上一步(&amp;B)</translation>
     </message>
     <message>
-        <source>Coordinate &amp;system</source>
-        <translation>坐标系(&amp;S)</translation>
-    </message>
-    <message>
         <source>Site &amp;file</source>
         <translation>场地文件(&amp;F)</translation>
+    </message>
+    <message>
+        <source>The site is written; Cancel takes it away again.</source>
+        <translation>场地已写出；点“取消”将其删除。</translation>
+    </message>
+    <message>
+        <source>Every table is left out: there is nothing to read.</source>
+        <translation>全部表格均不导入：没有可读取的内容。</translation>
+    </message>
+    <message>
+        <source>{name} is there already, and will be written over.</source>
+        <translation>{name} 已存在，将被覆盖。</translation>
+    </message>
+    <message>
+        <source>Ready. Tables that will be read: {count}.</source>
+        <translation>就绪。将读取 {count} 个表。</translation>
     </message>
     <message>
         <source>Add files</source>
@@ -1172,12 +1216,32 @@ Check that the folder is there, can be written, and has room.</source>
         <translation>读入(&amp;R)</translation>
     </message>
     <message>
+        <source>Bro&amp;wse…</source>
+        <translation>浏览(&amp;W)...</translation>
+    </message>
+    <message>
+        <source>Coordinate s&amp;ystem</source>
+        <translation>坐标系(&amp;Y)</translation>
+    </message>
+    <message>
         <source>To be settled: {names}</source>
         <translation>待确认：{names}</translation>
     </message>
     <message>
         <source>Add files, or drop them here.</source>
         <translation>请添加文件，或将文件拖到此处。</translation>
+    </message>
+    <message>
+        <source>Site files (*.toml)</source>
+        <translation>场地文件 (*.toml)</translation>
+    </message>
+    <message>
+        <source>Reading the files…</source>
+        <translation>正在读取文件…</translation>
+    </message>
+    <message>
+        <source>Stopped.</source>
+        <translation>已停止。</translation>
     </message>
 </context>
 <context>
@@ -1187,7 +1251,7 @@ Check that the folder is there, can be written, and has room.</source>
         <translation>导入问题</translation>
     </message>
     <message>
-        <source>{read} rows read = {used} used + {listed} listed here.</source>
+        <source>Rows read: {read} = {used} used + {listed} listed here.</source>
         <translation>读入 {read} 行 = 采用 {used} 行 + 此处列出 {listed} 行。</translation>
     </message>
     <message>
@@ -1238,6 +1302,10 @@ Check that the folder is there, can be written, and has room.</source>
         <translation>层面点</translation>
     </message>
     <message>
+        <source>One column a horizon</source>
+        <translation>每列一个层面</translation>
+    </message>
+    <message>
         <source>Measured dips</source>
         <translation>实测产状</translation>
     </message>
@@ -1285,6 +1353,14 @@ Check that the folder is there, can be written, and has room.</source>
         <source>Clear</source>
         <translation>清空</translation>
     </message>
+    <message>
+        <source>warning</source>
+        <translation>警告</translation>
+    </message>
+    <message>
+        <source>error</source>
+        <translation>错误</translation>
+    </message>
 </context>
 <context>
     <name>MainWindow</name>
@@ -1310,7 +1386,6 @@ Check that the folder is there, can be written, and has room.</source>
     <name>Menus</name>
     <message>
         <source>&amp;Undo</source>
-        <extracomment>Actions of the tool bar, a bar between groups.</extracomment>
         <translation>撤销(&amp;U)</translation>
     </message>
     <message>
@@ -1319,6 +1394,7 @@ Check that the folder is there, can be written, and has room.</source>
     </message>
     <message>
         <source>&amp;File</source>
+        <extracomment>Actions of the tool bar, a bar between groups.</extracomment>
         <translation>文件(&amp;F)</translation>
     </message>
     <message>
@@ -1360,6 +1436,14 @@ Check that the folder is there, can be written, and has room.</source>
     <message>
         <source>&amp;Help</source>
         <translation>帮助(&amp;H)</translation>
+    </message>
+    <message>
+        <source>&amp;Undo {step}</source>
+        <translation>撤销 {step}(&amp;U)</translation>
+    </message>
+    <message>
+        <source>&amp;Redo {step}</source>
+        <translation>重做 {step}(&amp;R)</translation>
     </message>
     <message>
         <source>Tool bar</source>
@@ -1422,8 +1506,8 @@ Check that the folder is there, can be written, and has room.</source>
         <translation>已乘校准系数 {factor:.2f} 收窄：校准前不足 10 % 的留出点在 90 % 置信带外。</translation>
     </message>
     <message>
-        <source>{name}: {inside:.0%} of the left-out points lie in the 90 % band ({raw:.0%} before calibration).</source>
-        <translation>{name}：{inside:.0%} 的留出点在 90 % 置信带内（校准前 {raw:.0%}）。</translation>
+        <source>{name}: {inside:.0f} % of the left-out points lie in the 90 % band ({raw:.0f} % before calibration).</source>
+        <translation>{name}：留出点有 {inside:.0f} % 落在 90 % 置信带内（校准前 {raw:.0f} %）。</translation>
     </message>
     <message>
         <source>No figure could be found; the notes say why.</source>
@@ -1582,6 +1666,10 @@ Check that the folder is there, can be written, and has room.</source>
     <message>
         <source>Least thickness between a horizon and the next, metres</source>
         <translation>相邻层面之间的最小厚度，m</translation>
+    </message>
+    <message>
+        <source>Cut by a fault, so not pushed apart from others: {names}</source>
+        <translation>被断层切割，未与其他层面推开：{names}</translation>
     </message>
     <message>
         <source>&apos;{name}&apos; was read from a file and not fitted here. Fit it again, then push apart.</source>
@@ -1810,8 +1898,8 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>不合格</translation>
     </message>
     <message>
-        <source>{name}: {verdict}, σ {sigma} m, ε {epsilon} m, {patches} patches, {n} points</source>
-        <translation>{name}：{verdict}，σ {sigma} m，ε {epsilon} m，{patches} 个曲面片，{n} 个点</translation>
+        <source>{name}: {verdict}, σ {sigma} m, ε {epsilon} m; patches: {patches}, points: {n}</source>
+        <translation>{name}：{verdict}，σ {sigma} m，ε {epsilon} m；曲面片 {patches} 个，点 {n} 个</translation>
     </message>
     <message>
         <source>{name} (stale)</source>
@@ -1854,7 +1942,7 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>以后再问(&amp;L)</translation>
     </message>
     <message>
-        <source>{site} – {when} – {count} steps: {steps}
+        <source>{site} – {when} – steps ({count}): {steps}
 {file}</source>
         <translation>{site} – {when} – {count} 步：{steps}
 {file}</translation>
@@ -1879,6 +1967,10 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>&amp;JSON，全部数据，供程序读取</translation>
     </message>
     <message>
+        <source>Horizons: {names}</source>
+        <translation>层面：{names}</translation>
+    </message>
+    <message>
         <source>&amp;Examine first: {names}</source>
         <translation>先检验(&amp;E)：{names}</translation>
     </message>
@@ -1891,16 +1983,8 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>写出(&amp;W)</translation>
     </message>
     <message>
-        <source>&amp;Stop</source>
-        <translation>停止(&amp;S)</translation>
-    </message>
-    <message>
         <source>&amp;Open</source>
         <translation>打开(&amp;O)</translation>
-    </message>
-    <message>
-        <source>{count} horizons: {names}</source>
-        <translation>{count} 个层面：{names}</translation>
     </message>
     <message>
         <source>&amp;Browse…</source>
@@ -1941,14 +2025,6 @@ azimuth {azimuth}° · dip {dip}°</source>
     <message>
         <source>Wrote {names} in {folder}.</source>
         <translation>已写出 {names}，位于 {folder}。</translation>
-    </message>
-    <message>
-        <source>{reason}. Check that the folder can be written, and that no other program has the file open.</source>
-        <translation>{reason}。请确认文件夹可写，且文件未被其他程序打开。</translation>
-    </message>
-    <message>
-        <source>This is a mistake in geofit, not in your data; please report it: {error}</source>
-        <translation>这是 geofit 的错误，与您的数据无关，请反馈：{error}</translation>
     </message>
 </context>
 <context>
@@ -2066,12 +2142,12 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>备注</translation>
     </message>
     <message>
-        <source>{n} points</source>
-        <translation>{n} 个点</translation>
+        <source>Points: {n}</source>
+        <translation>共 {n} 点</translation>
     </message>
     <message>
-        <source>{shown} of {n} points</source>
-        <translation>{shown} / {n} 个点</translation>
+        <source>Points: {shown} of {n}</source>
+        <translation>显示 {shown} / {n} 点</translation>
     </message>
 </context>
 <context>
@@ -2229,6 +2305,14 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>层面</translation>
     </message>
     <message>
+        <source>Horizon elevation</source>
+        <translation>层面高程</translation>
+    </message>
+    <message>
+        <source>Horizon depth</source>
+        <translation>层面深度</translation>
+    </message>
+    <message>
         <source>Distance along</source>
         <translation>沿线距离</translation>
     </message>
@@ -2277,7 +2361,6 @@ azimuth {azimuth}° · dip {dip}°</source>
     <name>Said</name>
     <message>
         <source>Settings of {name}</source>
-        <extracomment>Sentences that the windows&apos; own model says (geofit.gui.document), for the translators.</extracomment>
         <translation>{name} 的设置</translation>
     </message>
     <message>
@@ -2295,6 +2378,10 @@ azimuth {azimuth}° · dip {dip}°</source>
     <message>
         <source>Fit {name}</source>
         <translation>拟合 {name}</translation>
+    </message>
+    <message>
+        <source>Part {name} at {faults}</source>
+        <translation>沿 {faults} 划分 {name}</translation>
     </message>
     <message>
         <source>Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})</source>
@@ -2319,6 +2406,114 @@ azimuth {azimuth}° · dip {dip}°</source>
     <message>
         <source>Rename the site to {name}</source>
         <translation>场地重命名为 {name}</translation>
+    </message>
+    <message>
+        <source>The site has no horizon &apos;{name}&apos;. It has {names}.</source>
+        <translation>场地没有层面“{name}”；现有：{names}。</translation>
+    </message>
+    <message>
+        <source>&apos;{step}&apos; was not done yet and cannot be undone.</source>
+        <translation>“{step}”尚未执行，不能撤销。</translation>
+    </message>
+    <message>
+        <source>{file} row {row} is excluded from &apos;{name}&apos; already.</source>
+        <translation>{file} 第 {row} 行已从“{name}”剔除。</translation>
+    </message>
+    <message>
+        <source>{file} row {row} is not excluded from &apos;{name}&apos;.</source>
+        <translation>{file} 第 {row} 行未从“{name}”剔除。</translation>
+    </message>
+    <message>
+        <source>&apos;{name}&apos; has no surface to adjust. Fit it first.</source>
+        <translation>“{name}”没有可调整的曲面。请先拟合。</translation>
+    </message>
+    <message>
+        <source>&apos;{name}&apos; has no surface to examine. Fit it first.</source>
+        <translation>“{name}”没有可检验的曲面。请先拟合。</translation>
+    </message>
+    <message>
+        <source>&apos;{name}&apos; has no surface that could be moved. Fit it first.</source>
+        <translation>“{name}”没有可移动的曲面。请先拟合。</translation>
+    </message>
+    <message>
+        <source>&apos;{name}&apos; was read from a file, and its data have changed since. Fit it again, then adjust.</source>
+        <translation>“{name}”由文件读入，其数据此后已改变。请重新拟合后再调整。</translation>
+    </message>
+    <message>
+        <source>The surface changed while it was adjusted. Adjust it once more.</source>
+        <translation>调整期间曲面已改变。请再调整一次。</translation>
+    </message>
+    <message>
+        <source>The order must name each horizon once: {names}.</source>
+        <translation>上下次序中每个层面须且只须出现一次：{names}。</translation>
+    </message>
+    <message>
+        <source>The site&apos;s name is empty. Give it a word.</source>
+        <translation>场地名称为空。请填写名称。</translation>
+    </message>
+    <message>
+        <source>A scale of {scale:g} makes a picture of {width} × {height} pixels; give one above 0 and below {most:.1f}.</source>
+        <translation>比例 {scale:g} 将产生 {width} × {height} 像素的图片；请取大于 0 且小于 {most:.1f} 的比例。</translation>
+    </message>
+    <message>
+        <source>The process that did the work ended by itself (exit code {code}). Memory may have run out: close other programs and try again.</source>
+        <translation>执行任务的进程意外结束（退出码 {code}）。可能内存不足：请关闭其他程序后重试。</translation>
+    </message>
+    <message>
+        <source>Opened %s: %d horizons, %d holes, %d rows not used</source>
+        <translation>已打开 %s：层面 %d 个，钻孔与平硐 %d 个，未采用 %d 行</translation>
+    </message>
+    <message>
+        <source>Saved %s</source>
+        <translation>已保存 %s</translation>
+    </message>
+    <message>
+        <source>Wrote %s</source>
+        <translation>已写出 %s</translation>
+    </message>
+    <message>
+        <source>Stopped: %s</source>
+        <translation>已停止：%s</translation>
+    </message>
+    <message>
+        <source>%s failed</source>
+        <translation>%s 失败</translation>
+    </message>
+    <message>
+        <source>%s: %s</source>
+        <translation>%s：%s</translation>
+    </message>
+    <message>
+        <source>%s: %s since the project was saved.</source>
+        <translation>%s：工程保存后%s。</translation>
+    </message>
+    <message>
+        <source>missing</source>
+        <translation>已丢失</translation>
+    </message>
+    <message>
+        <source>changed</source>
+        <translation>已改变</translation>
+    </message>
+    <message>
+        <source>%s and %s cross at %d places</source>
+        <translation>%s 与 %s 有 %d 处相交</translation>
+    </message>
+    <message>
+        <source>The data of %s have changed since: its surface cannot be made again as it was. Fit it.</source>
+        <translation>%s 的数据此后已改变：不能照原样重建其曲面。请拟合。</translation>
+    </message>
+    <message>
+        <source>There is no journal, so that a crash would lose unsaved work: %s</source>
+        <translation>没有操作日志，程序崩溃时未保存的工作将丢失：%s</translation>
+    </message>
+    <message>
+        <source>The journal cannot be written any more, so that a crash would lose unsaved work: %s</source>
+        <translation>操作日志不能继续写入，程序崩溃时未保存的工作将丢失：%s</translation>
+    </message>
+    <message>
+        <source>No font on this machine has Chinese characters: they are shown as boxes. Install one (Debian and Ubuntu: apt-get install fonts-noto-cjk) and start again.</source>
+        <translation>本机没有中文字体，汉字显示为方框。请安装后重新启动（Debian 与 Ubuntu：apt-get install fonts-noto-cjk）。</translation>
     </message>
 </context>
 <context>
@@ -2494,12 +2689,12 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>该曲面仅一个曲面片，无拼接缝。</translation>
     </message>
     <message>
-        <source>{n} seams; gaps up to {gap:g} mm and angles up to {angle:g}° are allowed</source>
-        <translation>{n} 条拼接缝；允许缝隙 {gap:g} mm，允许夹角 {angle:g}°</translation>
+        <source>Seams: {n}; gaps up to {gap:g} mm and angles up to {angle:g}° are allowed</source>
+        <translation>拼接缝 {n} 条；允许缝隙 {gap:g} mm、夹角 {angle:g}°</translation>
     </message>
     <message>
-        <source>{n} seams; gaps up to {gap:g} mm are allowed, and breaks of any angle</source>
-        <translation>{n} 条拼接缝；允许缝隙 {gap:g} mm，夹角不限</translation>
+        <source>Seams: {n}; gaps up to {gap:g} mm are allowed, and breaks of any angle</source>
+        <translation>拼接缝 {n} 条；允许缝隙 {gap:g} mm，夹角不限</translation>
     </message>
     <message>
         <source>Patch</source>
@@ -2530,12 +2725,16 @@ azimuth {azimuth}° · dip {dip}°</source>
     <name>SectionPanel</name>
     <message>
         <source>°</source>
-        <extracomment>Wait for the next step of a spin box, milliseconds. Vertical exaggerations on offer. Room for the names of holes above the drawing, as a share of its height. A point is picked within so many pixels.</extracomment>
+        <extracomment>Wait for the next step of a spin box, milliseconds. Vertical exaggerations on offer, besides the one that is found by itself. A drawing lower than this has no line to spare, logical pixels. A point is picked within so many pixels.</extracomment>
         <translation>°</translation>
     </message>
     <message>
         <source> m</source>
         <translation> m</translation>
+    </message>
+    <message>
+        <source>Auto</source>
+        <translation>自动</translation>
     </message>
     <message>
         <source>Along</source>
@@ -2574,12 +2773,24 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>高程比例</translation>
     </message>
     <message>
-        <source>How much higher elevations are drawn than distances.</source>
-        <translation>高程相对于水平距离的放大倍数。</translation>
+        <source>From ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m</source>
+        <translation>自（{x0:.1f}，{y0:.1f}）至（{x1:.1f}，{y1:.1f}），长 {length:.0f} m</translation>
+    </message>
+    <message>
+        <source>Vertical {factor}×</source>
+        <translation>竖向 {factor}×</translation>
+    </message>
+    <message>
+        <source>Distance, m</source>
+        <translation>距离, m</translation>
     </message>
     <message>
         <source>Section drawing</source>
         <translation>剖面图</translation>
+    </message>
+    <message>
+        <source>How much higher elevations are drawn; numbers stay true.</source>
+        <translation>高程的放大倍数；数值不受影响。</translation>
     </message>
     <message>
         <source>No site open: open one to cut a section through it.</source>
@@ -2600,18 +2811,6 @@ azimuth {azimuth}° · dip {dip}°</source>
     <message>
         <source>Section</source>
         <translation>剖面</translation>
-    </message>
-    <message>
-        <source>true to scale</source>
-        <translation>等比例</translation>
-    </message>
-    <message>
-        <source>elevations × {factor:g}</source>
-        <translation>高程 × {factor:g}</translation>
-    </message>
-    <message>
-        <source>From ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m; {scale}</source>
-        <translation>自（{x0:.1f}，{y0:.1f}）至（{x1:.1f}，{y1:.1f}），长 {length:.0f} m；{scale}</translation>
     </message>
     <message>
         <source>ground</source>
@@ -2641,6 +2840,7 @@ azimuth {azimuth}° · dip {dip}°</source>
     <name>ShortcutsDialog</name>
     <message>
         <source>Keyboard shortcuts</source>
+        <extracomment>Pixels between an action and its keys.</extracomment>
         <translation>快捷键</translation>
     </message>
     <message>
@@ -2758,6 +2958,10 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>长度单位(&amp;U)</translation>
     </message>
     <message>
+        <source>E&amp;xchange easting and northing</source>
+        <translation>互换东坐标与北坐标(&amp;X)</translation>
+    </message>
+    <message>
         <source>{kind} ({share:.0%} likely)</source>
         <translation>{kind}（可能性 {share:.0%}）</translation>
     </message>
@@ -2790,6 +2994,14 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>不是数字：该行将列出而不采用。</translation>
     </message>
     <message>
+        <source>No number: it makes no pick.</source>
+        <translation>不是数字：不成点。</translation>
+    </message>
+    <message>
+        <source>This file is left out.</source>
+        <translation>此文件不导入。</translation>
+    </message>
+    <message>
         <source>Nothing is known of these rows. Say what they are, or leave the table out.</source>
         <translation>未能识别这些行。请指明其内容，或选择不导入。</translation>
     </message>
@@ -2802,8 +3014,28 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>尚缺：{roles}。请在表头上方指定相应的列。</translation>
     </message>
     <message>
+        <source>No column holds upper limits: they are taken from the row above, 0 at the first.</source>
+        <translation>没有上界列：取上一行的下界，首行取 0。</translation>
+    </message>
+    <message>
+        <source>No column names a horizon: all points are of &apos;{name}&apos;.</source>
+        <translation>没有注明层面的列：全部点属于“{name}”。</translation>
+    </message>
+    <message>
+        <source>Red cells are no numbers ({count} shown): such rows will be listed, not used.</source>
+        <translation>红色单元格不是数字（显示 {count} 个）：相应各行将列出而不采用。</translation>
+    </message>
+    <message>
+        <source>Easting and northing look exchanged: in many Chinese tables X is the northing, Y the easting.</source>
+        <translation>东坐标与北坐标似已互换：国内许多表格以 X 为北坐标、Y 为东坐标。</translation>
+    </message>
+    <message>
         <source>{kind}: nothing to name.</source>
         <translation>{kind}：无需指定列。</translation>
+    </message>
+    <message>
+        <source>Or add the ground, a grid of elevations: the collars will stand on it.</source>
+        <translation>或添加地面高程格网：孔口将位于其上。</translation>
     </message>
     <message>
         <source>{count} rows, the first {shown} shown.</source>
@@ -2812,6 +3044,26 @@ azimuth {azimuth}° · dip {dip}°</source>
     <message>
         <source>Columns are named as the last time this header came.</source>
         <translation>各列含义沿用上次相同表头的设置。</translation>
+    </message>
+</context>
+<context>
+    <name>TaskDialog</name>
+    <message>
+        <source>Progress</source>
+        <extracomment>Milliseconds before the progress of a task is shown: what is quick needs none.</extracomment>
+        <translation>进度</translation>
+    </message>
+    <message>
+        <source>&amp;Stop</source>
+        <translation>停止(&amp;S)</translation>
+    </message>
+    <message>
+        <source>{reason}. Check that the folder is there, can be written and has room, and that no other program has the file open.</source>
+        <translation>{reason}。请确认文件夹存在、可写、有足够空间，且文件未被其他程序打开。</translation>
+    </message>
+    <message>
+        <source>This is a mistake in geofit, not in your data; please report it: {error}</source>
+        <translation>这是 geofit 的错误，与您的数据无关；请反馈：{error}</translation>
     </message>
 </context>
 <context>
@@ -2880,7 +3132,6 @@ azimuth {azimuth}° · dip {dip}°</source>
     <name>Workspace</name>
     <message>
         <source>Project</source>
-        <extracomment>Of the layout of docks that is remembered; one more when docks come or go.</extracomment>
         <translation>工程</translation>
     </message>
     <message>

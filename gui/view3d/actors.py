@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -23,8 +23,12 @@ Ints = NDArray[np.int64]
 #: Colour of places without a value.
 UNKNOWN = (0.62, 0.64, 0.66, 1.0)
 #: The canvas's sun and lamp (the eye is taken to stand above) as unit vectors, with their shares of the light.
-AMBIENT = 0.3
-LIGHTS = ((np.array([-0.557, 0.501, 0.662]), 0.33), (np.array([-0.3, -0.45, 0.84]), 0.33))
+AMBIENT = 0.34
+LIGHTS = ((np.array([-0.557, 0.501, 0.662]), 0.42), (np.array([-0.3, -0.45, 0.84]), 0.39))
+
+
+#: The meshes of a net are wide at so many pixels; the faintest that a net is drawn.
+WIDE, FAINT = 12.0, 0.15
 
 
 @dataclass(eq=False)
@@ -32,6 +36,7 @@ class Part:
     """An actor; ``detail`` says whether it belongs to the still picture ("full"), the moving one ("coarse") or both.
 
     ``width`` and ``size`` are the widths of its lines and points in logical pixels; ``opacity`` times the layer's.
+    ``spacing`` is set for a net of so many metres: seen from afar it is drawn fainter, so that it hides nothing.
     """
 
     actor: Any
@@ -39,7 +44,13 @@ class Part:
     width: float = 0.0
     size: float = 0.0
     opacity: float = 1.0
-    group: str = field(default="")
+    spacing: float = 0.0
+
+    def strength(self, metres: float) -> float:
+        """Return how strongly it is drawn where a logical pixel is so many metres, 0 to 1."""
+        if not self.spacing:
+            return self.opacity
+        return self.opacity * min(max(self.spacing / metres / WIDE, FAINT), 1.0)
 
     def scale(self, pixels: float) -> None:
         """Set how many pixels of the picture a logical pixel has."""
@@ -98,7 +109,7 @@ def triangles(data: Any, colour: str) -> Any:
     actor = _actor(data, colour)
     look = actor.GetProperty()
     look.SetInterpolationToPhong()
-    look.SetAmbient(0.3)
+    look.SetAmbient(AMBIENT)
     look.SetDiffuse(0.75)
     # Points and lines that lie on a surface stand out of it: the surface is drawn a little farther away.
     mapper = actor.GetMapper()

@@ -86,9 +86,9 @@ class Canvas(QtInteractor):
         sun.SetLightTypeToSceneLight()
         sun.SetPosition(-1.0, 0.9, 1.1)
         sun.SetFocalPoint(0.0, 0.0, 0.0)
-        sun.SetIntensity(0.5)
+        sun.SetIntensity(0.56)
         lamp.SetLightTypeToHeadlight()
-        lamp.SetIntensity(0.5)
+        lamp.SetIntensity(0.52)
         for light in (sun, lamp):
             self.renderer.AddLight(light)
 

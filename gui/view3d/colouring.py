@@ -13,7 +13,7 @@ from geofit.accuracy import Seam
 from geofit.check import ANGLE_LIMIT, GAP_LIMIT
 from geofit.gui.view3d.layers import Legend, Swatch
 from geofit.points import PointSet
-from geofit.report.style import FAIL, PASS, QUIET, bands, kind_style
+from geofit.report.style import FAIL, PASS, bands, kind_style
 from geofit.settings import FitSettings
 
 __all__ = ["PointColours", "Ramp", "legible", "plain_points", "points_by", "ramp", "rgb", "seam_colours"]
@@ -113,17 +113,15 @@ def _by_bands(d: Floats, settings: FitSettings, dark: bool) -> PointColours:
     colour, size = np.empty((len(d), 3), np.uint8), np.empty(len(d))
     above: list[Swatch] = []
     below: list[Swatch] = []
-    for k, band in enumerate(bands(settings)):
-        # On a dark ground the darkest shades would be the least seen.
-        shades = [legible(c, dark) if k else c for c in (band.above, band.below)]
-        for mask, shade in ((band.holds(d) & (d >= 0), shades[0]), (band.holds(d) & (d < 0), shades[1])):
+    for k, band in enumerate(bands(settings, dark=dark)):
+        for mask, shade in ((band.holds(d) & (d >= 0), band.above), (band.holds(d) & (d < 0), band.below)):
             colour[mask], size[mask] = rgb(shade), SIZE * (0.75 + 0.4 * k)
         label = band.label.removeprefix("|d| ").removesuffix(" m")
         if k == 0:
-            middle = Swatch(QUIET, f"± {label.removeprefix('< ')}")
+            middle = Swatch(band.above, f"± {label.removeprefix('< ')}")
         else:
-            above.insert(0, Swatch(shades[0], f"+ {label}"))
-            below.append(Swatch(shades[1], f"− {label}"))
+            above.insert(0, Swatch(band.above, f"+ {label}"))
+            below.append(Swatch(band.below, f"− {label}"))
     return PointColours(colour, size, Legend("deviation", "m", (*above, middle, *below)))
 
 

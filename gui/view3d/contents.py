@@ -16,7 +16,7 @@ from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, 
 from geofit.gui.view3d.stage import Stage
 from geofit.offdata import Suggestion, Uncertainty
 from geofit.points import PointSet
-from geofit.report.scene import SEVERAL
+from geofit.report.style import horizon_colours
 from geofit.settings import FitSettings
 from geofit.site import Site
 from geofit.surface import HorizonSurface
@@ -36,7 +36,6 @@ class Contents:
         self.surfaces: dict[str, HorizonSurface] = {}
         self.control: dict[str, list[tuple[str, int, int]]] = {}
         self._drawn: dict[str, Drawn] = {}
-        self._colours: dict[str, str] = {}
 
     def show_site(self, site: Site) -> None:
         """Show a site in place of the one before; surfaces of horizons that it does not have are removed."""
@@ -78,6 +77,9 @@ class Contents:
                 self.stage.layers.remove(key)
         for name in site.horizons:
             self._show_points(name)
+        for layer in self.stage.layers:
+            if layer.colour:
+                self.stage.layers.change(layer.key, colour=self.colour(layer.horizon))
 
     def show_surface(
         self, surface: HorizonSurface, uncertainty: Uncertainty | None = None, drawn: Drawn | None = None
@@ -122,7 +124,7 @@ class Contents:
     def clear(self) -> None:
         """Take everything away."""
         self.site = None
-        for known in (self.points, self.surfaces, self._drawn, self.control, self._colours):
+        for known in (self.points, self.surfaces, self._drawn, self.control):
             known.clear()
         self.stage.layers.clear()
 
@@ -172,8 +174,8 @@ class Contents:
             self.stage.layers.remove(key)
 
     def colour(self, name: str) -> str:
-        """Return the colour of a horizon: the next of SEVERAL when it is first seen."""
-        return self._colours.setdefault(name, SEVERAL[len(self._colours) % len(SEVERAL)])
+        """Return the colour of a horizon, as everywhere; those that the site does not have come after its own."""
+        return horizon_colours([*(self.site.horizons if self.site is not None else ()), *self.points])[name]
 
     def residuals(self, name: str) -> Floats | None:
         """Return the residuals of a horizon's points, None where it has no checked surface of these points."""

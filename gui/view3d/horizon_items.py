@@ -14,7 +14,7 @@ from vtkmodules.vtkFiltersCore import vtkContourFilter
 from geofit.accuracy import Seam
 from geofit.geometry.contours import interval_for
 from geofit.gui.view3d.actors import Part, coloured, dots, lines, poly, ramped, shaded, triangles
-from geofit.gui.view3d.colouring import PointColours, legible, points_by, ramp, rgb, seam_colours
+from geofit.gui.view3d.colouring import PointColours, points_by, ramp, rgb, seam_colours
 from geofit.gui.view3d.item import Item, Look, extent
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import Shape
@@ -30,13 +30,15 @@ Floats = NDArray[np.float64]
 #: More points than BALLS are drawn flat and small, more than THIN thinned while the picture moves.
 BALLS, THIN = 20_000, 10_000
 SMALL = 2.0
+#: Diameter of a control point, logical pixels.
+CONTROL = 2.5
 #: Every so many isolines one is thicker.
 MAJOR = 5
 
 
 def points_item(points: PointSet, residuals: Floats | None, settings: FitSettings, layer: Layer, look: Look) -> Item:
     """Points of a horizon, coloured as the layer says."""
-    made = points_by(layer.colour_by, points, legible(layer.colour, look.dark), residuals, settings, look.dark)
+    made = points_by(layer.colour_by, points, layer.colour, residuals, settings, look.dark)
     many = len(points) > BALLS
     parts = [p for size in np.unique(made.size) for p in _cloud(points.xyz, made, made.size == size, many, look)]
     return Item(parts, extent(points.xyz), targets=points.xyz, legend=made.legend)
@@ -64,11 +66,8 @@ def _dots(
     return Part(actor, detail, size=size)
 
 
-def shape_item(
-    shape: Shape, values: tuple[Floats, Floats] | None, layer: Layer, look: Look, colour: str | None = None
-) -> Item:
+def shape_item(shape: Shape, values: tuple[Floats, Floats] | None, layer: Layer, look: Look) -> Item:
     """Return triangles coloured by a value at their corners (fine, coarse), or plain; isolines if wanted."""
-    colour = colour or legible(layer.colour, look.dark)
     coarse = shape.coarse or shape
     details = (("both", shape, 0),) if coarse is shape else (("full", shape, 0), ("coarse", coarse, 1))
     made = ramp(layer.colour_by, values[0]) if values is not None else None
@@ -76,10 +75,10 @@ def shape_item(
     for detail, one, k in details:
         data = poly(one.xyz - look.origin, faces=one.triangles, normals=one.normals)
         if detail == "coarse":
-            flat = np.tile(np.array(rgb(colour), np.uint8), (len(one.xyz), 1))
+            flat = np.tile(np.array(rgb(layer.colour), np.uint8), (len(one.xyz), 1))
             actor = shaded(data, made.of(values[k]) if made is not None and values is not None else flat, one.normals)
         else:
-            actor = triangles(data, colour)
+            actor = triangles(data, layer.colour)
             if made is not None and values is not None:
                 ramped(actor, values[k], made)
         parts.append(Part(actor, detail))
@@ -127,7 +126,6 @@ def seams_item(runs: Sequence[Sequence[Floats]], seams: Sequence[Seam], layer: L
 
 def control_item(surface: HorizonSurface, layer: Layer, look: Look) -> tuple[Item, list[tuple[str, int, int]]]:
     """Control net of every patch, and the name, row and column of each of its points."""
-    colour = "#e0a63c" if look.dark else "#8a5a00"
     points, runs, known, start = [], [], [], 0
     for patch in surface.patches:
         nu, nv = patch.control.shape[:2]
@@ -137,11 +135,19 @@ def control_item(surface: HorizonSurface, layer: Layer, look: Look) -> tuple[Ite
         known += [(patch.name, i, j) for i in range(nu) for j in range(nv)]
         start += nu * nv
     xyz = np.concatenate(points)
+    mesh = min(_spacing(patch.control) for patch in surface.patches)
+    net = lines(poly(xyz - look.origin, runs=runs), look.ink)
     parts = [
-        Part(lines(poly(xyz - look.origin, runs=runs), colour), "full", width=1.0, opacity=0.45),
-        Part(dots(poly(xyz - look.origin), colour, balls=len(xyz) <= BALLS), size=5.0),
+        Part(net, "full", width=1.0, opacity=0.4, spacing=mesh),
+        Part(dots(poly(xyz - look.origin), look.ink, balls=False), size=CONTROL, opacity=0.9, spacing=mesh),
     ]
     return Item(parts, extent(xyz), targets=xyz), known
+
+
+def _spacing(control: Floats) -> float:
+    """Return the mean distance between neighbours of a control net (nu, nv, 3), metres."""
+    along = [float(np.median(np.linalg.norm(np.diff(control, axis=axis), axis=2))) for axis in (0, 1)]
+    return math.sqrt(along[0] * along[1])
 
 
 def suggestions_item(suggestions: Sequence[Suggestion], top: float, layer: Layer, look: Look) -> Item:

@@ -42,10 +42,11 @@ class Theme:
 
 @dataclass(frozen=True, eq=False)
 class Ring:
-    """A ring about a place, and a text beside it."""
+    """A ring about a place, and a text beside it; ``solid`` for something small that was taken hold of."""
 
     xyz: Floats
     text: str
+    solid: bool = False
 
 
 @dataclass(eq=False)
@@ -153,6 +154,10 @@ def _ring(painter: QPainter, view: Projector, ring: Ring, theme: Theme) -> None:
     for pen in (QPen(theme.paper, 5), QPen(theme.mark, 2.2)):
         painter.setPen(pen)
         painter.drawEllipse(QPointF(x, y), 10, 10)
+    if ring.solid:
+        painter.setPen(QPen(theme.paper, 1.5))
+        painter.setBrush(theme.mark)
+        painter.drawEllipse(QPointF(x, y), 4.5, 4.5)
     if ring.text:
         _tag(painter, view, QPointF(x, y - 24), ring.text, theme)
 

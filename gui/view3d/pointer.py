@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +18,7 @@ from geofit.gui.view3d.picking import Hit, Sights, nearest_target, nearest_way
 from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, Measure
 from geofit.gui.view3d.words import word
+from geofit.gui.words import spoken
 
 __all__ = ["Pointer"]
 
@@ -23,6 +26,10 @@ Floats = NDArray[np.float64]
 
 #: The pointer's place is found at most so often, milliseconds.
 OFTEN = 60
+
+
+def _nothing() -> Ring | None:
+    return None
 
 
 class Pointer(QObject):
@@ -40,7 +47,8 @@ class Pointer(QObject):
         self._canvas, self._stage, self._contents, self._clip = canvas, stage, contents, clip
         self.measure, self.measuring = Measure(), False
         self.ring: Ring | None = None
-        self._chosen: tuple[str, int] | None = None
+        # Makes the ring anew when surfaces change; None where its place is gone.
+        self._about: Callable[[], Ring | None] = _nothing
         self._sights, self._at = Sights(), QPointF()
         self.timer = QTimer(self, interval=OFTEN, singleShot=True)
         self.timer.timeout.connect(self._tell)
@@ -61,29 +69,49 @@ class Pointer(QObject):
 
     def choose(self, horizon: str, index: int | None) -> None:
         """Put a ring about a point; None takes it away."""
-        known = horizon in self._contents.points and index is not None and index < len(self._contents.points[horizon])
-        self._chosen = (horizon, int(index)) if known and index is not None else None
+        self._about = _nothing if index is None else partial(self._about_point, horizon, int(index))
         self.renew()
+
+    def choose_control(self, horizon: str, patch: str, i: int, j: int) -> None:
+        """Put a mark on a control point; it follows the point when the surface changes."""
+        self._about = partial(self._about_control, horizon, patch, i, j)
+        self.renew()
+
+    def let_go(self) -> None:
+        """Take the mark off a control point; any other ring stays."""
+        if self.ring is not None and self.ring.solid:
+            self.choose("", None)
 
     def surround(self, xyz: Floats, text: str) -> None:
         """Put a ring about a place."""
-        self._chosen, self.ring = None, Ring(xyz, text)
-        self.changed.emit()
+        ring = Ring(xyz, text)
+        self._about = lambda: ring
+        self.renew()
 
     def renew(self) -> None:
-        """Write the figures of the chosen point anew: it may have another surface."""
-        self.ring = None
-        if self._chosen is not None:
-            horizon, index = self._chosen
-            points = self._contents.points.get(horizon)
-            if points is not None and index < len(points):
-                residuals = self._contents.residuals(horizon)
-                where = points.hole[index] or points.section[index]
-                text = f"{word(str(points.kind[index]))} {where}".strip() + f" · {points.xyz[index, 2]:.2f} m"
-                if residuals is not None:
-                    text += f" · d {residuals[index]:+.3f} m".replace("-", "−")
-                self.ring = Ring(points.xyz[index], text)
+        """Write the figures of what was chosen anew: it may have another surface."""
+        self.ring = self._about()
         self.changed.emit()
+
+    def _about_point(self, horizon: str, index: int) -> Ring | None:
+        points = self._contents.points.get(horizon)
+        if points is None or index >= len(points):
+            return None
+        residuals = self._contents.residuals(horizon)
+        where = points.hole[index] or points.section[index]
+        text = f"{word(str(points.kind[index]))} {where}".strip() + f" · {points.xyz[index, 2]:.2f} m"
+        if residuals is not None:
+            text += f" · d {residuals[index]:+.3f} m".replace("-", "−")
+        return Ring(points.xyz[index], text)
+
+    def _about_control(self, horizon: str, name: str, i: int, j: int) -> Ring | None:
+        surface = self._contents.surfaces.get(horizon)
+        patches = () if surface is None else surface.patches
+        patch = next((one for one in patches if one.name == name), None)
+        if surface is None or patch is None or i >= patch.control.shape[0] or j >= patch.control.shape[1]:
+            return None
+        place = patch.control[i, j] + surface.origin
+        return Ring(place, f"{spoken(name)} [{i}, {j}] · {place[2]:.2f} m", solid=True)
 
     def set_measuring(self, on: bool) -> None:
         """Let clicks measure, or pick again."""
@@ -100,8 +128,7 @@ class Pointer(QObject):
     def clear(self) -> None:
         """Forget ring and measure."""
         self.measure.places.clear()
-        self._chosen = None
-        self.renew()
+        self.choose("", None)
 
     def _click(self, pos: QPointF) -> None:
         hit = self.pick(pos.x(), pos.y())
@@ -114,7 +141,7 @@ class Pointer(QObject):
             self.point_picked.emit(hit.layer.horizon, hit.which)
         elif hit.layer.kind == "control":
             patch, i, j = self._contents.control[hit.layer.horizon][hit.which]
-            self.surround(hit.xyz, f"{patch} [{i}, {j}] · {hit.xyz[2]:.2f} m")
+            self.choose_control(hit.layer.horizon, patch, i, j)
             self.control_picked.emit(hit.layer.horizon, patch, i, j)
         else:
             self.surround(hit.xyz, str(hit.which))

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from geofit.accuracy import Seam
+from geofit.geometry.cells import tabulate
 from geofit.geometry.mesh import Mesh, MeshSurface, triangulate
 from geofit.offdata import Uncertainty
 from geofit.report.view import trimmed
@@ -100,14 +101,16 @@ def _shape(surface: HorizonSurface, mesh: Mesh) -> Shape:
 
 def _patch_normals(patches: Sequence[Patch], mesh: Mesh) -> Floats:
     """Return normals of the surface itself, at one corner of each vertex."""
+    number, first = np.unique(mesh.triangles.ravel(), return_index=True)
+    patch, (u, v) = np.repeat(mesh.patch, 3)[first], mesh.uv.reshape(-1, 2)[first].T
     normals = np.full(mesh.points.shape, np.nan)
-    for k, patch in enumerate(patches):
-        mine = mesh.patch == k
-        number, first = np.unique(mesh.triangles[mine].ravel(), return_index=True)
-        u, v = mesh.uv[mine].reshape(-1, 2)[first].T
-        cross = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1))
+    cells = tabulate(patches)
+    for k in range(len(patches)):
+        mine = np.flatnonzero(patch == k)
+        _, along, across, *_ = cells.jets(cells.locate(k, u[mine], v[mine]))
+        cross = np.cross(along, across, axis=0).T
         length = np.linalg.norm(cross, axis=1, keepdims=True)
-        normals[number] = cross / np.where(length > 0, length, np.nan)
+        normals[number[mine]] = cross / np.where(length > 0, length, np.nan)
     return normals
 
 

@@ -16,6 +16,7 @@ from geofit.errors import SettingsError
 from geofit.files import replacing
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.stage import Stage
+from geofit.words import said
 
 __all__ = ["shoot"]
 
@@ -38,8 +39,14 @@ def shoot(
     width, height = round(canvas.width() * scale), round(canvas.height() * scale)
     if not (scale > 0 and 0 < max(width, height) <= MOST):
         raise SettingsError(
-            f"A scale of {scale:g} makes a picture of {width} × {height} pixels; "
-            f"give one above 0 and below {MOST / max(canvas.width(), canvas.height()):.1f}."
+            said(
+                "A scale of {scale:g} makes a picture of {width} × {height} pixels; give one above 0 and below "
+                "{most:.1f}.",
+                scale=scale,
+                width=width,
+                height=height,
+                most=MOST / max(canvas.width(), canvas.height()),
+            )
         )
     image = _rendered(canvas, stage, width, height, scale)
     painter = QPainter(image)

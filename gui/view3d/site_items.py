@@ -20,8 +20,8 @@ __all__ = ["boundary_item", "dips_item", "ground_item", "holes_item", "sections_
 
 Floats = NDArray[np.float64]
 
-#: Colours of the ground by day and by night.
-EARTH = ("#b9b19c", "#8f8a7a")
+#: Colours of the ground and of boreholes by day and by night.
+EARTH, DRILLED = ("#b9b19c", "#8f8a7a"), ("#3d4852", "#8f9aa5")
 #: Cells along a side of the ground while the picture moves.
 FEW = 60
 #: Lines on the ground are raised by this share of the site's width, so that they do not sink into it.
@@ -98,7 +98,9 @@ def _runs(runs: Sequence[Floats], look: Look) -> object:
 
 def holes_item(holes: Sequence[Hole], layer: Layer, look: Look) -> Item:
     """Paths of boreholes or adits, their collars, and their names there."""
-    colour = legible(KIND_STYLE[holes[0].kind][1], look.dark)
+    kind = holes[0].kind
+    # Boreholes are grey: blue means "below" where points are coloured by their deviation.
+    colour = DRILLED[look.dark] if kind == "borehole" else legible(KIND_STYLE[kind][1], look.dark)
     collars = np.array([hole.xyz[0] for hole in holes])
     tube = lines(_runs([hole.xyz for hole in holes], look), colour, 0.0)
     parts = [

@@ -32,7 +32,7 @@ class Stage:
         self._items: dict[str, Item] = {}
         self._built: dict[str, tuple[object, ...]] = {}
         self._extras: dict[str, list[Part]] = {}
-        self._full, self._stretch, self._pixels = True, 1.0, 1.0
+        self._full, self._stretch, self._pixels, self._metres = True, 1.0, 1.0, 1.0
         self._end = layers.subscribe(self._changed)
 
     def show(self, layer: Layer, builder: Builder) -> None:
@@ -84,6 +84,14 @@ class Stage:
         """Set how many pixels of the picture a logical pixel has."""
         self._pixels = pixels
         self._apply_all()
+
+    def set_metres(self, metres: float) -> None:
+        """Set how many metres a logical pixel has where the eye looks; it changes at every step of a flight."""
+        self._metres = metres
+        for layer in self.layers:
+            for part in self._items[layer.key].parts if layer.key in self._items else ():
+                if part.spacing:
+                    self._style(part, layer.opacity)
 
     def set_clip(self, planes: Any) -> None:
         """Cut every surface and point by planes (vtkPlaneCollection), or by none."""
@@ -165,6 +173,6 @@ class Stage:
                 mapper.SetClippingPlanes(self.clip)
 
     def _style(self, part: Part, opacity: float) -> None:
-        part.actor.GetProperty().SetOpacity(opacity * part.opacity)
+        part.actor.GetProperty().SetOpacity(opacity * part.strength(self._metres))
         part.actor.SetScale(1.0, 1.0, self._stretch)
         part.scale(self._pixels)

@@ -136,6 +136,8 @@ class SceneView(QWidget):
     def set_control_points(self, horizon: str | None) -> None:
         """Show the control points of one horizon, which can then be picked; None: of none."""
         self._one_of("control", horizon)
+        if horizon is None:
+            self.pointer.let_go()
 
     def _one_of(self, kind: str, horizon: str | None) -> None:
         for layer in self.layers:
@@ -212,6 +214,10 @@ class SceneView(QWidget):
     def highlight_point(self, horizon: str, index: int | None) -> None:
         """Put a ring and its figures about a point; None takes it away."""
         self.pointer.choose(horizon, index)
+
+    def highlight_control(self, horizon: str, patch: str, i: int, j: int) -> None:
+        """Put a mark and its elevation on a control point."""
+        self.pointer.choose_control(horizon, patch, i, j)
 
     def set_dark(self, dark: bool) -> None:
         """Follow the theme: a dark or a light background."""
@@ -296,6 +302,7 @@ class SceneView(QWidget):
     def _axes(self, force: bool = False) -> None:
         """Draw the coordinate lines anew where their spacing has changed."""
         eye = self.canvas.eye
+        self._stage.set_metres(self.canvas.metres())
         step = nice(2 * eye.half * max(self._aspect(), 1.0) / LINES)
         if force or step != self._step:
             self._step = step

@@ -6,7 +6,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from geofit.io.columns import SCHEMAS
+import numpy as np
+
+from geofit.errors import GeofitError
+from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS
 from geofit.io.guess import WORDS
 from geofit.io.mapping import ColumnMapping
 from geofit.io.preview import TablePreview, preview_file, preview_table
@@ -15,6 +18,9 @@ from geofit.io.tables import parse_numbers
 from geofit.progress import Progress, tell
 
 __all__ = ["Draft", "drafts_of", "free_name", "read_again"]
+
+#: Roles that several columns may have, by what their values are.
+HORIZON_ROLES = {"elevation": "horizon elevation", "depth": "horizon depth"}
 
 #: Kinds that have no columns to name.
 PLAIN = ("ground", "grid", "drawing", "skip", "")
@@ -25,15 +31,19 @@ class Draft:
     """One table of one file, with what its rows are and which column holds which role.
 
     ``roles`` maps a role to the number of its column, counted from 0; ``changed`` marks what the user said.
-    ``source`` holds what is stated of encoding, separator, decimal mark and unit; None is found at reading.
+    ``horizons`` are the columns that hold one horizon each, elevations or depths as ``source.measure`` says.
+    ``source`` holds what is stated of encoding, separator, decimal mark and unit; None is found at reading. ``fault``
+    tells why the file cannot be read, in which case it is left out.
     """
 
     source: Source
     preview: TablePreview
     kind: str
     roles: Mapping[str, int] = field(default_factory=dict)
+    horizons: tuple[int, ...] = ()
     changed: bool = False
     remembered: bool = False
+    fault: Exception | None = None
 
     @property
     def title(self) -> str:
@@ -53,18 +63,26 @@ class Draft:
     def possible(self) -> tuple[str, ...]:
         """Return the roles that a column of this kind can have, the required ones first."""
         schema = SCHEMAS.get(self.kind)
-        return () if schema is None else (*schema.required, *schema.optional)
+        several = HORIZON_ROLES.values() if schema is HORIZON_COLUMNS else ()
+        return () if schema is None else (*schema.required, *several, *schema.optional)
 
     def missing(self, *, ground: bool = False) -> tuple[str, ...]:
         """Return the required roles that no column holds; a collar on a known ground needs no elevation."""
         schema = SCHEMAS.get(self.kind)
         if schema is None:
             return ()
-        spared = {"z"} if ground and self.kind == "collar" else set[str]()
-        return tuple(role for role in schema.required if role not in self.roles and role not in spared)
+        needed = schema.needed
+        if ground and self.kind == "collar":
+            needed = tuple(role for role in needed if role != "z")
+        if schema is HORIZON_COLUMNS:
+            needed += ("z",) if self.source.measure == "depth" else ()
+            needed += () if self.horizons else (HORIZON_ROLES["elevation"],)
+        return tuple(role for role in needed if role not in self.roles)
 
     def role_of(self, column: int) -> str:
         """Return the role of a column, "" if it has none."""
+        if column in self.horizons:
+            return HORIZON_ROLES[self.source.measure or "elevation"]
         return next((role for role, at in self.roles.items() if at == column), "")
 
     def confidence(self, role: str) -> float | None:
@@ -75,11 +93,35 @@ class Draft:
         return guess.confidence
 
     def with_role(self, column: int, role: str) -> Draft:
-        """Give a column a role (""; none); the column that had the role loses it."""
+        """Give a column a role (""; none); the column that had the role loses it, but for that of a horizon.
+
+        All horizons of a table are elevations, or all are depths.
+        """
         roles = {one: at for one, at in self.roles.items() if at != column and one != role}
+        horizons = tuple(at for at in self.horizons if at != column)
+        if measure := next((key for key, name in HORIZON_ROLES.items() if name == role), None):
+            source = replace(self.source, measure=measure)
+            return replace(self, source=source, roles=roles, horizons=tuple(sorted((*horizons, column))), changed=True)
         if role:
             roles[role] = column
-        return replace(self, roles=roles, changed=True)
+        return replace(self, roles=roles, horizons=horizons, changed=True)
+
+    @property
+    def exchanged(self) -> bool:
+        """Whether x and y of a Chinese table look like northing and easting.
+
+        There X is mostly the northing, of seven digits; the easting has six, or eight with the zone before them.
+        Elsewhere such figures may be feet.
+        """
+        if not any("\u4e00" <= letter <= "\u9fff" for name in self.preview.header for letter in name):
+            return False
+        x, y = (self._size(role) for role in ("x", "y"))
+        return 1e6 <= x < 1e7 and (1e5 <= y < 1e6 or 1e7 <= y < 1e8)
+
+    def with_exchanged_axes(self) -> Draft:
+        """Take easting for northing, and northing for easting."""
+        x, y = self.roles["x"], self.roles["y"]
+        return replace(self, roles={**self.roles, "x": y, "y": x}, changed=True)
 
     def bad_cells(self) -> frozenset[tuple[int, int]]:
         """Return (row, column) of the shown cells that should hold a number and do not."""
@@ -90,7 +132,19 @@ class Draft:
             cells = tuple(row[column] for row in self.preview.rows)
             _, wrong = parse_numbers(tuple(cell.strip() for cell in cells), self.preview.decimal)
             bad |= {(int(row), column) for row in wrong if cells[int(row)].strip() or self._required(role)}
+        for column in self.horizons:
+            cells = tuple(row[column].strip() for row in self.preview.rows)
+            bad |= {(int(row), column) for row in parse_numbers(cells, self.preview.decimal)[1] if cells[int(row)]}
         return frozenset(bad)
+
+    def _size(self, role: str) -> float:
+        """Return the middle of the absolute values that are shown of a role, nan where there are none."""
+        if role not in self.roles:
+            return float("nan")
+        cells = tuple(row[self.roles[role]].strip() for row in self.preview.rows)
+        values, _ = parse_numbers(cells, self.preview.decimal)
+        known = values[np.isfinite(values)]
+        return float(np.median(np.abs(known))) if known.size else float("nan")
 
     def _required(self, role: str) -> bool:
         schema = SCHEMAS.get(self.kind)
@@ -101,17 +155,21 @@ class Draft:
         """The draft as a mapping for the import."""
         header = self.preview.header
         own = self.source
+
+        def name(at: int) -> str | int:
+            return header[at] if header.count(header[at]) == 1 else at + 1
+
         return ColumnMapping(
             file=own.path.name,
             kind=self.kind or "skip",
-            columns={role: header[at] if header.count(header[at]) == 1 else at + 1 for role, at in self.roles.items()}
-            if self.named_kind
-            else {},
+            columns={role: name(at) for role, at in self.roles.items()} if self.named_kind else {},
             table=self.preview.table,
+            horizons=tuple(map(name, self.horizons)),
             encoding=own.encoding or self.preview.encoding or None,
             sep=own.sep or self.preview.sep or None,
             decimal=own.decimal or (self.preview.decimal if self.preview.sep else None),
             unit=own.unit,
+            measure=own.measure,
         )
 
 
@@ -120,15 +178,16 @@ def drafts_of(
 ) -> tuple[Draft, ...]:
     """Preview every table of some files; a header that was mapped before is mapped as it was then.
 
-    Raises
-    ------
-    InputError
-        If a file is missing, empty or damaged.
+    A file that is missing, empty or damaged is left out, and its draft says so.
     """
     drafts = []
     for k, file in enumerate(files):
         tell(progress, file.name, k / max(len(files), 1))
-        drafts += [_recall(_draft(file, preview), remembered) for preview in preview_file(file)]
+        try:
+            drafts += [_recall(_draft(file, preview), remembered) for preview in preview_file(file)]
+        except (GeofitError, OSError) as error:
+            nothing = TablePreview(file.name, "", "skip", 1.0, {"skip": 1.0}, (), ())
+            drafts.append(replace(_draft(file, nothing), fault=error))
     return tuple(drafts)
 
 
@@ -136,9 +195,11 @@ def read_again(draft: Draft, source: Source, kind: str, *, progress: Progress) -
     """Preview a table anew, as another kind or with another encoding, separator, decimal mark or unit."""
     tell(progress, source.name, 0.0)
     if kind in PLAIN:
-        return replace(draft, source=source, kind=kind, roles={}, changed=True)
-    found = _draft(source.path, preview_table(source, kind), source)
-    return replace(found, kind=kind, changed=True)
+        return replace(draft, source=source, kind=kind, roles={}, horizons=(), changed=True)
+    same = kind == draft.kind
+    found = _draft(source.path, preview_table(source, kind), source if same else replace(source, measure=None))
+    horizons = draft.horizons if same and found.preview.header == draft.preview.header else ()
+    return replace(found, kind=kind, horizons=horizons, changed=True)
 
 
 def _draft(file: Path, preview: TablePreview, source: Source | None = None) -> Draft:
@@ -151,8 +212,9 @@ def _recall(draft: Draft, remembered: Iterable[tuple[tuple[str, ...], ColumnMapp
     for known, mapping in remembered:
         if known and known == header and mapping.kind in SCHEMAS:
             places = {role: header.index(name) for role, name in mapping.columns.items() if name in header}
-            source = replace(draft.source, unit=mapping.unit)
-            return replace(draft, source=source, kind=mapping.kind, roles=places, remembered=True)
+            source = replace(draft.source, unit=mapping.unit, measure=mapping.measure)
+            horizons = tuple(header.index(name) for name in mapping.horizons if name in header)
+            return replace(draft, source=source, kind=mapping.kind, roles=places, horizons=horizons, remembered=True)
     return draft
 
 

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
 
-from PySide6.QtCore import QStandardPaths, Qt
-from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
+from PySide6.QtCore import QSize, QStandardPaths, Qt
+from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
-    QDialog,
+    QAbstractItemView,
     QDialogButtonBox,
     QFileDialog,
     QFormLayout,
@@ -18,7 +18,6 @@ from PySide6.QtWidgets import (
     QLineEdit,
     QListWidget,
     QListWidgetItem,
-    QProgressBar,
     QPushButton,
     QSplitter,
     QStackedWidget,
@@ -26,149 +25,173 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.errors import GeofitError
+from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon
 from geofit.gui.wizard.draft import Draft, drafts_of, free_name, read_again
 from geofit.gui.wizard.memory import Memory
 from geofit.gui.wizard.result_page import ResultPage
 from geofit.gui.wizard.table_page import TablePage
 from geofit.gui.wizard.words import kind_name
-from geofit.gui.words import spoken
-from geofit.gui.worker import Task, run
+from geofit.gui.words import spoken_language
 from geofit.importing import Import, import_files
-from geofit.io.mapping import ColumnMapping
 from geofit.io.source import Source
-from geofit.progress import Progress
 
 __all__ = ["ImportWizard", "memory_file"]
 
+#: Tables that are named where many are to be settled.
+NAMED = 4
 
-class ImportWizard(QDialog):
+
+class ImportWizard(TaskDialog):
     """Asks what the tables of some files hold, imports them, and shows what came of it.
 
-    Accepted, ``site_file`` is the site that was written into ``folder``. Files may be dropped on it.
+    Accepted, ``site_file`` is the site that was written into ``folder``; left, none of it stays. Files may be dropped
+    on it.
     """
 
     def __init__(self, files: Sequence[Path], folder: Path, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+        super().__init__(parent, leave=QDialogButtonBox.StandardButton.Cancel)
         self.setWindowTitle(self.tr("Import"))
         self.setAcceptDrops(True)
         self.site_file = free_name(folder)
         self._memory = Memory(memory_file())
         self._drafts: list[Draft] = []
         self._found: Import | None = None
-        self._task: Task | None = None
+        #: Files that this wizard wrote where there were none.
+        self._made: set[Path] = set()
         self.list = QListWidget()
         self.list.setAccessibleName(self.tr("Tables"))
+        self.list.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
         self.list.currentRowChanged.connect(self._show_table)
         self.page, self.results = TablePage(), ResultPage()
         self.page.role_changed.connect(self._set_role)
         self.page.reading_changed.connect(self._read_again)
-        add, remove = QPushButton(self.tr("&Add files…")), QPushButton(self.tr("Re&move"))
-        add.clicked.connect(self._ask_files)
-        remove.clicked.connect(self._remove)
+        self.page.exchange_requested.connect(self._exchange)
         self.crs = QLineEdit()
         self.crs.setPlaceholderText("EPSG:4547")
         self.crs.setToolTip(self.tr("Coordinate system of the site. Longitude and latitude are projected to it."))
         self.target = QLineEdit(str(self.site_file))
-        self.message = QLabel()
-        self.message.setWordWrap(True)
-        self.progress = QProgressBar()
-        self.progress.setMaximum(100)
-        self.progress.hide()
+        self.target.textChanged.connect(self._hint)
         self.back = QPushButton(self.tr("&Back"))
-        self.forward = QPushButton()
-        self.forward.setDefault(True)
         self.back.clicked.connect(self._go_back)
-        self.forward.clicked.connect(self._go_on)
-        cancel = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
-        cancel.rejected.connect(self.reject)
-
-        left = QWidget()
-        tables = QVBoxLayout(left)
-        tables.setContentsMargins(0, 0, 0, 0)
-        tables.addWidget(self.list, 1)
-        row = QHBoxLayout()
-        row.addWidget(add)
-        row.addWidget(remove)
-        tables.addLayout(row)
-        split = QSplitter(Qt.Orientation.Horizontal)
-        split.addWidget(left)
-        split.addWidget(self.page)
-        split.setStretchFactor(1, 1)
-        split.setSizes([260, 740])
-        first = QWidget()
-        form = QFormLayout()
-        form.addRow(self.tr("Coordinate &system"), self.crs)
-        form.addRow(self.tr("Site &file"), self.target)
-        box = QVBoxLayout(first)
-        box.setContentsMargins(0, 0, 0, 0)
-        box.addWidget(split, 1)
-        box.addLayout(form)
+        self.go.clicked.connect(self._go_on)
         self.pages = QStackedWidget()
-        self.pages.addWidget(first)
+        self.pages.addWidget(self._first_page())
         self.pages.addWidget(self.results)
-        foot = QHBoxLayout()
-        foot.addWidget(self.message, 1)
-        foot.addWidget(self.progress)
-        foot.addWidget(self.back)
-        foot.addWidget(self.forward)
-        foot.addWidget(cancel)
+        self.fields = (self.pages,)
         layout = QVBoxLayout(self)
         layout.addWidget(self.pages, 1)
-        layout.addLayout(foot)
-        self.resize(1060, 640)
-        self._refresh()
+        layout.addLayout(self.said)
+        layout.addLayout(self.foot(self.back))
+        self.resize(QSize(1060, 640).boundedTo(self.screen().availableSize()))
+        self._hint()
+        self.refresh()
         self.add_files(files)
 
     def add_files(self, files: Sequence[Path]) -> None:
-        """Preview more files; those that are there already are not taken twice."""
+        """Preview more files, of a folder all of its own; those that are there already are not taken twice."""
         known = {draft.source.path for draft in self._drafts}
-        new = [file for file in map(Path, files) if file not in known]
+        new = [file for path in files for file in _files_of(Path(path)) if file not in known]
         if new:
-            self._work(drafts_of, new, self._memory.recall(), on_done=self._added)
+            self.begin(
+                drafts_of, new, self._memory.recall(), on_done=self._added, on_stopped=self._stopped, apart=False
+            )
 
     def drafts(self) -> tuple[Draft, ...]:
         """Return the tables as they stand."""
         return tuple(self._drafts)
 
-    def reject(self) -> None:
-        """Stop what runs, and close."""
-        if self._task is not None:
-            self._task.cancel()
-        super().reject()
+    def refresh(self) -> None:
+        """Enable what can be done."""
+        super().refresh()
+        second, idle = self.pages.currentIndex() == 1, not self.running
+        self.back.setVisible(second)
+        self.back.setEnabled(idle)
+        self.go.setText(self.tr("&Open site") if second else self.tr("&Read"))
+        ready = self._sound if second else self._ready
+        self.go.setEnabled(ready and idle)
 
-    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Stop what runs."""
-        if self._task is not None:
-            self._task.cancel()
-        super().closeEvent(event)
+    def tell_failure(self, error: Exception) -> None:
+        """Say what went wrong; the boxes show again what the table holds."""
+        self._list()
+        super().tell_failure(error)
+
+    def reject(self) -> None:
+        """Stop what runs, take away what was written, and close."""
+        super().reject()
+        for path in self._made:
+            path.unlink(missing_ok=True)
+        self._made.clear()
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:  # noqa: N802
-        """Take files."""
-        if event.mimeData().hasUrls():
+        """Take files, but not while others are looked at."""
+        if event.mimeData().hasUrls() and not self.running and self.pages.currentIndex() == 0:
             event.acceptProposedAction()
 
     def dropEvent(self, event: QDropEvent) -> None:  # noqa: N802
         """Preview the dropped files."""
         self.add_files([Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()])
 
+    def _first_page(self) -> QWidget:
+        add, remove = QPushButton(self.tr("&Add files…")), QPushButton(self.tr("Re&move"))
+        add.clicked.connect(self._ask_files)
+        remove.clicked.connect(self._remove)
+        browse = QPushButton(self.tr("Bro&wse…"))
+        browse.clicked.connect(self._browse)
+        left, first = QWidget(), QWidget()
+        tables, row, place = QVBoxLayout(left), QHBoxLayout(), QHBoxLayout()
+        tables.setContentsMargins(0, 0, 0, 0)
+        tables.addWidget(self.list, 1)
+        tables.addLayout(row)
+        row.addWidget(add)
+        row.addWidget(remove)
+        place.addWidget(self.target, 1)
+        place.addWidget(browse)
+        split = QSplitter(Qt.Orientation.Horizontal)
+        split.addWidget(left)
+        split.addWidget(self.page)
+        split.setStretchFactor(1, 1)
+        split.setSizes([260, 740])
+        form = QFormLayout()
+        form.addRow(self.tr("Coordinate s&ystem"), self.crs)
+        label = QLabel(self.tr("Site &file"))
+        label.setBuddy(self.target)
+        form.addRow(label, place)
+        box = QVBoxLayout(first)
+        box.setContentsMargins(0, 0, 0, 0)
+        box.addWidget(split, 1)
+        box.addLayout(form)
+        return first
+
     def _added(self, drafts: tuple[Draft, ...]) -> None:
-        first = not self._drafts
+        before = len(self._drafts)
         self._drafts += drafts
         self._list()
-        if first and self._drafts:
-            wanting = [
-                k for k, draft in enumerate(self._drafts) if not draft.kind or draft.missing(ground=self._ground)
-            ]
+        wanting = [k for k, draft in enumerate(self._drafts) if k >= before and (draft.fault or self._unsettled(draft))]
+        if wanting or not before:
             self.list.setCurrentRow(wanting[0] if wanting else 0)
 
     @property
     def _ground(self) -> bool:
         return any(draft.kind == "ground" for draft in self._drafts)
 
+    @property
+    def _ready(self) -> bool:
+        return any(draft.used for draft in self._drafts) and not any(map(self._unsettled, self._drafts))
+
+    @property
+    def _sound(self) -> bool:
+        return self._found is not None and bool(self._found.site.horizons)
+
     def _unsettled(self, draft: Draft) -> bool:
         return not draft.kind or bool(draft.missing(ground=self._ground))
+
+    def _mark(self, draft: Draft) -> str:
+        if self._unsettled(draft):
+            return "failed"
+        if draft.fault or draft.bad_cells() or draft.exchanged:
+            return "stale"
+        return "passed" if draft.used else "none"
 
     def _list(self) -> None:
         """Write the list of tables anew, the current one kept."""
@@ -176,15 +199,34 @@ class ImportWizard(QDialog):
         self.list.blockSignals(True)
         self.list.clear()
         for draft in self._drafts:
-            sound = draft.used and not self._unsettled(draft)
-            mark = "passed" if sound else "none" if draft.kind == "skip" else "failed"
-            item = QListWidgetItem(icon(mark), f"{draft.title}\n{kind_name(draft.kind)}")
+            item = QListWidgetItem(icon(self._mark(draft)), f"{draft.title}\n{kind_name(draft.kind)}")
             item.setToolTip(str(draft.source.path))
             self.list.addItem(item)
         self.list.setCurrentRow(min(current, len(self._drafts) - 1))
         self.list.blockSignals(False)
         self._show_table(self.list.currentRow())
-        self._refresh()
+        self._hint()
+        self.refresh()
+
+    def _hint(self) -> None:
+        """Say what is still needed, or what will be written over."""
+        wanting = [draft.title for draft in self._drafts if self._unsettled(draft)]
+        target = self._target()
+        if self.pages.currentIndex() == 1:
+            ready = self._made and self._sound
+            self.say(self.tr("The site is written; Cancel takes it away again.") if ready else "", "passed")
+        elif wanting:
+            names = ", ".join(wanting[:NAMED]) + (f" … ({len(wanting)})" if len(wanting) > NAMED else "")
+            self.say(self.tr("To be settled: {names}").format(names=names), "failed")
+        elif not self._drafts:
+            self.say(self.tr("Add files, or drop them here."))
+        elif not self._ready:
+            self.say(self.tr("Every table is left out: there is nothing to read."))
+        elif target.exists() and target not in self._made:
+            self.say(self.tr("{name} is there already, and will be written over.").format(name=target.name), "stale")
+        else:
+            used = sum(draft.used for draft in self._drafts)
+            self.say(self.tr("Ready. Tables that will be read: {count}.").format(count=used), "passed")
 
     def _show_table(self, row: int) -> None:
         if 0 <= row < len(self._drafts):
@@ -192,114 +234,77 @@ class ImportWizard(QDialog):
         self.page.setEnabled(0 <= row < len(self._drafts))
 
     def _set_role(self, column: int, role: str) -> None:
-        row = self.list.currentRow()
-        self._drafts[row] = self._drafts[row].with_role(column, role)
-        self._list()
+        self._put(self._drafts[self.list.currentRow()].with_role(column, role))
+
+    def _exchange(self) -> None:
+        self._put(self._drafts[self.list.currentRow()].with_exchanged_axes())
 
     def _read_again(self, source: Source, kind: str) -> None:
-        row = self.list.currentRow()
+        draft = self._drafts[self.list.currentRow()]
+        self.begin(read_again, draft, source, kind, on_done=self._put, on_stopped=self._stopped, apart=False)
 
-        def put(draft: Draft) -> None:
-            self._drafts[row] = draft
-            self._list()
-
-        self._work(read_again, self._drafts[row], source, kind, on_done=put, on_failed=self._refused)
-
-    def _refused(self, error: Exception) -> None:
-        self._list()  # the boxes show again what the draft holds
-        self._failed(error)
+    def _put(self, draft: Draft) -> None:
+        self._drafts[self.list.currentRow()] = draft
+        self._list()
 
     def _remove(self) -> None:
-        row = self.list.currentRow()
-        if 0 <= row < len(self._drafts):
-            del self._drafts[row]
-            self._list()
+        chosen = {index.row() for index in self.list.selectedIndexes()}
+        self._drafts = [draft for row, draft in enumerate(self._drafts) if row not in chosen]
+        self._list()
 
     def _ask_files(self) -> None:
         names, _ = QFileDialog.getOpenFileNames(self, self.tr("Add files"), str(self.site_file.parent))
         self.add_files([Path(name) for name in names])
 
+    def _browse(self) -> None:
+        path, _ = QFileDialog.getSaveFileName(
+            self, self.windowTitle(), self.target.text(), self.tr("Site files (*.toml)")
+        )
+        if path:
+            self.target.setText(path)
+
+    def _target(self) -> Path:
+        path = Path(self.target.text().strip()).expanduser()
+        return path if path.suffix == ".toml" else path.with_name(f"{path.name}.toml")
+
     def _go_back(self) -> None:
         self.pages.setCurrentIndex(0)
-        self._refresh()
+        self._hint()
+        self.refresh()
 
     def _go_on(self) -> None:
         if self.pages.currentIndex() == 1:
+            self._made.clear()
             self.accept()
             return
-        self.site_file = Path(self.target.text()).expanduser()
-        if self.site_file.suffix != ".toml":
-            self.site_file = self.site_file.with_suffix(".toml")
-        files = list(dict.fromkeys(draft.source.path for draft in self._drafts))
+        self.site_file = self._target()
+        files = list(dict.fromkeys(draft.source.path for draft in self._drafts if draft.source.path.exists()))
         mappings = tuple(draft.mapping for draft in self._drafts)
-        self._work(_import, files, self.site_file, mappings, self.crs.text().strip(), on_done=self._imported)
+        work = partial(import_files, mappings=mappings, crs=self.crs.text().strip(), language=spoken_language())
+        self.say(self.tr("Reading the files…"))
+        self.begin(
+            work, files, self.site_file, apart=False,
+            on_done=partial(self._imported, self.site_file.exists()), on_stopped=self._stopped,
+        )  # fmt: skip
 
-    def _imported(self, found: Import) -> None:
+    def _imported(self, was_there: bool, found: Import) -> None:
         self._found = found
+        if not was_there:
+            self._made |= {found.site_file, found.mapping_file, found.issue_file}
         self._memory.keep(self._drafts)
         self.results.show_import(found)
         self.pages.setCurrentIndex(1)
-        self._refresh()
+        self._hint()
 
-    def _work(
-        self,
-        function: Callable[..., Any],
-        *args: Any,
-        on_done: Callable[[Any], object],
-        on_failed: Callable[[Exception], object] | None = None,
-    ) -> None:
-        if self._task is not None:
-            return
-        self.progress.setValue(0)
-        self.progress.show()
-        self._task = run(
-            self,
-            function,
-            *args,
-            on_done=on_done,
-            on_failed=on_failed or self._failed,
-            on_progress=lambda _, share: self.progress.setValue(round(100 * share)),
-            title=self.tr("Import"),
-        )
-        self._task.ended.connect(self._rested)
-        self._refresh()
-
-    def _rested(self) -> None:
-        self._task = None
-        self.progress.hide()
-        self._refresh(keep=True)
-
-    def _failed(self, error: Exception) -> None:
-        self.message.setText(
-            spoken(str(error)) if isinstance(error, GeofitError) else f"{type(error).__name__}: {error}"
-        )
-
-    def _refresh(self, *, keep: bool = False) -> None:
-        """Enable what can be done, and say what is still needed."""
-        second, idle = self.pages.currentIndex() == 1, self._task is None
-        self.back.setEnabled(second and idle)
-        self.forward.setText(self.tr("&Open site") if second else self.tr("&Read"))
-        wanting = [draft for draft in self._drafts if self._unsettled(draft)]
-        if second:
-            ready = self._found is not None and bool(self._found.site.horizons)
-        else:
-            ready = any(draft.used for draft in self._drafts) and not wanting
-        self.forward.setEnabled(ready and idle)
-        if keep and self.message.text():
-            return
-        if second or ready:
-            self.message.setText("")
-        elif wanting:
-            names = ", ".join(draft.title for draft in wanting)
-            self.message.setText(self.tr("To be settled: {names}").format(names=names))
-        elif not self._drafts and idle:
-            self.message.setText(self.tr("Add files, or drop them here."))
+    def _stopped(self) -> None:
+        self._list()
+        self.say(self.tr("Stopped."))
 
 
-def _import(
-    files: list[Path], site_file: Path, mappings: tuple[ColumnMapping, ...], crs: str, *, progress: Progress
-) -> Import:
-    return import_files(files, site_file, mappings=mappings, crs=crs, progress=progress)
+def _files_of(path: Path) -> list[Path]:
+    if not path.is_dir():
+        return [path]
+    return sorted(file for file in path.iterdir() if file.is_file() and not file.name.startswith("."))
 
 
 def memory_file() -> Path:

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from geofit.gui.panels.marks import icon
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
 from geofit.importing import Import
@@ -22,6 +23,7 @@ from geofit.importing import Import
 __all__ = ["ResultPage"]
 
 _ORDER = {"error": 0, "warning": 1, "note": 2}
+_MARK = {"error": "failed", "warning": "stale", "note": "none"}
 #: Widest column of reasons: what to do about them must be seen beside it.
 _REASON = 330
 
@@ -86,12 +88,19 @@ class ResultPage(QWidget):
                 ),
             )
         )
+        for table in (self.horizons, self.files):
+            table.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         issues = sorted(found.issues, key=lambda one: _ORDER[one.severity])
         words = {"error": self.tr("not used"), "warning": self.tr("look"), "note": self.tr("note")}
         self._severity = np.array([_ORDER[one.severity] for one in issues], np.int64)
         self.issues.show_columns(
             (
-                Column(self.tr("Kind"), np.array([words[one.severity] for one in issues], str), order=self._severity),
+                Column(
+                    self.tr("Kind"),
+                    np.array([words[one.severity] for one in issues], str),
+                    icons=lambda row: icon(_MARK[issues[row].severity]),
+                    order=self._severity,
+                ),
                 Column(self.tr("File"), np.array([one.file for one in issues], str)),
                 Column(self.tr("Row"), np.array([one.row or np.nan for one in issues], float), 0),
                 Column(self.tr("Column"), np.array([one.column for one in issues], str)),
@@ -119,7 +128,6 @@ def _titled(title: str, table: DataTable) -> QWidget:
     label = QLabel(title)
     label.setBuddy(table)
     table.setAccessibleName(title)
-    table.horizontalHeader().setStretchLastSection(True)
     layout.addWidget(label)
     layout.addWidget(table)
     return box

@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QHeaderView,
     QLabel,
+    QPushButton,
     QTableWidget,
     QTableWidgetItem,
     QVBoxLayout,
@@ -24,6 +25,7 @@ from PySide6.QtWidgets import (
 from geofit.gui.panels.marks import is_dark
 from geofit.gui.wizard.draft import Draft
 from geofit.gui.wizard.words import kind_name, role_name
+from geofit.gui.words import failure
 from geofit.io.mapping import KINDS
 from geofit.io.source import Source
 
@@ -39,9 +41,10 @@ class TablePage(QWidget):
     """Shows a draft and lets the user overrule it.
 
     ``role_changed(column, role)`` when a column is named; ``reading_changed(source, kind)`` when the table must be
-    read again.
+    read again; ``exchange_requested()`` when easting and northing are to change places.
     """
 
+    exchange_requested = Signal()
     role_changed = Signal(int, str)
     reading_changed = Signal(object, str)
 
@@ -70,6 +73,8 @@ class TablePage(QWidget):
         form.addLayout(right, 1)
         self.message = QLabel()
         self.message.setWordWrap(True)
+        self.exchange = QPushButton(self.tr("E&xchange easting and northing"))
+        self.exchange.clicked.connect(self.exchange_requested)
         self.table = QTableWidget()
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
@@ -80,7 +85,10 @@ class TablePage(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addLayout(form)
-        layout.addWidget(self.message)
+        said = QHBoxLayout()
+        said.addWidget(self.message, 1)
+        said.addWidget(self.exchange, 0, Qt.AlignmentFlag.AlignBottom)
+        layout.addLayout(said)
         layout.addWidget(self.table, 1)
 
     def show_draft(self, draft: Draft, *, ground: bool) -> None:
@@ -92,7 +100,8 @@ class TablePage(QWidget):
         if not same:
             self._show_rows(draft)
         self._mark(draft)
-        self.message.setText(self._words(draft, ground))
+        self.exchange.setVisible(draft.exchanged)
+        self.message.setText(" ".join(self._sentences(draft, ground)))
 
     def _show_reading(self, draft: Draft) -> None:
         preview, source = draft.preview, draft.source
@@ -167,25 +176,51 @@ class TablePage(QWidget):
                     continue
                 wrong = (row, column) in bad
                 item.setData(Qt.ItemDataRole.BackgroundRole, red if wrong else None)
-                item.setToolTip(self.tr("No number: the row will be listed, not used.") if wrong else "")
+                told = self.tr("No number: the row will be listed, not used.")
+                if column in draft.horizons:
+                    told = self.tr("No number: it makes no pick.")
+                item.setToolTip(told if wrong else "")
 
-    def _words(self, draft: Draft, ground: bool) -> str:
+    def _sentences(self, draft: Draft, ground: bool) -> list[str]:
+        """Say what is known of a table, what is still needed, and what looks wrong."""
+        if draft.fault:
+            return [failure(draft.fault), self.tr("This file is left out.")]
         if draft.kind == "":
-            return self.tr("Nothing is known of these rows. Say what they are, or leave the table out.")
+            return [self.tr("Nothing is known of these rows. Say what they are, or leave the table out.")]
         if draft.kind == "skip":
-            return self.tr("This table is left out; its rows are listed as such.")
+            return [self.tr("This table is left out; its rows are listed as such.")]
+        if not draft.named_kind:
+            return [self.tr("{kind}: nothing to name.").format(kind=kind_name(draft.kind))]
         missing = draft.missing(ground=ground)
         if missing:
             names = ", ".join(role_name(role) for role in missing)
-            return self.tr("Still needed: {roles}. Name the column above the rows.").format(roles=names)
-        if not draft.named_kind:
-            return self.tr("{kind}: nothing to name.").format(kind=kind_name(draft.kind))
-        text = self.tr("{count} rows, the first {shown} shown.").format(
-            count=f"{draft.preview.read:,}", shown=len(draft.preview.rows)
-        )
+            told = [self.tr("Still needed: {roles}. Name the column above the rows.").format(roles=names)]
+            if draft.kind == "collar" and missing == ("z",):
+                told.append(self.tr("Or add the ground, a grid of elevations: the collars will stand on it."))
+            return told
+        told = [
+            self.tr("{count} rows, the first {shown} shown.").format(
+                count=f"{draft.preview.read:,}", shown=len(draft.preview.rows)
+            )
+        ]
         if draft.remembered and not draft.changed:
-            text += " " + self.tr("Columns are named as the last time this header came.")
-        return text
+            told.append(self.tr("Columns are named as the last time this header came."))
+        if draft.kind == "intervals" and "from" not in draft.roles:
+            told.append(self.tr("No column holds upper limits: they are taken from the row above, 0 at the first."))
+        if draft.kind == "picks" and "horizon" not in draft.roles:
+            name = draft.source.path.stem
+            told.append(self.tr("No column names a horizon: all points are of '{name}'.").format(name=name))
+        if bad := sum(column not in draft.horizons for _, column in draft.bad_cells()):
+            told.append(
+                self.tr("Red cells are no numbers ({count} shown): such rows will be listed, not used.").format(
+                    count=bad
+                )
+            )
+        if draft.exchanged:
+            told.append(
+                self.tr("Easting and northing look exchanged: in many Chinese tables X is the northing, Y the easting.")
+            )
+        return told
 
     def _read_again(self) -> None:
         draft = self._draft

@@ -54,9 +54,9 @@ def test_a_picked_control_point_shows_its_place(panel, qtbot):
         panel.show_surface(fitted())
         panel.choose_control(patch.name, i, j)
     x, y, z = patch.control[i, j] + fitted().origin
-    assert f"At ({x:.1f}, {y:.1f}, {z:.2f})" in panel.about_control.text()
-    assert panel.z.value() == pytest.approx(z, abs=1e-3)
-    assert "nothing outside" in panel.about_control.text()
+    assert f"At ({x:.1f}, {y:.1f}, {z:.2f})" in panel.control.about.text()
+    assert panel.control.z.value() == pytest.approx(z, abs=1e-3)
+    assert "nothing outside" in panel.control.about.text()
     assert not panel.apply_button.isEnabled()
 
 
@@ -64,13 +64,13 @@ def test_move_and_elevation_follow_each_other(panel, qtbot):
     panel.show_surface(fitted())
     patch, i, j = free_control(fitted())
     panel.choose_control(patch.name, i, j)
-    z = panel.z.value()
-    click(qtbot, panel.steps[3])
-    click(qtbot, panel.steps[1])
-    assert panel.dz.value() == pytest.approx(0.9)
-    assert panel.z.value() == pytest.approx(z + 0.9, abs=2e-3)
-    panel.z.setValue(z - 2)
-    assert panel.dz.value() == pytest.approx(-2, abs=2e-3)
+    z = panel.control.z.value()
+    click(qtbot, panel.control.steps[3])
+    click(qtbot, panel.control.steps[1])
+    assert panel.control.dz.value() == pytest.approx(0.9)
+    assert panel.control.z.value() == pytest.approx(z + 0.9, abs=2e-3)
+    panel.control.z.setValue(z - 2)
+    assert panel.control.dz.value() == pytest.approx(-2, abs=2e-3)
     with qtbot.waitSignal(panel.adjust_requested) as told:
         click(qtbot, panel.apply_button)
     assert told.args[:3] == [patch.name, i, j]
@@ -83,7 +83,7 @@ def test_the_effect_is_asked_for_after_a_pause_and_shown(panel, qtbot):
     patch, i, j = free_control(surface)
     panel.choose_control(patch.name, i, j)
     with qtbot.waitSignal(panel.adjust_wanted, timeout=2000) as told:
-        panel.dz.setValue(5.0)
+        panel.control.dz.setValue(5.0)
     changed = adjust(surface, *told.args)
     panel.show_effect(surface.accuracy, changed.accuracy)
     cells = [[label.text() for label in row] for row in panel.effect.cells]
@@ -98,8 +98,8 @@ def test_exact_points_hold_a_control_point_and_it_is_said(panel):
     panel.show_surface(surface)
     core = surface.patches[0]
     panel.choose_control("core", core.control.shape[0] // 2, core.control.shape[1] // 2)
-    assert "met exactly" in panel.about_control.text()
-    assert not panel.dz.isEnabled()
+    assert "met exactly" in panel.control.about.text()
+    assert not panel.control.dz.isEnabled()
     assert not panel.apply_button.isEnabled()
 
 
@@ -112,7 +112,7 @@ def test_what_the_panel_lets_through_the_fit_takes(panel, qtbot):
         rows, columns = patch.control.shape[:2]
         for i, j in ((rows // 2, columns // 2), (rows - 1, 1)):
             panel.choose_control(patch.name, i, j)
-            if panel.dz.isEnabled():
+            if panel.control.dz.isEnabled():
                 free += 1
                 assert adjust(surface, patch.name, i, j, 0.1).accuracy is not None
     assert free >= 3
@@ -121,9 +121,9 @@ def test_what_the_panel_lets_through_the_fit_takes(panel, qtbot):
 def test_boxes_choose_a_control_point(panel, qtbot):
     panel.show_surface(fitted())
     with qtbot.waitSignal(panel.control_chosen) as told:
-        panel.i.stepUp()
+        panel.control.i.stepUp()
     assert told.args == [fitted().patches[0].name, 1, 0]
-    assert panel.i.maximum() == fitted().patches[0].control.shape[0] - 1
+    assert panel.control.i.maximum() == fitted().patches[0].control.shape[0] - 1
 
 
 def test_a_data_point_is_pulled_by_a_share(panel, qtbot):
@@ -131,16 +131,16 @@ def test_a_data_point_is_pulled_by_a_share(panel, qtbot):
     panel.show_surface(surface)
     worst = surface.accuracy.worst[0]
     panel.choose_point(worst)
-    assert surface.points.describe(worst) in panel.about_point.text()
-    assert f"{surface.accuracy.residuals[worst]:+.3f}" in panel.about_point.text()
+    assert surface.points.describe(worst) in panel.point.about.text()
+    assert f"{surface.accuracy.residuals[worst]:+.3f}" in panel.point.about.text()
     with qtbot.waitSignal(panel.pull_wanted, timeout=2000):
-        panel.share.setValue(50)
+        panel.point.share.setValue(50)
     with qtbot.waitSignal(panel.pull_requested) as told:
         click(qtbot, panel.apply_button)
     assert told.args == [worst, 0.5]
     exact = int(np.flatnonzero(surface.core)[0])
     panel.choose_point(exact)
-    assert "meets this point already" in panel.about_point.text()
+    assert "meets this point already" in panel.point.about.text()
 
 
 def test_a_new_surface_keeps_the_choice_and_drops_the_move(panel):
@@ -148,11 +148,16 @@ def test_a_new_surface_keeps_the_choice_and_drops_the_move(panel):
     panel.show_surface(surface)
     patch, i, j = free_control(surface)
     panel.choose_control(patch.name, i, j)
-    panel.dz.setValue(0.5)
+    panel.control.dz.setValue(0.5)
     changed = adjust(surface, patch.name, i, j, 0.5)
     panel.show_surface(changed)
-    assert (panel.patch.currentText(), panel.i.value(), panel.j.value(), panel.dz.value()) == (patch.name, i, j, 0.0)
-    assert panel.z.value() == pytest.approx(patch.control[i, j, 2] + surface.origin[2] + 0.5, abs=0.3)
+    assert (
+        panel.control.patch.currentText(),
+        panel.control.i.value(),
+        panel.control.j.value(),
+        panel.control.dz.value(),
+    ) == (patch.name, i, j, 0.0)
+    assert panel.control.z.value() == pytest.approx(patch.control[i, j, 2] + surface.origin[2] + 0.5, abs=0.3)
 
 
 def test_a_steep_fault_can_be_chosen(panel):

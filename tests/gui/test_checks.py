@@ -79,9 +79,24 @@ def test_order_off_data_and_read_back_have_their_groups(panel):
     found = groups(panel)
     assert found["Order of horizons"][0].text(1) == "passed"
     assert "4.50 to 9.00 m" in found["Order of horizons"][0].text(4)
-    assert "91%" in found["Away from the data"][0].text(4)
+    assert "91 %" in found["Away from the data"][0].text(4)
     assert found["STEP file read back"][0].text(0) == "a.step"
     assert len(found["Notes"]) == len(fitted().accuracy.notes)
+
+
+def test_long_words_are_broken_into_lines_and_not_cut(panel, qtbot):
+    words = "no residual is beyond the interior tolerance, where the fit stops refining, so that their law is cut off"
+    check = Check("normality", None, 0, 0.1, "", words)
+    panel.show_surface(changed(checks=(check,)))
+    row = groups(panel)["Surface"][1]
+    heights = {}
+    for width in (1600, 700):
+        panel.resize(width, 500)
+        qtbot.wait(20)
+        heights[width] = panel.tree.visualItemRect(row).height()
+        shown, line = panel.tree.columnWidth(4), panel.tree.fontMetrics()
+        assert heights[width] // line.height() >= line.horizontalAdvance(words) / shown
+    assert heights[700] > 1.5 * heights[1600]
 
 
 def test_copy_gives_every_row(panel):

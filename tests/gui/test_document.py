@@ -18,6 +18,7 @@ from geofit.gui.document.commands import (
     ChangeWeight,
     ExcludeRow,
     IncludeRow,
+    PartAtFaults,
     PullToPoint,
     PushApart,
     RenameSite,
@@ -29,13 +30,25 @@ from geofit.gui.document.commands import (
 )
 from geofit.gui.document.document import Document
 from geofit.gui.document.making import make
-from geofit.gui.document.recipe import Apart, DocumentError, Move, Pull, Recipe, Row, Weigh, fingerprint
+from geofit.gui.document.recipe import (
+    Apart,
+    DocumentError,
+    Move,
+    Part,
+    Pull,
+    Recipe,
+    Row,
+    Weigh,
+    fingerprint,
+    indices,
+    runs,
+)
 from geofit.gui.document.shelf import Shelf
 from geofit.gui.document.signal import Signal
 from geofit.gui.document.state import State
 from geofit.points import PointSet
 from geofit.settings import FitSettings
-from geofit.site import Site
+from geofit.site import Ground, Orientations, Site
 
 
 def site():
@@ -75,7 +88,21 @@ recipes = st.builds(
     st.lists(rows).map(tuple),
     st.lists(edits | stacked).map(tuple),
 )
+block = st.builds(
+    Part,
+    st.just("low"),
+    st.text(max_size=4),
+    st.lists(st.builds(Recipe, st.just("up"), settings_, st.text(max_size=4)), max_size=2).map(tuple),
+    st.lists(st.integers(-1, 1), max_size=2).map(tuple),
+    st.lists(st.integers(0, 40), unique=True).map(lambda numbers: runs(np.sort(np.array(numbers, int)))),
+    polygon,
+)
 commands = st.one_of(
+    st.builds(
+        PartAtFaults, st.just("low"), st.dictionaries(st.sampled_from(["low (A)", "low (B)"]), block, min_size=1)
+    ),
+    st.builds(SetSettings, st.just("low (A)"), settings_),
+    st.builds(ExcludeRow, st.just("low (A)"), rows),
     st.builds(SetSettings, st.just("low"), settings_),
     st.builds(SetCore, st.just("low"), cores),
     st.builds(ExcludeRow, st.just("low"), rows),
@@ -121,17 +148,24 @@ def test_undoing_everything_leads_back_and_states_come_back_from_their_data(done
 
 
 def test_every_command_is_told_in_words_that_can_be_translated():
-    from geofit.gui.words import SENTENCES
+    from geofit.gui.sentences import SENTENCES
 
     recipe = document().recipe("low")
     samples = [
         SetSettings("low", FitSettings()), SetCore("low", "all"), ExcludeRow("low", Row("a", 1)),
         IncludeRow("low", Row("a", 1)), SetSurface(recipe), AdjustControlPoint("low", "core", 1, 2, 0.5),
         ChangeWeight("low", "core", 1, 2, 0.5), PushApart(("low",), ("up", "low"), 0.5),
+        PartAtFaults("low", {"low (A)": Part("low", "", (recipe,), (1,), "0-9", ())}),
         PullToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
     ]  # fmt: skip
     assert {type(command) for command in samples} == set(COMMANDS.values())
-    assert {command.text.template for command in samples} == set(SENTENCES)
+    assert {command.text.template for command in samples} <= set(SENTENCES)
+
+
+@given(numbers=st.lists(st.integers(0, 1000), unique=True))
+def test_numbers_come_back_from_their_runs(numbers):
+    ascending = np.sort(np.array(numbers, int))
+    assert np.array_equal(indices(runs(ascending)), ascending)
 
 
 def test_a_row_names_one_point():
@@ -166,7 +200,7 @@ def test_excluded_rows_take_no_part():
 def test_results_go_stale_and_come_back():
     opened = document()
     recipe = opened.recipe("low")
-    surface = make(recipe, opened.points_of(recipe), None)
+    surface = make(recipe, opened.given_for(recipe))
     opened.put(recipe, surface)
     assert opened.surface("low") is None
     fit = SetSurface(recipe)
@@ -193,21 +227,25 @@ def test_results_go_stale_and_come_back():
 
 
 def test_the_fingerprint_sees_whatever_a_fit_depends_on():
-    points = site().horizons["low"]
+    empty, points = Site("", {}), site().horizons["low"]
     area = np.array([[0.0, 0], [1, 0], [1, 1]])
     changed = [
         points.with_(xyz=points.xyz + np.array([0, 0, 1e-9])), points.with_(accuracy=0.1), points.with_(section="S"),
         points.with_(kind="adit"), points.with_(hole="B1"), points[1:],
     ]  # fmt: skip
-    prints = [fingerprint(points, None), fingerprint(points, area), *(fingerprint(p, None) for p in changed)]
+    ground = Ground(np.arange(2.0), np.arange(2.0), np.zeros((2, 2)))
+    nothing, none = np.zeros(1), np.zeros(1, np.int64)
+    dips = Orientations(np.zeros((1, 3)), nothing, nothing, np.array(["low"]), np.array(["d.csv"]), none)
+    around = [replace(empty, boundary=area), replace(empty, ground=ground), replace(empty, orientations=dips)]
+    prints = [fingerprint(points, one) for one in (empty, *around)] + [fingerprint(one, empty) for one in changed]
     assert len(set(prints)) == len(prints)
-    assert fingerprint(site().horizons["low"], None) == prints[0]
+    assert fingerprint(site().horizons["low"], empty) == prints[0]
 
 
 def test_the_shelf_stays_within_its_bounds(monkeypatch):
     monkeypatch.setattr(shelf_module, "SPARE", 3)
     opened = document()
-    surface = make(opened.recipe("low"), opened.points("low"), None)
+    surface = make(opened.recipe("low"), opened.given_for(opened.recipe("low")))
     shelf = Shelf()
     made = [replace(opened.recipe("low"), given=str(k)) for k in range(8)]
     for recipe in made:

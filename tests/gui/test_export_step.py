@@ -10,6 +10,7 @@ from panel_samples import FAULT, WITH_PERIPHERY, fitted
 from PySide6.QtCore import QSettings, Qt
 
 from geofit.accuracy import Check
+from geofit.gui.dialogs import task_dialog
 from geofit.gui.dialogs.export_step import ExportDialog
 from geofit.gui.document.step_files import step_paths
 from geofit.io.step import read_step
@@ -23,7 +24,7 @@ def opened(qtbot, *names):
 
 
 def rested(qtbot, dialog):
-    qtbot.waitUntil(lambda: dialog._task is None, timeout=120_000)
+    qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
 
 
 def press(qtbot, dialog, button):
@@ -42,7 +43,7 @@ def test_two_horizons_in_one_file_of_millimetres_are_read_back_and_judged(qtbot,
     assert not dialog.table.isVisible()
     dialog.target.setText(str(tmp_path / "dam"))
     dialog.unit.setCurrentIndex(dialog.unit.findData("mm"))
-    press(qtbot, dialog, dialog.write)
+    press(qtbot, dialog, dialog.go)
     (file,) = dialog.files
     assert file.path == tmp_path / "dam.step"
     assert "SI_UNIT(.MILLI.,.METRE.)" in file.path.read_text("ascii").replace("\n", "")
@@ -64,29 +65,30 @@ def test_each_horizon_in_a_file_of_its_own_and_only_the_chosen_ones(qtbot, tmp_p
     assert "dam_T3-T2.step" in dialog.target.toolTip()
     dialog.horizons.item(0).setCheckState(Qt.CheckState.Unchecked)
     assert not dialog.apart.isEnabled(), "one horizon is one file"
-    press(qtbot, dialog, dialog.write)
+    press(qtbot, dialog, dialog.go)
     assert [file.path.name for file in dialog.files] == ["dam.step"]
     assert list(dialog.files[0].read_back) == [FAULT]
     dialog.horizons.item(1).setCheckState(Qt.CheckState.Unchecked)
-    assert not dialog.write.isEnabled()
+    assert not dialog.go.isEnabled()
 
 
 def test_a_folder_that_is_not_there_is_told_with_what_to_do(qtbot, tmp_path):
     dialog = opened(qtbot, FAULT)
     dialog.target.setText(str(tmp_path / "no" / "dam.step"))
-    press(qtbot, dialog, dialog.write)
+    press(qtbot, dialog, dialog.go)
     assert "Make the folder, or name another" in dialog.message.text()
-    assert dialog.write.isEnabled()
+    assert dialog.go.isEnabled()
     assert not dialog.files
     assert not dialog.table.isVisible()
 
 
-def test_stop_ends_the_process_and_leaves_no_file(qtbot, tmp_path):
+def test_stop_ends_the_process_and_leaves_no_file(qtbot, tmp_path, monkeypatch):
+    monkeypatch.setattr(task_dialog, "PATIENCE", 0)  # else the file might be ready before Stop is there
     dialog = opened(qtbot, WITH_PERIPHERY, FAULT)
     dialog.target.setText(str(tmp_path / "dam.step"))
-    qtbot.mouseClick(dialog.write, Qt.MouseButton.LeftButton)
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     assert not dialog.target.isEnabled()
-    assert dialog.stop.isVisible()
+    qtbot.waitUntil(dialog.stop.isVisible)
     (tmp_path / ".dam-k3y8x1qz.step").write_text("what a process that is ended leaves behind")
     press(qtbot, dialog, dialog.stop)
     assert "Stopped" in dialog.message.text()
@@ -96,7 +98,7 @@ def test_stop_ends_the_process_and_leaves_no_file(qtbot, tmp_path):
 def test_a_check_that_fails_is_named_above_the_table(qtbot, tmp_path):
     dialog = opened(qtbot, FAULT)
     dialog.target.setText(str(tmp_path / "dam.step"))
-    press(qtbot, dialog, dialog.write)
+    press(qtbot, dialog, dialog.go)
     (file,) = dialog.files
     bad = Check("read-back seam gap", False, 0.02, 1e-6, "m", "a gap")
     back = replace(file.read_back[FAULT], checks=(bad,))

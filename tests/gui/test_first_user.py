@@ -1,13 +1,80 @@
-"""The way of a first user through the real windows, on the sample site, with no manual."""
+"""The way of a first user through the real windows, from tables as they come to STEP and report, with no manual."""
 
 from __future__ import annotations
 
+import csv
+
 import pytest
-from PySide6.QtCore import QPoint, Qt
-from PySide6.QtGui import QDesktopServices
+from panel_samples import sample_site
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
+from PySide6.QtGui import QDesktopServices, QDragEnterEvent, QDropEvent
+from PySide6.QtWidgets import QApplication
 
 from geofit.gui.dialogs.export_step import ExportDialog
 from geofit.gui.dialogs.report import ReportDialog
+from geofit.gui.wizard.import_wizard import ImportWizard
+from geofit.gui.wizard.table_page import BAD
+
+HOLES = 12
+
+
+def write_tables(folder):
+    """Write the tables of a site as they come: GB18030, a column that nobody can guess, a cell that is no number."""
+    points = sample_site().horizons["T2-T1"]
+    folder.mkdir()
+    with (folder / "contacts.csv").open("w", newline="", encoding="utf-8") as file:
+        table = csv.writer(file)
+        table.writerow(["x", "y", "z", "horizon", "kind", "hole", "section", "accuracy"])
+        for k, (x, y, z) in enumerate(points.xyz):
+            names = (points.kind[k], points.hole[k], points.section[k], points.accuracy[k])
+            table.writerow([f"{x:.3f}", f"{y:.3f}", f"{z:.4f}", "T2-T1", *names])
+    collars = [f"ZK{k},{500700 + 40 * k},{3100600 + 90 * (k % 4)},{1600 - k},120" for k in range(HOLES)]
+    collars[2] = collars[2].replace("1598", "15g8")
+    (folder / "钻孔.csv").write_text("\n".join(["孔号,甲,坐标Y,孔口高程,孔深", *collars]) + "\n", encoding="gb18030")
+    log = [f"ZK{k},0,{4 + k % 3},Q\nZK{k},{4 + k % 3},120,T3" for k in range(HOLES)]
+    (folder / "地层.csv").write_text("\n".join(["孔号,起始深度,终止深度,地层", *log]) + "\n", encoding="gb18030")
+    (folder / "boundary.csv").write_text(
+        "x,y\n" + "".join(f"{x:.2f},{y:.2f}\n" for x, y in sample_site().boundary), encoding="utf-8"
+    )
+    return sorted(folder.iterdir())
+
+
+def drop(widget, files):
+    """Let files fall on a widget, as from a file manager."""
+    data = QMimeData()
+    data.setUrls([QUrl.fromLocalFile(str(file)) for file in files])
+    how = (Qt.DropAction.CopyAction, data, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier)
+    QApplication.sendEvent(widget, QDragEnterEvent(QPoint(20, 20), *how))
+    QApplication.sendEvent(widget, QDropEvent(QPointF(20, 20), *how))
+
+
+def go_through(qtbot, wizard):
+    """Settle what the wizard asks for, read, look at what was listed, and open the site."""
+
+    def choose(box, value):
+        box.setCurrentIndex(box.findData(value))
+        box.activated.emit(box.currentIndex())
+        qtbot.waitUntil(lambda: not wizard.running)
+
+    wizard.show()
+    qtbot.waitUntil(lambda: not wizard.running)
+    page = wizard.page
+    assert wizard.drafts()[wizard.list.currentRow()].title == "钻孔.csv", "the table to be settled is shown"
+    assert "钻孔.csv" in wizard.message.text()
+    assert not wizard.go.isEnabled()
+    choose(page.kind, "collar")
+    assert "Easting" in page.message.text()
+    assert not wizard.go.isEnabled()
+    choose(page.table.cellWidget(0, 1), "x")
+    assert page.table.item(3, 3).text() == "15g8"
+    assert page.table.item(3, 3).background().color().name() in BAD.values()
+    assert wizard.go.isEnabled()
+    qtbot.mouseClick(wizard.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: wizard.pages.currentIndex() == 1 and not wizard.running, timeout=30_000)
+    listed = wizard.results.issues.rows.columns
+    assert "15g8" in [listed[4].text(k) for k in range(wizard.results.issues.rows.total)]
+    qtbot.mouseClick(wizard.go, Qt.MouseButton.LeftButton)
+    return wizard.result()
 
 
 def drag(qtbot, view, start, end):
@@ -20,8 +87,8 @@ def drag(qtbot, view, start, end):
 
 def export(qtbot, dialog, path):
     dialog.target.setText(str(path))
-    qtbot.mouseClick(dialog.write, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: dialog._task is None, timeout=120_000)
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
     assert "Every check of the file holds" in dialog.message.text()
 
 
@@ -31,23 +98,32 @@ def report(qtbot, dialog, folder):
         box.setChecked(key == "html")
     dialog.examine.setChecked(False)
     dialog.folder.setText(str(folder))
-    qtbot.mouseClick(dialog.write, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: dialog._task is None, timeout=180_000)
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not dialog.running, timeout=180_000)
+
+
+def test_the_sample_site_is_one_button_away(app, qtbot, tmp_path, monkeypatch):
+    from geofit.gui import files
+
+    monkeypatch.setattr(files, "_documents", lambda: str(tmp_path))
+    qtbot.mouseClick(app.window.panels.start.sample, Qt.MouseButton.LeftButton)
+    app.idle()
+    assert app.document.horizons == ("T3-T2", "T2-T1", "W", "F1", "M1")
 
 
 def test_the_way_of_a_first_user(app, qtbot, tmp_path, monkeypatch):
     window, document, panels = app.window, app.document, app.window.panels
 
-    # Start: one button, and nothing that is of no use yet.
+    # Start: nothing that is of no use yet. Tables are dropped there, what is unclear is asked for, the site opens.
     assert panels.centre.currentWidget() is panels.start
     assert not window.actions_["fit"].isEnabled()
-    from geofit.gui import files
-
-    monkeypatch.setattr(files, "_documents", lambda: str(tmp_path))
-    qtbot.mouseClick(panels.start.sample, Qt.MouseButton.LeftButton)
+    monkeypatch.setattr(ImportWizard, "exec", lambda wizard: go_through(qtbot, wizard))
+    drop(panels.start, write_tables(tmp_path / "tables"))
     app.idle()
     assert panels.centre.currentWidget() is panels.view
-    assert document.horizons == ("T3-T2", "T2-T1", "W", "F1", "M1")
+    assert document.horizons == ("base of Q", "T2-T1")
+    assert len(document.site.holes) == HOLES - 1, "a collar was no number"
+    assert len(document.points("T2-T1")) == 597
     assert not window.isWindowModified()
 
     # Choose a horizon in the tree, fit it.

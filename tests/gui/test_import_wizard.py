@@ -32,7 +32,7 @@ def opened(qtbot, folder, *files):
 
 
 def rested(qtbot, wizard):
-    qtbot.waitUntil(lambda: wizard._task is None, timeout=30_000)
+    qtbot.waitUntil(lambda: not wizard.running, timeout=30_000)
 
 
 def press(qtbot, wizard, button):
@@ -66,14 +66,14 @@ def test_the_sample_site_s_files_become_a_site(qtbot, tmp_path):
         if file.suffix in (".csv", ".asc"):
             shutil.copy(file, tmp_path)
     wizard = opened(qtbot, tmp_path, *sorted(tmp_path.iterdir()))
-    assert wizard.forward.isEnabled()
+    assert wizard.go.isEnabled()
     wizard.list.setCurrentRow(row_of(wizard, "collar.csv"))
     assert roles_shown(wizard) == ["hole", "x", "y", "z", "depth"]
-    press(qtbot, wizard, wizard.forward)
+    press(qtbot, wizard, wizard.go)
     assert "rows read = " in wizard.results.balance.text()
     assert wizard.results.horizons.rows.total > 3
     with qtbot.waitSignal(wizard.accepted):
-        press(qtbot, wizard, wizard.forward)
+        press(qtbot, wizard, wizard.go)
     site = read_site(wizard.site_file)
     assert len(site.holes) >= 60
     read, used, listed = (sum(getattr(c, key) for c in site.counts) for key in ("read", "used", "listed"))
@@ -87,7 +87,7 @@ def test_chinese_headers_in_gb18030_with_decimal_commas_are_read(qtbot, tmp_path
     draft = wizard.drafts()[0]
     assert (draft.kind, draft.preview.sep, draft.preview.decimal) == ("collar", ";", ",")
     assert draft.preview.encoding.startswith("gb")
-    press(qtbot, wizard, wizard.forward)
+    press(qtbot, wizard, wizard.go)
     assert "base of Q" in wizard.results.horizons.rows.columns[0].values
 
 
@@ -97,11 +97,55 @@ def test_nothing_is_read_while_a_required_role_is_missing(qtbot, tmp_path):
     choose(wizard.page.kind, "collar")
     rested(qtbot, wizard)
     name_column(wizard, 3, "")
-    assert not wizard.forward.isEnabled()
+    assert not wizard.go.isEnabled()
     assert "Elevation" in wizard.page.message.text()
     assert "collar.csv" in wizard.message.text()
     name_column(wizard, 3, "z")
-    assert wizard.forward.isEnabled()
+    assert wizard.go.isEnabled()
+
+
+def test_a_log_of_lower_limits_is_read_and_said_so(qtbot, tmp_path):
+    (tmp_path / "钻孔.csv").write_text(COLLAR, encoding="utf-8")
+    log = "孔号,层底深度,地层\n" + "".join(f"ZK{i},{10 + i},Q\nZK{i},60,T2\n" for i in range(8))
+    (tmp_path / "地层.csv").write_text(log, encoding="utf-8")
+    wizard = opened(qtbot, tmp_path, tmp_path / "钻孔.csv", tmp_path / "地层.csv")
+    wizard.list.setCurrentRow(row_of(wizard, "地层.csv"))
+    assert roles_shown(wizard) == ["hole", "to", "code"]
+    assert "taken from the row above" in wizard.page.message.text()
+    name_column(wizard, 2, "")
+    assert not wizard.go.isEnabled(), "a code is still needed"
+    name_column(wizard, 2, "code")
+    press(qtbot, wizard, wizard.go)
+    assert wizard._found.site.horizons["base of Q"].xyz[:, 2].tolist() == [890.25 - 2 * i for i in range(8)]
+
+
+def test_several_columns_are_horizons(qtbot, tmp_path):
+    rows = "".join(f"W{i},{i},{2 * i},50,{i + 10},{i + 20}\n" for i in range(1, 5))
+    (tmp_path / "wells.csv").write_text("well,x,y,collar,T1,T2\n" + rows.replace(",13,", ",?,"))
+    wizard = opened(qtbot, tmp_path, tmp_path / "wells.csv")
+    choose(wizard.page.kind, "horizon columns")
+    rested(qtbot, wizard)
+    assert roles_shown(wizard) == ["hole", "x", "y", "", "", ""]
+    assert "Horizon elevation" in wizard.page.message.text()
+    assert not wizard.go.isEnabled()
+    name_column(wizard, 4, "horizon elevation")
+    assert wizard.go.isEnabled()
+    name_column(wizard, 5, "horizon depth")
+    assert roles_shown(wizard)[3:] == ["", "horizon depth", "horizon depth"], "all are depths, or none"
+    assert not wizard.go.isEnabled(), "depths need a collar"
+    name_column(wizard, 3, "z")
+    assert wizard.page.table.item(3, 4).background().color().name() in BAD.values()
+    press(qtbot, wizard, wizard.go)
+    horizons = wizard._found.site.horizons
+    assert {name: points.xyz[:, 2].tolist() for name, points in horizons.items()} == {
+        "T1": [39, 38, 36],
+        "T2": [29, 28, 27, 26],
+    }
+    again = opened(qtbot, tmp_path, tmp_path / "wells.csv")
+    assert roles_shown(again) == ["hole", "x", "y", "z", "horizon depth", "horizon depth"]
+    name_column(again, 4, "horizon elevation")
+    name_column(again, 5, "")
+    assert roles_shown(again)[3:] == ["z", "horizon elevation", ""]
 
 
 def test_a_role_given_to_another_column_leaves_the_first(qtbot, tmp_path):
@@ -110,7 +154,7 @@ def test_a_role_given_to_another_column_leaves_the_first(qtbot, tmp_path):
     assert roles_shown(wizard) == ["x", "y", "z", ""]
     name_column(wizard, 3, "z")
     assert roles_shown(wizard) == ["x", "y", "", "z"]
-    press(qtbot, wizard, wizard.forward)
+    press(qtbot, wizard, wizard.go)
     points = next(iter(read_site(wizard.site_file).horizons.values()))
     assert points.xyz[:, 2].tolist() == [30, 60, 90]
 
@@ -121,7 +165,8 @@ def test_cells_that_are_no_numbers_are_red_and_listed_with_their_row(qtbot, tmp_
     item = wizard.page.table.item(2, 1)
     assert item.background().color().name() in BAD.values()
     assert wizard.page.table.item(1, 1).background().style() == Qt.BrushStyle.NoBrush
-    press(qtbot, wizard, wizard.forward)
+    assert "(1 shown)" in wizard.page.message.text()
+    press(qtbot, wizard, wizard.go)
     columns = wizard.results.issues.rows.columns
     found = [k for k in range(wizard.results.issues.rows.total) if columns[4].text(k) == "n/a"]
     assert [columns[2].text(k) for k in found] == ["3"]
@@ -144,7 +189,7 @@ def test_lengths_in_feet_become_metres(qtbot, tmp_path):
     wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
     choose(wizard.page.unit, "ft")
     rested(qtbot, wizard)
-    press(qtbot, wizard, wizard.forward)
+    press(qtbot, wizard, wizard.go)
     points = next(iter(read_site(wizard.site_file).horizons.values()))
     assert points.xyz[0] == pytest.approx([30.48, 60.96, 91.44])
 
@@ -154,10 +199,10 @@ def test_a_table_is_left_out_and_said_so(qtbot, tmp_path):
     (tmp_path / "notes.csv").write_text("who,what\nme,nothing\nyou,less\n")
     wizard = opened(qtbot, tmp_path, tmp_path / "points.csv", tmp_path / "notes.csv")
     assert wizard.list.currentRow() == row_of(wizard, "notes.csv")
-    assert not wizard.forward.isEnabled()
+    assert not wizard.go.isEnabled()
     choose(wizard.page.kind, "skip")
     rested(qtbot, wizard)
-    press(qtbot, wizard, wizard.forward)
+    press(qtbot, wizard, wizard.go)
     issues = wizard.results.issues.rows.columns
     reasons = [issues[5].text(k) for k in range(wizard.results.issues.rows.total) if issues[1].text(k) == "notes.csv"]
     assert reasons == ["The mapping leaves this table out"]
@@ -171,7 +216,7 @@ def test_a_mapping_is_remembered_for_the_same_header(qtbot, tmp_path):
     rested(qtbot, wizard)
     for column, role in enumerate(("x", "y", "", "z")):
         name_column(wizard, column, role)
-    press(qtbot, wizard, wizard.forward)
+    press(qtbot, wizard, wizard.go)
     (tmp_path / "two.csv").write_text(text.replace("30,1", "31,9"))
     again = opened(qtbot, tmp_path, tmp_path / "two.csv")
     assert again.drafts()[0].remembered
@@ -181,12 +226,91 @@ def test_a_mapping_is_remembered_for_the_same_header(qtbot, tmp_path):
 
 def test_a_missing_file_is_told_and_the_wizard_goes_on(qtbot, tmp_path):
     wizard = opened(qtbot, tmp_path, tmp_path / "nothing.csv")
-    assert "nothing.csv" in wizard.message.text()
-    assert not wizard.forward.isEnabled()
+    assert "nothing.csv" in wizard.page.message.text()
+    assert "nothing to read" in wizard.message.text()
+    assert not wizard.go.isEnabled()
     (tmp_path / "points.csv").write_text("x,y,z\n1,2,3\n4,5,6\n8,7,9\n")
     wizard.add_files([tmp_path / "points.csv"])
     rested(qtbot, wizard)
-    assert wizard.forward.isEnabled()
+    press(qtbot, wizard, wizard.go)
+    assert "3 rows read = 3 used" in wizard.results.balance.text()
+
+
+def test_files_that_cannot_be_read_do_not_hide_the_others_and_are_listed(qtbot, tmp_path):
+    tables = tmp_path / "tables"
+    (tables / "inner").mkdir(parents=True)
+    (tables / "empty.csv").write_bytes(b"")
+    (tables / ".hidden").write_bytes(b"")
+    (tables / "photo.jpg").write_bytes(bytes(range(256)))
+    (tables / "points.csv").write_text("x,y,z\n1,2,3\n4,5,6\n8,7,9\n")
+    wizard = opened(qtbot, tmp_path, tables)
+    assert [draft.title for draft in wizard.drafts()] == ["empty.csv", "photo.jpg", "points.csv"], "a folder's files"
+    assert [draft.fault is not None for draft in wizard.drafts()] == [True, True, False]
+    assert "The file is empty" in wizard.page.message.text()
+    assert "left out" in wizard.page.message.text()
+    press(qtbot, wizard, wizard.go)
+    assert list(wizard._found.site.horizons) == ["points"]
+    assert "tables/empty.csv" in [issue.file for issue in wizard._found.issues]
+
+
+def test_axes_that_look_exchanged_are_told_and_one_button_mends_them(qtbot, tmp_path):
+    rows = "".join(f"ZK{i},{3100000 + 60 * i}.5,{500000 + 40 * i}.5,{900 - i},60\n" for i in range(6))
+    (tmp_path / "孔.csv").write_text(f"孔号,X,Y,孔口高程,孔深\n{rows}", encoding="utf-8")
+    feet = rows.replace("31000", "22960")  # state plane coordinates in feet look alike, and are as they should be
+    (tmp_path / "collars.csv").write_text(f"hole,x,y,z,depth\n{feet}", encoding="utf-8")
+    wizard = opened(qtbot, tmp_path, tmp_path / "孔.csv", tmp_path / "collars.csv")
+    assert [draft.exchanged for draft in wizard.drafts()] == [True, False]
+    assert "look exchanged" in wizard.page.message.text()
+    press(qtbot, wizard, wizard.page.exchange)
+    assert roles_shown(wizard)[1:3] == ["y", "x"]
+    assert not wizard.page.exchange.isVisible()
+    wizard.list.setCurrentRow(1)
+    wizard._remove()
+    press(qtbot, wizard, wizard.go)
+    assert wizard._found.site.holes[0].xyz[0, :2].tolist() == [500000.5, 3100000.5]
+
+
+def test_collars_without_elevation_may_stand_on_a_ground(qtbot, tmp_path):
+    (tmp_path / "collar.csv").write_text("hole,x,y,depth\n" + "".join(f"A{i},{i},{i},9\n" for i in range(1, 5)))
+    wizard = opened(qtbot, tmp_path, tmp_path / "collar.csv")
+    assert "Elevation" in wizard.page.message.text()
+    assert "ground" in wizard.page.message.text()
+    assert not wizard.go.isEnabled()
+    head = "ncols 3\nnrows 3\nxllcorner -5\nyllcorner -5\ncellsize 10\n"
+    (tmp_path / "ground.asc").write_text(head + "7 7 7\n" * 3)
+    wizard.add_files([tmp_path / "ground.asc"])
+    rested(qtbot, wizard)
+    assert wizard.go.isEnabled()
+
+
+def test_cancel_takes_away_what_was_written_and_a_file_that_was_there_is_named_before(qtbot, tmp_path):
+    (tmp_path / "points.csv").write_text("x,y,z\n1,2,3\n4,5,6\n8,7,9\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    assert "all points are of 'points'" in wizard.page.message.text()
+    press(qtbot, wizard, wizard.go)
+    assert (tmp_path / "site.toml").exists()
+    wizard.reject()
+    assert [path.name for path in tmp_path.glob("*.toml")] == []
+    (tmp_path / "own.toml").write_text("")
+    again = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    again.target.setText(str(tmp_path / "own"))
+    assert "own.toml is there already" in again.message.text()
+    press(qtbot, again, again.go)
+    again.reject()
+    assert (tmp_path / "own.toml").exists()
+
+
+def test_several_tables_are_removed_at_once(qtbot, tmp_path):
+    names = [f"notes{k}.csv" for k in range(6)]
+    for name in (*names, "points.csv"):
+        (tmp_path / name).write_text("x,y,z\n1,2,3\n4,5,6\n8,7,9\n" if name == "points.csv" else "who,what\nme,7\n")
+    wizard = opened(qtbot, tmp_path, *sorted(tmp_path.glob("*.csv")))
+    assert "… (6)" in wizard.message.text()
+    for row in range(6):
+        wizard.list.item(row).setSelected(True)
+    wizard._remove()
+    assert [draft.title for draft in wizard.drafts()] == ["points.csv"]
+    assert wizard.go.isEnabled()
 
 
 def test_a_broken_memory_counts_as_empty(tmp_path):

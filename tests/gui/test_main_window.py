@@ -94,6 +94,12 @@ def test_another_language_keeps_the_work(app, small):
     assert app.document.state.name == "Kept"
     assert "Kept" in app.window.windowTitle()
     assert app.desktop.session.stack.canUndo()
+    undo = app.window.menus.undo
+    undo.trigger()
+    assert app.document.state.name == "Small"
+    assert not undo.isEnabled()
+    app.window.menus.redo.trigger()
+    assert "Kept" in undo.text()
     assert Preferences().language == "zh_CN"
     app.desktop.change_language("en")
     app.idle()
@@ -191,7 +197,7 @@ def test_rows_not_used_are_listed(qtbot):
     dialog = IssuesDialog(Site("", {}, issues=issues, counts=(TableCount("b.csv", 10, 9, 1),)))
     qtbot.addWidget(dialog)
     model = dialog.table.model()
-    assert dialog.balance.text() == "10 rows read = 9 used + 1 listed here."
+    assert dialog.balance.text() == "Rows read: 10 = 9 used + 1 listed here."
     row = [model.index(0, column).data() for column in range(7)]
     assert row == ["not used", "b.csv", "9", "z", "abc", "This is no number", "Correct it."]
 

@@ -90,7 +90,7 @@ def test_02_the_wizard_asks_for_roles_and_shows_bad_cells(app, qtbot, tmp_path):
     wizard = ImportWizard([tmp_path / "孔.csv"], tmp_path, parent=app.window)
     qtbot.addWidget(wizard)
     wizard.show()
-    qtbot.waitUntil(lambda: wizard._task is None, timeout=30_000)
+    qtbot.waitUntil(lambda: not wizard.running, timeout=30_000)
     (draft,) = wizard.drafts()
     assert draft.kind == "collar"
     table = wizard.page.table
@@ -98,7 +98,7 @@ def test_02_the_wizard_asks_for_roles_and_shows_bad_cells(app, qtbot, tmp_path):
     box = table.cellWidget(0, 1)
     box.setCurrentIndex(box.findData(""))
     box.activated.emit(box.currentIndex())
-    assert not wizard.forward.isEnabled(), "easting is missing"
+    assert not wizard.go.isEnabled(), "easting is missing"
     wizard.reject()
 
 
@@ -112,7 +112,7 @@ def test_03_rows_read_are_rows_used_and_rows_listed(app, qtbot, tmp_path):
     app.idle()
     dialog = IssuesDialog(app.document.site)
     qtbot.addWidget(dialog)
-    assert dialog.balance.text() == "26 rows read = 25 used + 1 listed here."
+    assert dialog.balance.text() == "Rows read: 26 = 25 used + 1 listed here."
 
 
 def test_04_the_tree_has_holes_adits_sections_horizons_patches_and_reports(shown):
@@ -293,8 +293,8 @@ def test_17_what_the_export_read_back_stands_in_the_checks(shown, qtbot, tmp_pat
     def drive(dialog):
         dialog.target.setText(str(tmp_path / "dam.step"))
         dialog.unit.setCurrentIndex(dialog.unit.findData("mm"))
-        qtbot.mouseClick(dialog.write, Qt.MouseButton.LeftButton)
-        qtbot.waitUntil(lambda: dialog._task is None, timeout=120_000)
+        qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+        qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
 
     monkeypatch.setattr(ExportDialog, "exec", drive)
     shown.trigger("export_step")
@@ -314,8 +314,8 @@ def test_18_the_report_has_figures_and_hashes_and_is_listed(shown, qtbot, tmp_pa
             box.setChecked(key == "html")
         dialog.examine.setChecked(False)
         dialog.folder.setText(str(tmp_path / "out"))
-        qtbot.mouseClick(dialog.write, Qt.MouseButton.LeftButton)
-        qtbot.waitUntil(lambda: dialog._task is None, timeout=180_000)
+        qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+        qtbot.waitUntil(lambda: not dialog.running, timeout=180_000)
 
     monkeypatch.setattr(ReportDialog, "exec", drive)
     monkeypatch.setattr(QDesktopServices, "openUrl", lambda url: True)

@@ -35,7 +35,7 @@ def test_the_figures_are_told(panel):
     words = panel.figures.text()
     assert "1.10 m on average, 6.20 m at most" in words
     assert "1.62" in words
-    assert "91%" in words
+    assert "91 %" in words
     titles = [column.title for column in panel.left_out.rows.columns]
     assert {"geofit, m", "Thin plate, m", "Kriging, m"} <= set(titles)
     kriging = panel.left_out.rows.columns[titles.index("Kriging, m")]
@@ -61,6 +61,17 @@ def test_an_outlier_leads_to_its_point_even_when_sorted(panel, qtbot):
     with qtbot.assertNotEmitted(panel.point_chosen):
         panel.choose_point(7)
     assert panel.outliers.current == 0
+
+
+def test_every_column_is_seen_beside_the_view(panel):
+    """In a window of 1280 pixels the dock has about 790."""
+    panel.resize(790, 300)
+    panel.show_offdata(off_data(393), fitted().points)
+    for table in (panel.left_out, panel.suggestions, panel.outliers):
+        assert table.horizontalHeader().length() <= table.viewport().width()
+        for column in range(table.model().columnCount()):
+            title = table.rows.columns[column].title
+            assert table.fontMetrics().horizontalAdvance(title) < table.columnWidth(column), title
 
 
 def test_it_fits_a_narrow_dock(panel):

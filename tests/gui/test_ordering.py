@@ -50,7 +50,7 @@ def test_horizons_are_pushed_apart_and_back_as_one_step_that_can_be_made_again(c
     assert stack.undoText().startswith("Push apart")
     name = next(name for name in before if document.surface(name) is not before[name])
     recipe, moved = document.state.recipes[name], document.surface(name)
-    again = make(recipe, document.points_of(recipe), None, None, document.given_for(recipe))
+    again = make(recipe, document.given_for(recipe))
     np.testing.assert_allclose(again.patches[0].control, moved.patches[0].control, atol=1e-12)
     assert not document.stale(name)
     stack.undo()
@@ -79,13 +79,13 @@ def test_a_weight_is_set_by_hand_or_refused_with_a_reason(crossing, qtbot):
     patch = before.patches[0]
     i, j = (n // 2 for n in patch.control.shape[:2])
     adjust.choose_control(patch.name, i, j)
-    adjust.weight.value.setValue(3.0)
-    assert adjust.weight.button.isEnabled()
-    adjust.weight.button.click()
+    adjust.control.weight.value.setValue(3.0)
+    assert adjust.control.weight.button.isEnabled()
+    adjust.control.weight.button.click()
     crossing.idle()
     after = document.surface("low").patches[0]
     assert after.weights[i, j] == 3.0
-    assert adjust.weight.value.value() == 3.0
+    assert adjust.control.weight.value.value() == 3.0
     assert "Weight 3" in crossing.window.session.stack.undoText()
     crossing.window.fitting.weigh("low", patch.name, 10_000, 0, 2.0)
     qtbot.waitUntil(lambda: not crossing.window.activity.busy, timeout=60_000)

@@ -8,14 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from panel_samples import FAULT, WITH_PERIPHERY, cloud, fitted, sample_site
-from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtTest import QTest
 
 import geofit
 from geofit.geometry.frame import map_frame
 from geofit.gui.panels.core_box import CoreBox
 from geofit.gui.panels.plan import PlanPanel
-from geofit.gui.panels.plan_ink import round_length
+from geofit.gui.panels.plan_ink import draw_labels, round_length
 from geofit.gui.panels.plan_view import PERIPHERY
 from geofit.points import PointSet
 from geofit.report.style import CORE
@@ -200,6 +201,54 @@ def test_a_rectangle_keeps_its_directions():
 
 def test_scale_bars_have_round_lengths():
     assert [round_length(x) for x in (0.03, 1.0, 19.9, 20.0, 999.0)] == [0.02, 1.0, 10.0, 20.0, 500.0]
+
+
+def lettered(named, busy=(), size=(400, 300), paper="white", title=""):
+    """Write names over a black picture; return where they stand, and the picture."""
+    image = QImage(*size, QImage.Format.Format_RGB32)
+    image.fill(QColor("black"))
+    painter = QPainter(image)
+    painter.setPen(QColor("red"))
+    places = [(name, np.array(place, float)) for name, place in named]
+    crowd = np.array(busy, float).reshape(-1, 2)
+    written = draw_labels(painter, places, crowd, image.rect(), QColor(paper), title)
+    painter.end()
+    return written, image
+
+
+def test_every_name_with_room_is_written():
+    named = [(f"ZK{i}{j}", (60 * i, 40 * j)) for i in range(1, 6) for j in range(1, 6)]
+    assert sorted(name for name, _ in lettered(named)[0]) == sorted(name for name, _ in named)
+
+
+def test_names_never_cover_each_other_and_stay_inside():
+    rng = np.random.default_rng(3)
+    named = [(f"ZK{k}", place) for k, place in enumerate(rng.uniform(0, 300, (200, 2)))]
+    written, _ = lettered(named, title="T2-T1")
+    boxes = [QRectF(*box) for _, box in written]
+    assert 20 < len(boxes) < 200
+    assert not any(a.intersects(b) for k, a in enumerate(boxes) for b in boxes[:k])
+    assert all(QRectF(0, 0, 400, 300).contains(box) for box in boxes)
+    # The corners of the legend, north and the title are free.
+    assert not any(box.intersects(QRectF(0, 260, 400, 40)) or box.intersects(QRectF(360, 0, 40, 52)) for box in boxes)
+
+
+def test_a_name_stands_where_it_covers_no_points():
+    crowd = [(x, y) for x in range(205, 260, 4) for y in range(100, 200, 4)]
+    ((_, (left, _, width, _)),), _ = lettered([("ZK1", (200, 150))], crowd)
+    assert left + width < 200
+    everywhere = [(x, y) for x in range(0, 400, 3) for y in range(0, 300, 3)]
+    assert lettered([("ZK1", (200, 150))], everywhere)[0] == []
+
+
+def test_letters_have_a_rim_of_paper():
+    ((_, box),), image = lettered([("ZK1", (200, 150))])
+    colours = {
+        image.pixelColor(x, y).name()
+        for x in range(int(box[0]), int(box[0] + box[2]))
+        for y in range(int(box[1]), int(box[1] + box[3]))
+    }
+    assert {"#ffffff", "#ff0000"} <= colours
 
 
 def test_it_fits_a_narrow_dock(shown):

@@ -152,7 +152,7 @@ def test_surfaces_come_back_to_the_last_bit(tmp_path):
     do(SetSurface(document.recipe("W")))
     do(PullToPoint("W", 3, 0.5))
     recipe = document.state.recipes["W"]
-    document.put(recipe, make(recipe, document.points_of(recipe), document.site.boundary))
+    document.put(recipe, make(recipe, document.given_for(recipe)))
     journal._stream.close()  # as the end of the process does
 
     (session,) = unfinished(tmp_path)
@@ -162,7 +162,7 @@ def test_surfaces_come_back_to_the_last_bit(tmp_path):
         command.redo(again)
     assert again.state == document.state
     (missing,) = again.missing()
-    surface = make(missing, again.points_of(missing), again.site.boundary)
+    surface = make(missing, again.given_for(missing))
     for new, old in zip(surface.patches, document.surface("W").patches, strict=True):
         assert np.array_equal(new.control, old.control)
 

@@ -20,9 +20,9 @@ def opened_files(monkeypatch):
     return files
 
 
-def opened(qtbot):
+def opened(qtbot, surface=None):
     site = sample_site()
-    dialog = ReportDialog(site, [HorizonResult(fitted(FAULT), site)])
+    dialog = ReportDialog(site, [HorizonResult(surface or fitted(FAULT), site)])
     qtbot.addWidget(dialog)
     dialog.show()
     return dialog
@@ -30,20 +30,21 @@ def opened(qtbot):
 
 def press(qtbot, dialog, button):
     qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: dialog._task is None, timeout=180_000)
+    qtbot.waitUntil(lambda: not dialog.running, timeout=180_000)
 
 
 def test_the_report_in_chinese_with_its_date_and_what_was_examined(qtbot, tmp_path, opened_files):
     dialog = opened(qtbot)
-    written = []
+    written, examined = [], {}
     dialog.written.connect(written.append)
+    dialog.examined.connect(examined.__setitem__)
     dialog.language.setCurrentIndex(dialog.language.findData("zh"))
     dialog.forms["pdf"].setChecked(False)
     dialog.forms["json"].setChecked(True)
     dialog.date.setDate(QDate(2025, 3, 9))
     dialog.folder.setText(str(tmp_path / "out"))
     assert dialog.examine.isChecked(), "it came without a check off the data"
-    press(qtbot, dialog, dialog.write)
+    press(qtbot, dialog, dialog.go)
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["report.html", "report.json"]
     assert written == [tmp_path / "out" / "report.html"]
     assert opened_files == [str(written[0])]
@@ -54,17 +55,34 @@ def test_the_report_in_chinese_with_its_date_and_what_was_examined(qtbot, tmp_pa
     assert data["horizons"][0]["sigma"] == pytest.approx(fitted(FAULT).accuracy.sigma)
     assert data["horizons"][0]["off_data"] is not None
     assert dialog.view.isVisible()
+    assert [one.scheme for one in examined[FAULT].left_out] == [
+        one["scheme"] for one in data["horizons"][0]["off_data"]["left_out"]
+    ]
+    assert not dialog.examine.isVisible(), "it is known now"
+
+
+def test_of_a_surface_with_nothing_behind_it_nothing_is_handed_back(qtbot, tmp_path, opened_files):
+    dialog = opened(qtbot, fitted(FAULT).with_(model=None))
+    examined = []
+    dialog.examined.connect(lambda *found: examined.append(found))
+    dialog.folder.setText(str(tmp_path))
+    for form, box in dialog.forms.items():
+        box.setChecked(form == "json")
+    press(qtbot, dialog, dialog.go)
+    assert opened_files == [str(tmp_path / "report.json")]
+    assert examined == []
+    assert dialog.examine.isVisible()
 
 
 def test_without_a_form_or_a_folder_nothing_can_be_written(qtbot):
     dialog = opened(qtbot)
     for box in dialog.forms.values():
         box.setChecked(False)
-    assert not dialog.write.isEnabled()
+    assert not dialog.go.isEnabled()
     dialog.forms["html"].setChecked(True)
-    assert dialog.write.isEnabled()
+    assert dialog.go.isEnabled()
     dialog.folder.setText(" ")
-    assert not dialog.write.isEnabled()
+    assert not dialog.go.isEnabled()
 
 
 def test_a_folder_that_cannot_be_made_is_told(qtbot, tmp_path, opened_files):
@@ -72,7 +90,7 @@ def test_a_folder_that_cannot_be_made_is_told(qtbot, tmp_path, opened_files):
     dialog = opened(qtbot)
     dialog.examine.setChecked(False)
     dialog.folder.setText(str(tmp_path / "file" / "out"))
-    press(qtbot, dialog, dialog.write)
+    press(qtbot, dialog, dialog.go)
     assert "folder cannot be made" in dialog.message.text()
     assert not opened_files
     assert not dialog.view.isVisible()
@@ -81,7 +99,8 @@ def test_a_folder_that_cannot_be_made_is_told(qtbot, tmp_path, opened_files):
 def test_stop_writes_nothing(qtbot, tmp_path, opened_files):
     dialog = opened(qtbot)
     dialog.folder.setText(str(tmp_path / "out"))
-    qtbot.mouseClick(dialog.write, Qt.MouseButton.LeftButton)
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(dialog.stop.isVisible)
     press(qtbot, dialog, dialog.stop)
     assert "Stopped" in dialog.message.text()
     assert not list(tmp_path.glob("out/report*"))

@@ -91,6 +91,7 @@ def test_a_point_that_the_filter_hides_is_said_to_be_hidden(panel, qtbot):
     panel.show_surface(cloud(100))
     panel.search.setText("ZK99")
     qtbot.waitUntil(lambda: panel.table.rows.rowCount() == 1)
+    assert panel.count.text() == "Points: 1 of 100"
     panel.choose(4)
     assert "hidden" in panel.count.text()
     assert panel.table.current is None

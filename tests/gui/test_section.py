@@ -11,11 +11,14 @@ from geofit.gui import worker
 from geofit.gui.panels.curtain import Curtain, extent
 from geofit.gui.panels.section import SectionPanel
 from geofit.gui.panels.section_ink import near_points
+from geofit.gui.panels.section_scale import Extent, automatic, window
 from geofit.offdata import Uncertainty
 
 #: Triangles of the surfaces, made once for all tests.
 MESHES = {}
 LINE = np.array([[500800.0, 3101000.0], [501600.0, 3101100.0]])
+#: A line from end to end of the site.
+ACROSS = np.array([[500073.4, 3100977.7], [502211.8, 3100977.7]])
 
 
 @pytest.fixture
@@ -138,7 +141,117 @@ def test_exaggeration_is_what_is_drawn(panel, qtbot):
     axes = panel.canvas.figure.axes[0]
     (x0, z0), (x1, z1) = axes.transData.transform([[0.0, 1500.0], [100.0, 1600.0]])
     assert (z1 - z0) / (x1 - x0) == pytest.approx(5.0, rel=1e-3)
-    assert "× 5" in panel.state.text()
+    assert noted(panel) == "Vertical 5×"
+
+
+def noted(panel):
+    (note,) = panel.canvas.figure.texts
+    return note.get_text()
+
+
+def drawn_factor(panel):
+    axes = panel.canvas.figure.axes[0]
+    (x0, z0), (x1, z1) = axes.transData.transform([[0.0, 1500.0], [100.0, 1600.0]])
+    return (z1 - z0) / (x1 - x0)
+
+
+def test_a_flat_section_is_drawn_higher_by_itself_and_says_so(panel, qtbot):
+    show(panel, qtbot, {}, line=ACROSS)
+    assert panel.factor.currentData() is None
+    factors = []
+    for height in (300, 700):
+        panel.resize(800, height)
+        qtbot.waitUntil(lambda height=height: panel.height() == height)
+        panel.canvas.draw()
+        axes = panel.canvas.figure.axes[0]
+        factors.append(drawn_factor(panel))
+        assert noted(panel) == f"Vertical {factors[-1]:.0f}×"
+        # All of it is seen, at true elevations.
+        (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+        low, high = axes.dataLim.intervaly
+        assert left <= 0
+        assert right >= panel._data.curtain.length
+        assert bottom <= low
+        assert top >= high
+    assert factors == pytest.approx([2.0, 10.0], rel=1e-3)
+
+
+def test_the_factor_is_told_while_a_section_is_moved_and_magnified(panel, qtbot):
+    show(panel, qtbot, {})
+    axes = panel.canvas.figure.axes[0]
+    before, whole = drawn_factor(panel), axes.get_xlim()
+    panel._look_at(axes, (100.0, 300.0), (1450.0, 1450.0 + 200.0 * np.ptp(axes.get_ylim()) / np.ptp(whole)))
+    panel.thickness.setValue(30.0)
+    panel.resize(900, 500)
+    wait(panel, qtbot)
+    assert axes.get_xlim() != whole
+    assert drawn_factor(panel) == pytest.approx(before, rel=1e-3)
+    assert noted(panel) == f"Vertical {before:.0f}×"
+    panel._choose_section(1)
+    wait(panel, qtbot)
+    assert axes.get_xlim()[0] <= 0
+
+
+@pytest.mark.parametrize("factor", [1.0, 2.0, 20.0])
+def test_a_window_holds_the_section_and_its_names(factor):
+    seen, size = Extent(900.0, 1300.0, 1420.0, head=1410.0, names=50.0), (700.0, 200.0)
+    (left, right), (bottom, top) = window(seen, size, factor)
+    upwards = size[1] / (top - bottom)
+    assert upwards / (size[0] / (right - left)) == pytest.approx(factor)
+    assert left < 0 < 900 < right
+    assert bottom < 1300
+    assert top > 1420
+    assert (top - 1410) * upwards >= 50
+
+
+def test_a_section_without_any_height_is_still_drawn():
+    flat = Extent(100.0, 5.0, 5.0)
+    assert np.isfinite(window(flat, (300.0, 200.0), automatic(flat, (300.0, 200.0)))).all()
+
+
+def test_no_text_is_cut_off(panel, qtbot):
+    show(panel, qtbot, {WITH_PERIPHERY: fitted()})
+    for size in ((800, 300), (262, 480), (1100, 700)):
+        panel.resize(*size)
+        qtbot.waitUntil(lambda size=size: (panel.width(), panel.height()) == size)
+        panel.canvas.draw()
+        figure, renderer = panel.canvas.figure, panel.canvas.get_renderer()
+        axes = figure.axes[0]
+        low, high = axes.get_ylim()
+        numbers = [text for text in axes.get_yticklabels() if low <= text.get_position()[1] <= high]
+        for part in (axes.xaxis.label, axes.yaxis.label, *numbers, *figure.texts, *figure.legends):
+            box = part.get_window_extent(renderer)
+            assert box.x0 >= 0, part
+            assert box.y0 >= 0, part
+            assert box.x1 <= figure.bbox.width, part
+            assert box.y1 <= figure.bbox.height, part
+        left = min(text.get_window_extent(renderer).x0 for text in numbers)
+        assert axes.yaxis.label.get_window_extent(renderer).x1 <= left
+
+
+def test_names_of_holes_stand_apart(panel, qtbot):
+    show(panel, qtbot, {}, thickness=400.0)
+    axes, renderer = panel.canvas.figure.axes[0], panel.canvas.get_renderer()
+    drawn = sorted(t.get_window_extent(renderer).x0 for t in axes.texts if t.get_visible())
+    assert len(drawn) < len(axes.texts)
+    assert np.diff(drawn).min() >= 11
+    panel._look_at(axes, (400.0, 500.0), axes.get_ylim())
+    inside = [text for text in axes.texts if 400 < text.xy[0] < 500]
+    assert inside
+    assert all(text.get_visible() for text in inside)
+
+
+def test_axes_are_kept_for_the_next_section(panel, qtbot):
+    show(panel, qtbot, {})
+    axes = panel.canvas.figure.axes[0]
+    counted = len(axes.lines), len(axes.texts), len(panel.canvas.figure.legends), len(panel.canvas.figure.texts)
+    for _ in range(3):
+        panel.canvas.repaint_figure()
+        panel.canvas.draw()
+    assert panel.canvas.figure.axes == [axes]
+    assert counted == (
+        len(axes.lines), len(axes.texts), len(panel.canvas.figure.legends), len(panel.canvas.figure.texts),
+    )  # fmt: skip
 
 
 def test_a_hidden_panel_cuts_when_it_is_shown(panel, qtbot):

@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import errno
+import logging
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+from chinese import literals
 from PySide6.QtCore import QCoreApplication
-from PySide6.QtWidgets import QDialogButtonBox, QLabel
+from PySide6.QtWidgets import QDialogButtonBox, QLabel, QWidget
 
+from geofit.errors import InputError
+from geofit.gui.document.recipe import DocumentError
 from geofit.gui.language import apply_language
+from geofit.gui.panels.log import LogPanel
+from geofit.gui.words import spoken
+from geofit.gui.worker import run
+from geofit.words import said
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -55,3 +65,64 @@ def test_the_windows_own_words_and_those_of_qt_are_chinese(qtbot, chinese):
     assert cancel.text().startswith("取消")
     assert all(label.text() != "&Theme" for label in dialog.findChildren(QLabel))
     assert QCoreApplication.translate("Said", "Fit {name}") == "拟合 {name}"
+
+
+def test_what_the_windows_model_refuses_and_logs_is_for_the_translators():
+    from geofit.gui.sentences import SENTENCES
+    from geofit.report.language import ZH
+
+    log = dict.fromkeys(("info", "warning", "error", "exception"), slice(0, 1))
+    said = literals(["gui"], {**log, "tell": slice(1, 2)})
+    absent = {text: where for text, where in said.items() if text not in SENTENCES and text not in ZH.texts}
+    assert set(absent) <= {"%s"}, "say by said() what has values, and add to gui/sentences.py:\n" + str(absent)
+
+
+def test_errors_are_told_in_chinese_with_the_file(qtbot, chinese):
+    from geofit.gui.dialogs.error import ErrorDialog
+
+    dialogs = [
+        ErrorDialog("保存", PermissionError(errno.EACCES, "Permission denied", "/data/site.geofit")),
+        ErrorDialog("打开", InputError("There is no such file", "Check the path.", file="site.toml")),
+        ErrorDialog("", DocumentError(said("'{name}' has no surface to adjust. Fit it first.", name="T1"))),
+    ]
+    for dialog in dialogs:
+        qtbot.addWidget(dialog)
+    assert [dialog.message.text() for dialog in dialogs] == [
+        "/data/site.geofit：没有访问权限\n\n请确认文件夹存在、可写且有足够空间。",
+        "site.toml：没有该文件。\n\n请检查路径。",
+        "“T1”没有可调整的曲面。请先拟合。",
+    ]
+
+
+def test_the_log_speaks_chinese_and_leaves_other_libraries_alone(qtbot, chinese):
+    panel = LogPanel()
+    qtbot.addWidget(panel)
+    try:
+        log = logging.getLogger("geofit.gui.files")
+        log.info("Saved %s", "dam.geofit")
+        log.warning("There is no journal, so that a crash would lose unsaved work: %s", OSError(28, os.strerror(28)))
+        log.error("%s: %s", "拟合", InputError("The file is empty", "Export it again.", file="p.csv"))
+        logging.getLogger("vtk").error("bad %d", 3)
+        lines = [line.split("  ", 1)[1] for line in panel.text.toPlainText().splitlines()]
+    finally:
+        panel.detach()
+    assert lines == [
+        "已保存 dam.geofit",
+        "警告: 没有操作日志，程序崩溃时未保存的工作将丢失：磁盘已满",
+        "错误: 拟合：p.csv：文件为空。请重新导出。",
+        "错误: bad 3",
+    ]
+
+
+def test_a_stage_with_a_name_in_it_comes_through_a_task_as_a_sentence(qtbot, chinese):
+    heard = []
+    parent = QWidget()
+    qtbot.addWidget(parent)
+    task = run(parent, _with_a_stage, on_progress=lambda stage, fraction: heard.append(spoken(stage)))
+    with qtbot.waitSignal(task.ended):
+        pass
+    assert heard == ["T1：拟合"]
+
+
+def _with_a_stage(progress):
+    progress(said("{name}: {stage}", name="T1", stage="fit"), 1.0)

@@ -20,7 +20,9 @@ from geofit import HorizonSurface, PointSet
 from geofit.accuracy import Seam
 from geofit.check import check
 from geofit.errors import SettingsError
+from geofit.gui.view3d.colouring import rgb
 from geofit.offdata import Suggestion, Uncertainty
+from geofit.report.style import HORIZONS
 from geofit.site import Ground, Hole, Orientations, Section, Site
 from geofit.surface import Patch
 
@@ -201,8 +203,53 @@ def test_clicking_a_control_point_picks_it(shown, qtbot):
     with qtbot.waitSignal(shown.control_picked, timeout=2000) as told:
         click(shown, *drawn_at(shown, at(HALF, HALF, -SLOPE * HALF)))
     assert told.args == ["W", "east", 1, 1]
+    assert shown.pointer.ring.solid
     shown.set_control_points(None)
+    assert shown.pointer.ring is None
     assert "control:W" not in shown.layers
+
+
+def test_the_mark_of_a_control_point_follows_the_surface(shown):
+    shown.highlight_control("W", "east", 1, 0)
+    np.testing.assert_allclose(shown.pointer.ring.xyz, at(HALF, -HALF, -SLOPE * HALF))
+    shown.show_surface(plane(fall=7.0))
+    np.testing.assert_allclose(shown.pointer.ring.xyz, at(HALF, -HALF, -SLOPE * HALF - 7.0))
+    assert "1453.00 m" in shown.pointer.ring.text
+    shown.show_surface(plane(split=False))
+    assert shown.pointer.ring is None
+
+
+def test_letting_go_of_a_control_point_leaves_other_rings(shown):
+    shown.highlight_point("W", 1)
+    shown.set_control_points("W")
+    shown.set_control_points(None)
+    assert shown.pointer.ring is not None
+
+
+def test_a_net_is_fainter_from_afar(shown, qtbot):
+    shown.set_control_points("W")
+    settle(shown, qtbot)
+    dots = shown._stage._items["control:W"].parts[1].actor.GetProperty()
+    near = dots.GetOpacity()
+    shown.canvas.look(replace(shown.canvas.eye, distance=60 * shown.canvas.eye.distance))
+    assert 0 < dots.GetOpacity() < 0.5 * near
+
+
+def test_the_net_leaves_its_surface_to_be_seen(view, qtbot):
+    fine = np.linspace(-HALF, HALF, 80)
+    x, y = np.meshgrid(fine, fine, indexing="ij")
+    knots = np.concatenate([[0.0], np.linspace(0, 1, 80), [1.0]])
+    patch = Patch("core", (1, 1), knots, knots, np.stack([x, y, 0 * x], axis=-1))
+    view.show_surface(HorizonSurface((patch,), ORIGIN, PointSet(np.empty((0, 3))), name="W"))
+    view.view("top")
+    settle(view, qtbot)
+    low, high = (drawn_at(view, at(s * 150.0, -s * 150.0, 0.0)).round().astype(int) for s in (-1, 1))
+    inside = np.s_[low[1] : high[1], low[0] : high[0]]
+    bare = picture(view)[inside]
+    view.set_control_points("W")
+    settle(view, qtbot)
+    netted = picture(view)[inside]
+    assert 3 < np.abs(netted - bare).mean() < 45
 
 
 def test_clicking_beside_everything_picks_nothing(shown, qtbot):
@@ -388,6 +435,18 @@ def test_many_changes_are_one_render(shown, qtbot):
     still = shown.canvas.frames
     qtbot.wait(300)
     assert shown.canvas.frames == still
+
+
+def test_a_horizon_keeps_the_colour_of_its_place_in_the_site(shown):
+    surface = shown.contents.surfaces["W"]
+    shown.show_site(Site("more", {"T": surface.points, "W": surface.points}))
+    assert {(layer.horizon, layer.colour) for layer in shown.layers if layer.colour} == {
+        ("T", HORIZONS[0]),
+        ("W", HORIZONS[1]),
+    }
+    assert shown._stage._items["surface:W"].parts[0].actor.GetProperty().GetColor() == pytest.approx(
+        [byte / 255 for byte in rgb(HORIZONS[1])]
+    )
 
 
 def test_what_is_gone_from_the_site_is_gone_from_the_scene(shown):

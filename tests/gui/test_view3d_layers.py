@@ -77,6 +77,18 @@ def test_deviation_has_the_bands_of_the_report():
     assert all(np.diff(made.size[: len(edges) + 1]) > 0)
 
 
+@pytest.mark.parametrize("dark", [False, True])
+def test_the_legend_of_deviations_has_the_colours_of_the_points(dark):
+    settings = FitSettings()
+    edges = [band.low for band in bands(settings)]
+    d = np.array([*reversed(edges[1:]), 0.0, *(-low for low in edges[1:])])
+    made = points_by("deviation", PointSet(np.zeros((len(d), 3))), "#000000", d, settings, dark=dark)
+    assert [rgb(swatch.colour) for swatch in made.legend.swatches] == [tuple(c) for c in made.colour.tolist()]
+    shades = bands(settings, dark=dark)
+    assert made.legend.swatches[0].colour == shades[-1].above
+    assert made.legend.swatches[-1].colour == shades[-1].below
+
+
 def test_without_residuals_deviation_is_plain():
     made = points_by("deviation", PointSet(np.zeros((2, 3))), "#102030", None, FitSettings(), dark=False)
     assert made.colour.tolist() == [[16, 32, 48]] * 2

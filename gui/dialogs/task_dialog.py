@@ -1,0 +1,157 @@
+"""The base of dialogs with a long task: how far it is, Stop, and what was done or what went wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QCloseEvent, QPixmap
+from PySide6.QtWidgets import QDialog, QDialogButtonBox, QHBoxLayout, QLabel, QProgressBar, QPushButton, QWidget
+from shiboken6 import isValid
+
+from geofit.errors import GeofitError
+from geofit.gui.panels.marks import icon
+from geofit.gui.words import failure, spoken
+from geofit.gui.worker import Task, run, run_apart
+
+__all__ = ["TaskDialog"]
+
+#: Milliseconds before the progress of a task is shown: what is quick needs none.
+PATIENCE = 300
+
+
+class TaskDialog(QDialog):
+    """A dialog that does one long task at a time, and says in one place how it ended; closing it stops the task.
+
+    A subclass lays out ``said`` (a mark and a sentence) and :meth:`foot`, connects ``go`` to what calls :meth:`begin`,
+    names the ``fields`` that rest meanwhile, and extends :meth:`refresh`.
+    """
+
+    def __init__(
+        self,
+        parent: QWidget | None = None,
+        leave: QDialogButtonBox.StandardButton = QDialogButtonBox.StandardButton.Close,
+    ) -> None:
+        super().__init__(parent)
+        self._task: Task | None = None
+        self._focused: QWidget | None = None
+        self.fields: tuple[QWidget, ...] = ()
+        self.message, self.sign = QLabel(), QLabel()
+        self.message.setWordWrap(True)
+        self.message.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self.said = QHBoxLayout()
+        self.said.addWidget(self.sign, 0, Qt.AlignmentFlag.AlignTop)
+        self.said.addWidget(self.message, 1)
+        self.progress = QProgressBar()
+        self.progress.setAccessibleName(self.tr("Progress"))
+        self.go, self.stop = QPushButton(), QPushButton(self.tr("&Stop"))
+        self.go.setDefault(True)
+        self.stop.clicked.connect(self._cancel)
+        self._leave = QDialogButtonBox(leave)
+        self._leave.rejected.connect(self.reject)
+        self._patience = QTimer(self)
+        self._patience.setSingleShot(True)
+        self._patience.timeout.connect(self._show_progress)
+        for widget in (self.progress, self.stop):
+            widget.hide()
+
+    @property
+    def running(self) -> bool:
+        """Whether a task runs."""
+        return self._task is not None
+
+    def foot(self, *buttons: QPushButton) -> QHBoxLayout:
+        """Return the lowest row: progress, ``buttons``, then those of every such dialog."""
+        row = QHBoxLayout()
+        row.addWidget(self.progress, 1)
+        row.addStretch(1)
+        for button in (*buttons, self.stop, self.go, self._leave):
+            row.addWidget(button)
+        return row
+
+    def say(self, text: str, mark: str = "none") -> None:
+        """Say something beside a mark of :func:`geofit.gui.panels.marks.icon`; no text, no mark."""
+        self.message.setText(text)
+        self.sign.setPixmap(icon(mark).pixmap(16) if text else QPixmap())
+
+    def begin(
+        self,
+        function: Callable[..., Any],
+        *args: Any,
+        on_done: Callable[[Any], object],
+        on_stopped: Callable[[], object],
+        apart: bool = True,
+    ) -> None:
+        """Call ``function(*args, progress=...)``, ``apart`` in a process of its own; a failure is said in words."""
+        start = run_apart if apart else run
+        self._focused = self.focusWidget()
+        self.progress.setRange(0, 0)
+        self._task = start(
+            self,
+            function,
+            *args,
+            title=self.windowTitle(),
+            on_done=on_done,
+            on_failed=self.tell_failure,
+            on_progress=self._progress,
+            on_cancelled=on_stopped,
+        )
+        self._task.ended.connect(self._rested)
+        self._patience.start(PATIENCE)
+        self.refresh()
+
+    def refresh(self) -> None:
+        """Enable what can be done."""
+        for field in self.fields:
+            field.setEnabled(not self.running)
+        self.go.setEnabled(not self.running)
+
+    def tell_failure(self, error: Exception) -> None:
+        """Say what went wrong, and what to do about it."""
+        if isinstance(error, GeofitError):
+            text = failure(error)
+        elif isinstance(error, OSError):
+            text = self.tr(
+                "{reason}. Check that the folder is there, can be written and has room, and that no other program has "
+                "the file open."
+            ).format(reason=failure(error))
+        else:
+            text = self.tr("This is a mistake in geofit, not in your data; please report it: {error}").format(
+                error=failure(error)
+            )
+        self.say(text, "failed")
+
+    def reject(self) -> None:
+        """Stop what runs, and close."""
+        self._cancel()
+        super().reject()
+
+    def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
+        """Stop what runs."""
+        self._cancel()
+        super().closeEvent(event)
+
+    def _progress(self, stage: str, fraction: float) -> None:
+        # Until something is done nobody knows how long it takes: the bar only moves.
+        if fraction > 0:
+            self.progress.setRange(0, 1000)
+            self.progress.setValue(round(1000 * fraction))
+            self.progress.setFormat(spoken(stage))
+
+    def _show_progress(self) -> None:
+        self.progress.setVisible(self.running)
+        self.stop.setVisible(self.running)
+
+    def _rested(self) -> None:
+        self._task = None
+        self._patience.stop()
+        self._show_progress()
+        self.refresh()
+        if self._focused is not None and isValid(self._focused) and self._focused.isEnabled():
+            self._focused.setFocus()
+        self._focused = None
+
+    def _cancel(self) -> None:
+        if self._task is not None:
+            self._task.cancel()

@@ -1,0 +1,104 @@
+"""Where the docks and the tool bar stand: out of the way until a site is open, then as they were left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from PySide6.QtCore import QByteArray, QObject, Qt
+from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabBar, QToolBar
+
+__all__ = ["Layout"]
+
+#: Of the layout that is remembered; one more when docks come or go.
+VERSION = 1
+_Area = Qt.DockWidgetArea
+_PLACES = (
+    (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
+    (_Area.RightDockWidgetArea, ("fit", "adjust"), True),
+    (
+        _Area.BottomDockWidgetArea,
+        ("residuals", "section", "histogram", "plan", "seams", "checks", "offdata", "log"),
+        True,
+    ),
+)
+
+
+class Layout(QObject):
+    """Arranges the docks of a window, hides them with its tool bars, and brings them back."""
+
+    def __init__(self, window: QMainWindow, docks: Mapping[str, QDockWidget]) -> None:
+        super().__init__(window)
+        self._window, self._docks = window, docks
+        self._kept, self.hidden = QByteArray(), False
+        window.setDockOptions(
+            QMainWindow.DockOption.AnimatedDocks
+            | QMainWindow.DockOption.AllowTabbedDocks
+            | QMainWindow.DockOption.AllowNestedDocks
+        )
+        window.setCorner(Qt.Corner.BottomLeftCorner, _Area.LeftDockWidgetArea)
+        window.setCorner(Qt.Corner.BottomRightCorner, _Area.RightDockWidgetArea)
+        for area, names, _ in _PLACES:
+            for name in names:
+                window.addDockWidget(area, docks[name])
+        self.hide()
+        self._kept = QByteArray()
+
+    @property
+    def state(self) -> QByteArray:
+        """What is remembered from one start to the next; also while everything is hidden."""
+        return self._kept if self.hidden else self._window.saveState(VERSION)
+
+    @state.setter
+    def state(self, state: QByteArray) -> None:
+        self._kept = state
+
+    def hide(self) -> None:
+        """Hide the docks and the tool bars; where they stand is kept."""
+        if self.hidden:
+            return
+        self._kept, self.hidden = self._window.saveState(VERSION), True
+        for part in self._parts():
+            part.hide()
+            part.toggleViewAction().setEnabled(False)
+
+    def show(self) -> None:
+        """Bring everything back as it was; where nothing is known, as at first."""
+        if not self.hidden:
+            return
+        self.hidden = False
+        for part in self._parts():
+            part.toggleViewAction().setEnabled(True)
+        if not self._window.restoreState(self._kept, VERSION):
+            self.arrange()
+
+    def arrange(self) -> None:
+        """Put everything where it is at first."""
+        window, docks = self._window, self._docks
+        for part in self._parts():
+            part.show()
+        for area, names, tabbed in _PLACES:
+            for name in names:
+                if tabbed and name != names[0]:
+                    window.tabifyDockWidget(docks[names[0]], docks[name])
+                else:
+                    window.addDockWidget(area, docks[name])
+            docks[names[0]].raise_()
+        width, height = window.width(), window.height()
+        window.resizeDocks([docks["tree"], docks["fit"]], [width // 6, width // 5], Qt.Orientation.Horizontal)
+        window.resizeDocks([docks["residuals"]], [height // 3], Qt.Orientation.Vertical)
+        window.resizeDocks([docks["tree"], docks["scene"]], [height // 2, height // 2], Qt.Orientation.Vertical)
+        self._hide_lost_tabs()
+
+    def _hide_lost_tabs(self) -> None:
+        """Hide tab bars that Qt makes while it puts docks into tabs, and forgets: another one has all their tabs."""
+        bars = self._window.findChildren(QTabBar, options=Qt.FindChildOption.FindDirectChildrenOnly)
+        held = [{bar.tabText(k) for k in range(bar.count())} for bar in bars]
+        for bar, tabs in zip(bars, held, strict=True):
+            if any(tabs < other for other in held):
+                bar.hide()
+
+    def _parts(self) -> list[QDockWidget | QToolBar]:
+        return [
+            *self._docks.values(),
+            *self._window.findChildren(QToolBar, options=Qt.FindChildOption.FindDirectChildrenOnly),
+        ]

@@ -1,0 +1,77 @@
+"""A data point that the surface shall be pulled to, all the way or by a share."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QVBoxLayout, QWidget
+
+from geofit.gui.words import spoken
+from geofit.surface import HorizonSurface
+
+__all__ = ["DataPointPage"]
+
+
+class DataPointPage(QWidget):
+    """The chosen point with its residual, and the share; ``edited()`` tells of every other share."""
+
+    edited = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._surface: HorizonSurface | None = None
+        self.point: int | None = None
+        self.about = QLabel()
+        self.about.setWordWrap(True)
+        self.share = QSpinBox()
+        self.share.setRange(1, 100)
+        self.share.setValue(100)
+        self.share.setSuffix(self.tr(" %"))
+        self.share.setAlignment(Qt.AlignmentFlag.AlignRight)
+        self.share.setAccessibleName(self.tr("Share of the distance"))
+        self.share.setToolTip(
+            self.tr("100 % lets the surface pass through the point, 50 % takes half of the distance away.")
+        )
+        what = QLabel(
+            self.tr(
+                "The control points around the point move as little as possible. Points that are met exactly stay "
+                "exact, and may leave no freedom."
+            )
+        )
+        what.setWordWrap(True)
+        label = QLabel(self.tr("Pull by"))
+        label.setBuddy(self.share)
+        row = QHBoxLayout()
+        row.addWidget(label)
+        row.addWidget(self.share, 1)
+        page = QVBoxLayout(self)
+        page.setContentsMargins(8, 8, 8, 8)
+        page.addWidget(self.about)
+        page.addLayout(row)
+        page.addWidget(what)
+        page.addStretch(1)
+        self.share.valueChanged.connect(lambda _: self.edited.emit())
+
+    def show_surface(self, surface: HorizonSurface) -> None:
+        """Show a surface; the point stays chosen where it has it."""
+        self._surface = surface
+        self.choose(self.point if self.point is not None and self.point < len(surface.points) else None)
+
+    def choose(self, index: int | None) -> None:
+        """Choose a data point; nothing is emitted."""
+        self.point = index
+        self.share.setEnabled(index is not None)
+        surface = self._surface
+        if surface is None or surface.accuracy is None:
+            return
+        if index is None:
+            self.about.setText(self.tr("Choose a point in the view or in the residual table."))
+            return
+        words = self.tr("{point}\nElevation {z:.3f} m\nResidual {d:+.3f} m").format(
+            point=spoken(surface.points.describe(index)),
+            z=surface.points.xyz[index, 2],
+            # Adding 0 turns -0.000 into +0.000.
+            d=round(float(surface.accuracy.residuals[index]), 3) + 0.0,
+        )
+        if len(surface.core) == len(surface.points) and surface.core[index]:
+            words += "\n" + self.tr("The surface meets this point already.")
+        self.about.setText(words)

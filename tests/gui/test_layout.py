@@ -1,0 +1,94 @@
+"""The start page stands alone; the docks come with a site, as they were left."""
+
+from __future__ import annotations
+
+import pytest
+from panel_samples import SITE, sample_site
+from PySide6.QtCore import QByteArray
+from PySide6.QtWidgets import QToolBar
+
+from geofit.site import Site
+
+
+def opened(app):
+    app.desktop.session.begin(sample_site(), SITE)
+    app.idle()
+
+
+def closed(app):
+    app.desktop.session.begin(Site("", {}), None)
+    app.idle()
+
+
+def shown(window):
+    """Names of what frames the middle of the window."""
+    bars = {bar.objectName() for bar in window.findChildren(QToolBar) if bar.parent() is window and bar.isVisible()}
+    return bars | {name for name, dock in window.panels.docks.items() if dock.isVisible()}
+
+
+def in_front(window):
+    return {name for name, dock in window.panels.docks.items() if not dock.visibleRegion().isEmpty()}
+
+
+def test_the_start_page_stands_alone(app):
+    assert app.window.panels.centre.currentWidget() is app.window.panels.start
+    assert shown(app.window) == set()
+    assert not app.window.menus.panels.isEnabled()
+    assert not app.window.actions_["reset_layout"].isEnabled()
+    assert not any(dock.toggleViewAction().isEnabled() for dock in app.window.panels.docks.values())
+
+
+def test_a_site_brings_every_dock_in_its_place(app):
+    opened(app)
+    assert shown(app.window) == {"tool bar", *app.window.panels.docks}
+    assert in_front(app.window) == {"tree", "scene", "fit", "residuals"}
+    assert app.window.menus.panels.isEnabled()
+    assert all(dock.toggleViewAction().isEnabled() for dock in app.window.panels.docks.values())
+
+
+def test_the_next_site_finds_the_docks_as_they_were_left(app):
+    opened(app)
+    app.window.panels.docks["scene"].close()
+    app.window.panels.reveal("plan")
+    app.idle()
+    left, front, width = shown(app.window), in_front(app.window), app.window.panels.docks["fit"].width()
+    closed(app)
+    assert shown(app.window) == set()
+    opened(app)
+    assert shown(app.window) == left
+    assert in_front(app.window) == front == {"tree", "fit", "plan"}
+    assert app.window.panels.docks["fit"].width() == width
+
+
+@pytest.mark.parametrize("left_on", ["the site", "the start page"])
+def test_the_next_start_finds_them_too(app, qtbot, left_on):
+    opened(app)
+    app.window.panels.docks["log"].close()
+    app.window.panels.reveal("checks")
+    app.idle()
+    if left_on == "the start page":
+        closed(app)
+    app.desktop.change_language("zh_CN")
+    app.idle()
+    if left_on == "the start page":
+        assert shown(app.window) == set()
+        opened(app)
+    assert "log" not in shown(app.window)
+    assert "checks" in in_front(app.window)
+    app.desktop.change_language("en")
+
+
+def test_a_layout_that_cannot_be_read_gives_the_first_one(app):
+    app.window.panels.layout.state = QByteArray(b"\x00\xff")
+    opened(app)
+    assert in_front(app.window) == {"tree", "scene", "fit", "residuals"}
+
+
+def test_panels_can_be_reset(app):
+    opened(app)
+    for dock in app.window.panels.docks.values():
+        dock.close()
+    app.window.menus.tools.hide()
+    app.trigger("reset_layout")
+    app.idle()
+    assert shown(app.window) == {"tool bar", *app.window.panels.docks}

@@ -1,0 +1,242 @@
+from __future__ import annotations
+
+import json
+import logging
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from faulted import ORIGIN, START, WAY, faulted_site, off, throw
+
+from geofit import FitSettings
+from geofit.gui.document.commands import ExcludeRow, PartAtFaults, SetSettings, SetSurface
+from geofit.gui.document.document import Document
+from geofit.gui.document.making import make
+from geofit.gui.document.ordering import comparable
+from geofit.gui.document.parting import measured, part_at_faults
+from geofit.gui.document.recipe import DocumentError, Row
+from geofit.gui.document.reporting import write_report_files
+from geofit.gui.document.saving import project_of, read_surfaces, state_of, write_project
+from geofit.io.project import open_project
+from geofit.report.result import HorizonResult
+from geofit.site import Orientations
+from geofit.stack.sitefit import fit_site
+
+BLOCKS = ["T2 (A)", "T2 (B)"]
+
+
+def quiet(stage, fraction):
+    return True
+
+
+def opened(site=None):
+    document = Document()
+    document.open(site or faulted_site(), Path("site.toml"))
+    return document
+
+
+def part(document):
+    given, left_out = document.given_for_parting("T2")
+    found = part_at_faults("T2", document.faults("T2"), left_out, given, document.given("T2"), progress=quiet)
+    for recipe, surface in found.faults.items():
+        document.put(recipe, surface)
+        SetSurface(recipe).redo(document)
+    return found
+
+
+def fit(document, names):
+    for name in names:
+        recipe = document.recipe(name)
+        document.put(recipe, make(recipe, document.given_for(recipe)))
+        SetSurface(recipe).redo(document)
+
+
+def rows(document):
+    """Rows of all points of the blocks that take part."""
+    return {Row.of(points, i) for points in map(document.points, BLOCKS) for i in range(len(points))}
+
+
+@pytest.fixture(scope="module")
+def parted():
+    """A document whose horizon was parted, and its blocks fitted."""
+    document = opened()
+    PartAtFaults("T2", dict(part(document).blocks)).redo(document)
+    fit(document, BLOCKS)
+    return document
+
+
+def test_blocks_stand_in_the_place_of_the_horizon(parted):
+    assert list(parted.horizons) == [*BLOCKS, "F1"]
+    whole = faulted_site().horizons["T2"]
+    sides = [off(*parted.points(name).xyz.T) > 0 for name in BLOCKS]
+    assert sum(len(side) for side in sides) == len(whole)
+    assert {bool(side.all() or (~side).all()) for side in sides} == {True}
+    assert sides[0][0] != sides[1][0]
+    assert list(parted.site_in_use().horizons) == [*BLOCKS, "F1"]
+
+
+def test_the_window_and_the_command_line_make_the_same_surfaces(parted):
+    given = fit_site(faulted_site(), ["T2"])
+    assert list(given.surfaces) == BLOCKS
+    for name in BLOCKS:
+        mine, theirs = parted.surface(name), given.surfaces[name]
+        np.testing.assert_array_equal(mine.outline, theirs.outline)
+        for one, other in zip(mine.patches, theirs.patches, strict=True):
+            np.testing.assert_array_equal(one.control, other.control)
+        assert [c.name for c in mine.accuracy.checks] == [c.name for c in theirs.accuracy.checks]
+
+
+def test_the_throw_is_that_of_the_truth(parted):
+    (cut,) = measured(parted.blocks("T2"), progress=quiet)
+    along = (cut.trace[:, :2] - ORIGIN - START) @ WAY
+    assert (cut.fault, cut.horizon) == ("F1", "T2")
+    assert cut.throw.mean() == pytest.approx(throw(along).mean(), abs=0.25)
+
+
+def test_a_block_is_as_old_as_its_fault_and_its_site(parted):
+    document = opened()
+    document.become(parted.state)
+    assert not document.stale("T2 (A)")
+    assert not document.unparted("T2 (A)")
+    other = SetSettings("F1", FitSettings(frame="best-plane", epsilon=0.2))
+    other.redo(document)
+    assert document.unparted("T2 (A)")
+    assert document.stale("T2 (A)")
+    other.undo(document)
+    assert not document.stale("T2 (B)")
+    site = faulted_site()
+    fewer = replace(site, horizons={**site.horizons, "T2": site.horizons["T2"][1:]})
+    document.open(fewer, None, parted.state)
+    assert document.unparted("T2 (B)")
+    assert document.missing() == (document.state.recipes["F1"],)
+
+
+def test_excluded_rows_stay_excluded_however_the_horizon_is_parted():
+    document = opened()
+    points = document.points("T2")
+    first, second = Row.of(points, 3), Row.of(points, 40)
+    ExcludeRow("T2", first).redo(document)
+    found = part(document)
+    PartAtFaults("T2", dict(found.blocks)).redo(document)
+    held = {
+        Row.of(document.site.horizons[name], i) for name in BLOCKS for i in range(len(document.site.horizons[name]))
+    }
+    assert first not in held
+    assert second in held
+    ExcludeRow("T2 (A)", second).redo(document)
+    again = part(document)
+    PartAtFaults("T2", dict(again.blocks)).redo(document)
+    used = rows(document)
+    assert {first, second}.isdisjoint(used)
+    assert len(used) == len(points) - 2
+
+
+def test_parting_is_one_step_and_names_no_other_horizon():
+    document = opened()
+    blocks = dict(part(document).blocks)
+    before = document.state
+    command = PartAtFaults("T2", blocks)
+    command.redo(document)
+    document.select("T2 (B)")
+    command.undo(document)
+    assert document.state == before
+    assert document.selection.horizon == "T2"
+    taken = {("F1" if name == "T2 (B)" else name): one for name, one in blocks.items()}
+    with pytest.raises(DocumentError, match="called 'F1', and so is a horizon"):
+        PartAtFaults("T2", taken).redo(document)
+
+
+def test_a_fault_beside_all_points_parts_nothing():
+    site = faulted_site()
+    far = site.horizons["F1"].with_(xyz=site.horizons["F1"].xyz + np.array([5000.0, 0, 0]))
+    document = opened(replace(site, horizons={**site.horizons, "F1": far}))
+    found = part(document)
+    assert not found.blocks
+    assert any("lie on one side of F1" in note for note in found.notes)
+
+
+def test_a_block_hears_of_the_dips_measured_on_its_side():
+    site = faulted_site()
+    place = site.horizons["T2"].xyz[:1]
+    dips = Orientations(place, np.zeros(1), np.array([80.0]), np.array(["T2"]), np.array(["d.csv"]), np.array([2]))
+    document = opened(replace(site, orientations=dips))
+    PartAtFaults("T2", dict(part(document).blocks)).redo(document)
+    fit(document, BLOCKS)
+    asked = {name: [c for c in document.surface(name).accuracy.checks if c.name == "dips"] for name in BLOCKS}
+    mine = next(name for name in BLOCKS if (document.points(name).xyz == place).all(axis=1).any())
+    assert [check.passed for check in asked.pop(mine)] == [False]
+    assert list(asked.values()) == [[]]
+
+
+def test_only_blocks_on_one_side_lie_above_each_other(parted):
+    parts = parted.state.parts
+    upper = {f"T1 ({letter})": replace(parts[f"T2 ({letter})"], horizon="T1") for letter in "AB"}
+    pairs = comparable(("W", *upper, *BLOCKS), {**parts, **upper})
+    assert pairs == (
+        ("W", "T1 (A)"), ("W", "T1 (B)"), ("W", "T2 (A)"), ("W", "T2 (B)"), ("T1 (A)", "T2 (A)"), ("T1 (B)", "T2 (B)"),
+    )  # fmt: skip
+
+
+def test_a_project_brings_the_blocks_back(parted, tmp_path):
+    surfaces = {parted.state.recipes[name]: parted.surface(name).with_(model=None) for name in parted.horizons}
+    path = tmp_path / "dam.geofit"
+    site_file = tmp_path / "site.toml"
+    write_project(project_of(parted.state, faulted_site(), site_file, path, None), path, surfaces)
+    project = open_project(path)
+    state = state_of(project, faulted_site())
+    assert state == replace(parted.state, name=state.name)
+    document = opened()
+    document.open(faulted_site(), site_file, state, path)
+    read = read_surfaces(project, tmp_path, document.site, progress=quiet)
+    assert set(read) == set(surfaces)
+    for recipe, surface in read.items():
+        document.put(recipe, surface)
+        assert surface.accuracy.sigma == pytest.approx(surfaces[recipe].accuracy.sigma, abs=1e-6)
+    assert not any(document.stale(name) for name in document.horizons)
+
+
+def test_fit_all_parts_fits_and_measures(app, caplog):
+    caplog.set_level(logging.INFO)
+    app.desktop.session.begin(faulted_site(), None)
+    app.window.fitting.fit_all()
+    app.idle()
+    document, stack = app.document, app.window.session.stack
+    assert list(document.surfaces()) == [*BLOCKS, "F1"]
+    assert all(surface.accuracy.passed for surface in document.surfaces().values())
+    assert any("F1 throws T2 down by" in record.getMessage() for record in caplog.records)
+    steps = [stack.text(k) for k in range(stack.count())]
+    assert steps == ["Fit F1", "Part T2 at F1", "Fit T2 (A)", "Fit T2 (B)"]
+    # By hand a block is changed as any horizon is.
+    document.select("T2 (B)")
+    before = document.surface("T2 (B)")
+    app.window.fitting.pull("T2 (B)", before.accuracy.worst[0], 1.0)
+    app.idle()
+    after = document.surface("T2 (B)")
+    assert after is not before
+    np.testing.assert_array_equal(after.outline, before.outline)
+    for _ in range(4):
+        stack.undo()
+    app.idle()
+    assert list(document.horizons) == ["T2", "F1"]
+    assert document.selection.horizon == "T2"
+    for _ in range(4):
+        stack.redo()
+    app.idle()
+    assert document.surface("T2 (B)") is after
+    # Another fault plane: the blocks are parted anew.
+    document.select("T2 (A)")
+    app.window.fitting.set_settings("F1", FitSettings(frame="best-plane", epsilon=0.2))
+    app.window.fitting.fit("T2 (A)")
+    app.idle()
+    assert not any(document.stale(name) for name in document.horizons)
+
+
+def test_the_report_of_the_window_tells_the_throw(parted, tmp_path):
+    site = parted.site_in_use()
+    results = [HorizonResult(surface, site) for surface in parted.surfaces().values()]
+    made = write_report_files(results, parted.blocks(), tmp_path, "en", ("json",), False, "2026-01-01", progress=quiet)
+    report = json.loads(made.files["json"].read_text(encoding="utf-8"))
+    (cut,) = report["cuts"]
+    assert cut["horizon"] == "T2"
+    assert cut["throw_mean"] == pytest.approx(6.0, abs=0.3)
