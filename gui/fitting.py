@@ -54,7 +54,6 @@ class Fitting(QObject):
         super().__init__(parent)
         self._session, self._activity = session, activity
         self._document = session.document
-        self._measuring: set[str] = set()
         for listener in (self._make_missing, self._measure_throw):
             self._document.result_changed.connect(listener)
 
@@ -116,15 +115,13 @@ class Fitting(QObject):
 
     def _measure_throw(self, name: str) -> None:
         """Measure how far faults displace the horizon of a block, as soon as all its blocks are at hand."""
-        whole = self._document.whole(name)
-        if name not in self._document.state.parts or whole in self._measuring:
+        if name not in self._document.state.parts:
             return
-        self._measuring.add(whole)
+        whole = self._document.whole(name)
         title = self.tr("Measure the throw of {name}").format(name=whole)
         self._activity.prepare(title, lambda: self._throw_work(whole), on_done=self._thrown, apart=True)
 
     def _throw_work(self, whole: str) -> Work:
-        self._measuring.discard(whole)
         document = self._document
         names = [name for name, part in document.state.parts.items() if part.horizon == whole]
         blocks = document.blocks(whole)

@@ -59,10 +59,6 @@ class Stage:
             return None
         return np.stack([np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)])
 
-    def translucent(self) -> bool:
-        """Whether something is seen through."""
-        return any(layer.opacity < 1 and item.shape is not None for layer, item in self.items())
-
     def dress(self, look: Look) -> None:
         """Build everything anew for another origin or background."""
         self.look = look
