@@ -21,7 +21,7 @@ from geofit.steps.skin import least_change
 from geofit.surface import HorizonSurface, Patch
 from geofit.words import Said, listed, said
 
-__all__ = ["adjust", "pull_to", "support", "weigh"]
+__all__ = ["acted_on", "adjust", "pull_to", "support", "weigh"]
 
 Floats = NDArray[np.float64]
 
@@ -60,7 +60,7 @@ def adjust(surface: HorizonSurface, patch: str, i: int, j: int, dz: float) -> Ho
     _finite(dz, "dz")
     part = _part(model, patch)
     index, share = _coefficient(model, part, i, j)
-    held = _acting(model, index)
+    held = _acting(model, index) & _exact(model)
     if held.any():
         raise ExactnessError(
             said(
@@ -172,7 +172,7 @@ def weigh(surface: HorizonSurface, patch: str, i: int, j: int, weight: float) ->
                 rows=TANGENT_ROWS,
             )
             raise FitError(text)
-    held = _acting(model, index)
+    held = _acting(model, index) & _exact(model)
     if held.any():
         raise ExactnessError(
             said(
@@ -205,12 +205,20 @@ def weigh(surface: HorizonSurface, patch: str, i: int, j: int, weight: float) ->
 def support(surface: HorizonSurface, patch: str, i: int, j: int) -> tuple[float, float, float, float]:
     """Return the rectangle (u0, u1, v0, v1) of the frame, metres, outside of which :func:`adjust` moves nothing."""
     model = _model(surface)
-    index, _ = _coefficient(model, _part(model, patch), i, j)
-    space, unit = model.net.space, model.net.unit
-    a, b = divmod(index, space.shape[1])
-    reach = space.degree + 1
-    u, v = space.knots_u * unit, space.knots_v * unit
-    return float(u[a]), float(u[a + reach]), float(v[b]), float(v[b + reach])
+    return _support(model, _coefficient(model, _part(model, patch), i, j)[0])
+
+
+def acted_on(surface: HorizonSurface, patch: str, i: int, j: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which points a control point acts on, (n,), and which of these are met exactly and so forbid its move.
+
+    Raises
+    ------
+    FitError
+        If there is no such control point, or the surface was read from a file.
+    """
+    model = _model(surface)
+    acting = _acting(model, _coefficient(model, _part(model, patch), i, j)[0])
+    return acting, acting & _exact(model)
 
 
 def _model(surface: HorizonSurface) -> Model:
@@ -268,14 +276,27 @@ def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
     return a * net.space.shape[1] + b, float(in_u[a] * in_v[b])
 
 
+def _support(model: Model, index: int) -> tuple[float, float, float, float]:
+    space, unit = model.net.space, model.net.unit
+    a, b = divmod(index, space.shape[1])
+    reach = space.degree + 1
+    u, v = space.knots_u * unit, space.knots_v * unit
+    return float(u[a]), float(u[a + reach]), float(v[b]), float(v[b + reach])
+
+
 def _acting(model: Model, index: int) -> NDArray[np.bool_]:
-    """Return which of the points that are met exactly a coefficient acts on, (n,)."""
-    given, net = model.problem, model.net
-    held = given.split.inside & given.kept
-    exact = np.flatnonzero(held)
-    column = net.space.matrix(given.chart.plane[exact] / net.unit)[:, [index]].toarray().ravel()
-    held[exact] = column != 0
-    return held
+    """Return which points a coefficient acts on, (n,)."""
+    plane, net = model.problem.chart.plane, model.net
+    u0, u1, v0, v1 = _support(model, index)
+    # Inside it acts; on its edge it does at the surface's own edge only.
+    acting = (plane[:, 0] >= u0) & (plane[:, 0] <= u1) & (plane[:, 1] >= v0) & (plane[:, 1] <= v1)
+    near = np.flatnonzero(acting)
+    acting[near] = net.space.matrix(plane[near] / net.unit)[:, [index]].toarray().ravel() != 0
+    return acting
+
+
+def _exact(model: Model) -> NDArray[np.bool_]:
+    return model.problem.split.inside & model.problem.kept
 
 
 def _weighed(model: Model) -> list[tuple[Part, Floats]]:

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from truth import paper_arrangement
 
-from geofit import FitSettings, fit_horizon
+from geofit import FitSettings, PointSet, fit_horizon
 from geofit.errors import ExactnessError, FitError
-from geofit.handwork import support
+from geofit.handwork import acted_on, support
 from geofit.surface import HorizonSurface
 
 
@@ -68,6 +68,30 @@ def test_a_control_point_moves_by_dz_and_nothing_outside_its_support(name):
     assert np.nanmax(np.abs(after - before)[outside]) == 0.0
     assert np.nanmax(np.abs(after - before)[~outside]) > 0.5
     assert_seams_hold(moved)
+
+
+@pytest.mark.parametrize("at", [(0, 0), (0, 4), (5, 3)])
+def test_a_control_point_acts_on_the_points_whose_elevation_it_changes_and_no_other(at):
+    # Without a study area the outermost points stand on the surface's own edge.
+    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(0, 90, 7), np.linspace(0, 60, 5)))
+    points = PointSet(np.column_stack([x, y, np.sin(x / 20) + 0.02 * y]))
+    surface = fit_horizon(points, FitSettings(core="none"))
+    (patch,) = surface.patches
+    acting, held = acted_on(surface, patch.name, *at)
+    moved = surface.adjust(patch.name, *at, 1.0)
+    assert np.array_equal(acting, np.abs(moved.elevation(x, y) - surface.elevation(x, y)) > 1e-12)
+    assert acting.any()
+    assert not acting.all()
+    assert not held.any()
+
+
+def test_exact_points_that_a_control_point_acts_on_hold_it():
+    surface = fitted()
+    acting, held = acted_on(surface, "core", 3, 3)
+    assert held.any()
+    assert np.array_equal(held, acting & surface.core)
+    with pytest.raises(ExactnessError, match=rf"\({held.sum()}: "):
+        surface.adjust("core", 3, 3, 1.0)
 
 
 def test_a_control_point_beside_a_seam_moves_both_patches_and_the_seam_stays_tangent():

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 from geofit.errors import GeofitError
 from geofit.gui.panels.weight import WeightBox
 from geofit.gui.words import spoken
-from geofit.handwork import support
+from geofit.handwork import acted_on, support
 from geofit.surface import HorizonSurface, Patch
 
 __all__ = ["ControlPointPage"]
@@ -188,14 +188,9 @@ class ControlPointPage(QWidget):
 
     def _reach(self) -> tuple[str, bool]:
         """Return what a move would change, and whether exact points forbid it."""
-        surface = self._surface
-        assert surface is not None
-        assert surface.model is not None
-        u0, u1, v0, v1 = support(surface, *self.target)
-        plane = surface.model.problem.chart.plane
-        # Where the rectangle ends, the control point acts no more.
-        within = (plane[:, 0] > u0) & (plane[:, 0] < u1) & (plane[:, 1] > v0) & (plane[:, 1] < v1)
-        exact = within & surface.core if len(surface.core) == len(within) else np.zeros(len(within), bool)
+        assert self._surface is not None
+        u0, u1, v0, v1 = support(self._surface, *self.target)
+        within, exact = acted_on(self._surface, *self.target)
         words = self.tr(
             "Moves the surface in a field of {width:.0f} m × {height:.0f} m around it, and nothing outside. "
             "Data points there: {n}."
