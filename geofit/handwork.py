@@ -364,6 +364,4 @@ def _changed(surface: HorizonSurface, model: Model, note: Said) -> HorizonSurfac
     assert before is not None
     assert after is not None
     figures = {**surface.fit, **result.fit, "by_hand": surface.fit.get("by_hand", 0) + 1}
-    # A block between faults ends at them, not where its model ends.
-    accuracy = replace(after, notes=(*before.notes, note))
-    return result.with_(fit=figures, accuracy=accuracy, outline=surface.outline)
+    return result.with_(fit=figures, accuracy=replace(after, notes=(*before.notes, note)))

@@ -19,7 +19,7 @@ from geofit.steps.net import Net, approximate_all
 from geofit.steps.partition import Split
 from geofit.surface import HorizonSurface, Partition, Patch
 
-__all__ = ["Model", "Problem"]
+__all__ = ["Model", "Problem", "trimmed"]
 
 Floats = NDArray[np.float64]
 
@@ -28,7 +28,8 @@ Floats = NDArray[np.float64]
 class Problem:
     """What stays the same while a horizon's control points are fitted and adjusted.
 
-    ``kept`` (n,) marks the points that conflicts left; ``boundary`` (k, 2) is the study area in map coordinates.
+    ``kept`` (n,) marks the points that conflicts left; ``boundary`` (k, 2) is the study area in map coordinates;
+    ``outline`` (k, 2) is where the surface ends if that is not the study area: at faults.
     """
 
     points: PointSet
@@ -39,6 +40,7 @@ class Problem:
     kept: NDArray[np.bool_]
     conflicts: tuple[Conflict, ...]
     name: str
+    outline: Floats | None = None
 
     def fit(self, honoured: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
         """Return the control net that meets the core's points and approximates the other honoured ones."""
@@ -89,7 +91,7 @@ class Model:
             points=given.points,
             settings=given.settings,
             name=given.name,
-            outline=given.boundary if given.chart.frame.kind == "map" else None,
+            outline=given.boundary if given.outline is None and given.chart.frame.kind == "map" else given.outline,
             partition=given.partition(),
             core=given.split.inside & given.kept,
             model=self,
@@ -105,3 +107,15 @@ class Model:
         }
         surface = surface.with_(fit=figures)
         return surface.with_(accuracy=check(surface, given.conflicts, (*given.chart.notes, *net.notes)))
+
+
+def trimmed(surface: HorizonSurface, outline: Floats) -> HorizonSurface:
+    """Return a fit that ends at an outline (k, 2), map coordinates, checked anew as far as it reaches.
+
+    What is made from it later, by hand or by a repair, ends there too.
+    """
+    assert surface.model is not None
+    assert surface.accuracy is not None
+    model = replace(surface.model, problem=replace(surface.model.problem, outline=outline))
+    shorter = surface.with_(outline=outline, model=model)
+    return shorter.with_(accuracy=check(shorter, surface.accuracy.conflicts, surface.accuracy.notes))

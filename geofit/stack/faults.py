@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.errors import FitError, InputError
+from geofit.model import trimmed
 from geofit.pipeline import fit_horizon
 from geofit.points import PointSet
 from geofit.progress import Progress, tell
@@ -245,7 +246,7 @@ def fit_block(
     relief = Relief(surface)
     held = _largest(shapely.intersection(area, relief.area()))
     outline = _cut(held, relief, faults, sides, name)
-    return surface.with_(outline=shapely.get_coordinates(outline.exterior)[:-1])
+    return trimmed(surface, shapely.get_coordinates(outline.exterior)[:-1])
 
 
 def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, title: str) -> Polygon:

@@ -173,7 +173,7 @@ class _Layer:
         assert new.accuracy is not None
         note = said("moved by up to {most:.3f} m to keep the order of strata", most=float(np.abs(self.change).max()))
         accuracy = replace(new.accuracy, notes=(*new.accuracy.notes, note))
-        return new.with_(accuracy=accuracy, fit={**old.fit, **new.fit}, outline=old.outline)
+        return new.with_(accuracy=accuracy, fit={**old.fit, **new.fit})
 
 
 class _Stack:

@@ -19,6 +19,7 @@ from faulted import (
     throw,
     truth,
 )  # fmt: skip
+from shapely import Polygon
 from truth import EASTING, NORTHING, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
@@ -96,6 +97,16 @@ def test_the_blocks_end_at_the_fault_and_make_valid_shells(blocks):
         np.testing.assert_allclose(off(*inner.T, one.elevation(*inner.T)), 0, atol=0.05)
         shape = shell(one)
         assert not shape.IsNull()
+
+
+def test_a_block_is_checked_as_far_as_it_reaches(blocks):
+    for block in blocks.blocks:
+        area = next(check for check in block.accuracy.checks if check.name == "area")
+        assert area.passed
+        size = Polygon(block.outline).area
+        assert f"{size:.0f} of the study area's" in area.text
+        # Of the whole area it is the part on one side.
+        assert size < 0.7 * Polygon(BOUNDARY).area
 
 
 def test_a_block_that_is_changed_by_hand_still_ends_at_its_fault(blocks):
