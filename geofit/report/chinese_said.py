@@ -91,6 +91,7 @@ _FIT = {
     "{down}": "{fault} 使 {horizon} 落差 {low:.2f} 至 {high:.2f} m，沿 {length:.0f} m 平均 {mean:.2f} m：{up} 高于 {down}",
     "all points of {horizon} lie on one side of {fault}": "{horizon} 的全部点位于 {fault} 一侧",
     "{block} rests on {count} points only": "{block} 仅有 {count} 个点",
+    "excluded, and in no block: {points}": "已剔除且不属于任何断块的点：{points}",
     "the fault {fault} cannot be laid: {reason}": "断层 {fault} 不能成面：{reason}",
     "{names}: cut by a fault, so not pushed apart from other horizons": "{names}：被断层切割，未与其他层面分开",
     "no repair: the order of the site names no two fitted horizons without a fault": "未作修正：场地次序中没有两个已拟合且未被断层切割的"

@@ -235,7 +235,7 @@ class PartAtFaults(Command):
     def on(self, state: State) -> State:  # noqa: D102
         former = [name for name, part in state.parts.items() if part.horizon == self.horizon] or [self.horizon]
         _known(state, former[0])
-        taken = [name for name in self.blocks if name in state.settings and name not in former]
+        taken = [name for name in self.blocks if name in state.order and name not in former]
         if taken:
             raise DocumentError(
                 said(
@@ -247,16 +247,15 @@ class PartAtFaults(Command):
         at = min(state.order.index(name) for name in former)
         order = [name for name in state.order if name not in former]
         order[at:at] = self.blocks
-        # A row that was excluded from a block may lie in another one now.
-        rows = frozenset[Row]().union(*(state.excluded.get(name, ()) for name in former if name != self.horizon))
+        # A row that was excluded from a block may lie in another one now; a block passes over those it does not have.
+        rows = frozenset[Row]().union(*(state.excluded.get(name, ()) for name in former))
         model = state.settings[former[0]]
         return replace(
             state,
             order=tuple(order),
-            settings=_without(state.settings, former, self.horizon)
-            | {name: state.settings.get(name, model) for name in self.blocks},
-            excluded=_without(state.excluded, former, self.horizon) | {name: rows for name in self.blocks if rows},
-            recipes=_without(state.recipes, (*former, self.horizon)),
+            settings={**state.settings, **{name: state.settings.get(name, model) for name in self.blocks}},
+            excluded=_without(state.excluded, former) | {name: rows for name in self.blocks if rows},
+            recipes=_without(state.recipes, former),
             parts=_without(state.parts, former) | self.blocks,
         )
 
@@ -435,8 +434,8 @@ def _known(state: State, horizon: str) -> None:
         raise DocumentError(said("The site has no horizon '{name}'. It has {names}.", name=horizon, names=names))
 
 
-def _without(values: Mapping[str, Any], names: Collection[str], kept: str = "") -> dict[str, Any]:
-    return {name: value for name, value in values.items() if name not in names or name == kept}
+def _without(values: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:
+    return {name: value for name, value in values.items() if name not in names}
 
 
 def _plain(value: Any) -> Any:

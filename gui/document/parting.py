@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.gui.document.making import Given, fault_surfaces
 from geofit.gui.document.recipe import Part, Recipe, runs
@@ -14,6 +16,10 @@ from geofit.site import Site
 from geofit.stack.sitefit import SiteFit
 from geofit.stack.throw import FaultCut
 from geofit.surface import HorizonSurface
+from geofit.words import listed, said
+
+if TYPE_CHECKING:
+    from geofit.stack.faults import Parting
 
 __all__ = ["Blocks", "Parted", "measured", "part_at_faults", "parted_site", "same_side", "site_fit"]
 
@@ -54,7 +60,9 @@ def parted_site(site: Site, parts: Mapping[str, Part]) -> Site:
 def part_at_faults(
     horizon: str, faults: tuple[Recipe, ...], left_out: Sequence[int], given: Given, digest: str, *, progress: Progress
 ) -> Parted:
-    """Part a horizon at its faults; points ``left_out`` belong to no block. No blocks: no fault parts it.
+    """Part a horizon at its faults. No blocks: no fault parts it.
+
+    Points ``left_out`` make no block; they belong to the one that lies on their side, if there is one.
 
     Raises
     ------
@@ -69,6 +77,13 @@ def part_at_faults(
     area = area_of(points, given.site.boundary)
     found = part(points[kept], list(surfaces.values()), area, horizon)
     number = {fault.name: k for k, fault in enumerate(found.faults)}
+    out = np.asarray(left_out, int)
+    block = np.full(len(points), -1)
+    block[kept], block[out] = found.block, _block_of(points.xyz[out], found)
+    notes = list(found.notes)
+    homeless = [points.describe(int(i)) for i in out if block[i] < 0]
+    if homeless:
+        notes.append(said("excluded, and in no block: {points}", points=listed(homeless)))
     corners = tuple((float(x), float(y)) for x, y in list(area.exterior.coords)[:-1])
     blocks = {
         name: Part(
@@ -76,12 +91,19 @@ def part_at_faults(
             digest,
             faults,
             tuple(sides[number[f.horizon]] if f.horizon in number else -1 for f in faults),
-            runs(kept[found.block == k]),
+            runs(np.flatnonzero(block == k)),
             corners,
         )
         for k, (name, sides) in enumerate(zip(found.names, found.sides, strict=True))
     }
-    return Parted(horizon, blocks if len(blocks) > 1 else {}, surfaces, found.notes)
+    return Parted(horizon, blocks if len(blocks) > 1 else {}, surfaces, tuple(notes))
+
+
+def _block_of(places: NDArray[np.float64], parted: Parting) -> NDArray[np.int64]:
+    """Return the number of the block on whose side places (n, 3) lie, -1 where there is none."""
+    sides = np.array([fault.side(places) for fault in parted.faults]).reshape(len(parted.faults), len(places)).T
+    number = {side: k for k, side in enumerate(parted.sides)}
+    return np.array([number.get(tuple(row), -1) for row in sides.tolist()], int)
 
 
 def same_side(parts: Mapping[str, Part], one: str, other: str) -> bool:

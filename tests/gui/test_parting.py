@@ -10,7 +10,7 @@ import pytest
 from faulted import ORIGIN, START, WAY, faulted_site, off, throw
 
 from geofit import FitSettings
-from geofit.gui.document.commands import ExcludeRow, PartAtFaults, SetSettings, SetSurface
+from geofit.gui.document.commands import ExcludeRow, IncludeRow, PartAtFaults, SetSettings, SetSurface
 from geofit.gui.document.document import Document
 from geofit.gui.document.making import make
 from geofit.gui.document.ordering import comparable
@@ -52,9 +52,13 @@ def fit(document, names):
         SetSurface(recipe).redo(document)
 
 
+def rows_of(points):
+    return {Row.of(points, i) for i in range(len(points))}
+
+
 def rows(document):
     """Rows of all points of the blocks that take part."""
-    return {Row.of(points, i) for points in map(document.points, BLOCKS) for i in range(len(points))}
+    return rows_of(document.points(BLOCKS[0])) | rows_of(document.points(BLOCKS[1]))
 
 
 @pytest.fixture(scope="module")
@@ -112,24 +116,42 @@ def test_a_block_is_as_old_as_its_fault_and_its_site(parted):
     assert document.missing() == (document.state.recipes["F1"],)
 
 
-def test_excluded_rows_stay_excluded_however_the_horizon_is_parted():
+def test_excluded_rows_stay_excluded_however_the_horizon_is_parted_and_can_be_included_again():
     document = opened()
     points = document.points("T2")
     first, second = Row.of(points, 3), Row.of(points, 40)
     ExcludeRow("T2", first).redo(document)
-    found = part(document)
-    PartAtFaults("T2", dict(found.blocks)).redo(document)
-    held = {
-        Row.of(document.site.horizons[name], i) for name in BLOCKS for i in range(len(document.site.horizons[name]))
-    }
-    assert first not in held
-    assert second in held
+    PartAtFaults("T2", dict(part(document).blocks)).redo(document)
+    assert rows(document) == rows_of(points) - {first}
+    home = next(name for name in BLOCKS if first.find(document.site.horizons[name]) is not None)
     ExcludeRow("T2 (A)", second).redo(document)
-    again = part(document)
-    PartAtFaults("T2", dict(again.blocks)).redo(document)
-    used = rows(document)
-    assert {first, second}.isdisjoint(used)
-    assert len(used) == len(points) - 2
+    PartAtFaults("T2", dict(part(document).blocks)).redo(document)
+    assert rows(document) == rows_of(points) - {first, second}
+    IncludeRow(home, first).redo(document)
+    assert rows(document) == rows_of(points) - {second}
+
+
+def test_excluded_rows_that_lie_in_no_block_are_told():
+    site = faulted_site()
+    east = site.horizons["F1"].with_(xyz=site.horizons["F1"].xyz + np.array([300.0, 0, 0]))
+    document = opened(
+        replace(
+            site,
+            horizons={**site.horizons, "F2": east},
+            settings={**site.settings, "F2": FitSettings(frame="best-plane")},
+            faults={"F1": ("T2",), "F2": ("T2",)},
+        )
+    )
+    points = document.points("T2")
+    between = np.flatnonzero((off(*points.xyz.T) < 0) & (off(*(points.xyz - (300.0, 0, 0)).T) > 0))
+    for index in between:
+        ExcludeRow("T2", Row.of(points, int(index))).redo(document)
+    found = part(document)
+    assert len(found.blocks) == 2
+    (note,) = (note for note in found.notes if "in no block" in note)
+    assert note.count("holes.csv row") == len(between) > 10
+    PartAtFaults("T2", dict(found.blocks)).redo(document)
+    assert rows(document) == rows_of(points) - {Row.of(points, int(index)) for index in between}
 
 
 def test_parting_is_one_step_and_names_no_other_horizon():
