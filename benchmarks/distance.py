@@ -10,9 +10,9 @@ import time
 
 import numpy as np
 
-from geofit.geometry.distance import project
+from geofit.geometry.projection import project
 from geofit.splines import bspline
-from geofit.surface import Patch
+from geofit.splines.patch import Patch
 
 
 def horizon(rows: int = 100, columns: int = 45) -> Patch:
@@ -39,7 +39,7 @@ def occ_distances(patch: Patch, xyz: np.ndarray) -> np.ndarray:
     from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
     from OCP.gp import gp_Pnt
 
-    from geofit.occ import to_geom
+    from geofit.cad.faces import to_geom
 
     projector = GeomAPI_ProjectPointOnSurf()
     projector.Init(to_geom(patch), *patch.domain)

@@ -17,7 +17,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from geofit import FitSettings, HorizonSurface, PointSet, fit_horizon
-from geofit.check import sigma
+from geofit.checks.check import sigma
 from geofit.checks.storage import equal_accuracy
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))

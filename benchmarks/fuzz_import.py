@@ -19,8 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.errors import GeofitError
-from geofit.importing import import_files
+from geofit.data.errors import GeofitError
+from geofit.data.site import Ground, Section
 from geofit.io import read_boreholes, read_points
 from geofit.io.adits import load_adit_contacts, load_adits
 from geofit.io.grid import load_grid
@@ -30,7 +30,7 @@ from geofit.io.sections import Drawing, load_section, load_sections
 from geofit.io.source import Source
 from geofit.io.traces import load_traces
 from geofit.io.tsurf import read_tsurf
-from geofit.site import Ground, Section
+from geofit.project.importing import import_files
 
 LIMIT = 20  # seconds
 KINDS = ("flip", "cut line", "cut off", "swap cells", "swap columns", "mix encodings", "repeat", "insert")

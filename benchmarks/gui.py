@@ -22,8 +22,8 @@ from statistics import median
 from PySide6.QtCore import QCoreApplication, QEvent, QEventLoop, QTimer
 
 from geofit.gui.desktop import Desktop
-from geofit.gui.document.making import get_ready
 from geofit.gui.worker import warm
+from geofit.project.building import get_ready
 from geofit.sample import write_site
 
 HORIZON = "T2-T1"

@@ -21,11 +21,11 @@ from realdata.sets import SETS, RealSet, data_folder
 from realdata.why import Trial, try_out, worse
 
 from geofit import FitSettings, GeofitError, fit_horizon
-from geofit.accuracy import Check
-from geofit.console import print_table
-from geofit.deliver import deliver
-from geofit.files import replacing
+from geofit.cli.console import print_table
+from geofit.data.accuracy import Check
+from geofit.data.files import replacing
 from geofit.prediction.examine import examine
+from geofit.project.run import deliver
 from geofit.report.result import HorizonResult
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -16,9 +16,9 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.importing import Import, import_files
 from geofit.io import read_points
 from geofit.io.mapping import ColumnMapping
+from geofit.project.importing import Import, import_files
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "real_import.md"

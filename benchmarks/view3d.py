@@ -18,10 +18,11 @@ import numpy as np
 from PySide6.QtCore import QEventLoop
 from PySide6.QtWidgets import QApplication
 
+from geofit.data.points import PointSet
+from geofit.data.site import Site
 from geofit.gui.view3d.view import SceneView
-from geofit.points import PointSet
-from geofit.site import Site
-from geofit.surface import HorizonSurface, Patch
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 ORIGIN = np.array([501_000.0, 3_100_000.0, 1_500.0])
 HALF, CONTROL = 1_000.0, 40

@@ -12,22 +12,22 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from geofit.errors import GeofitError
-from geofit.points import PointSet
-from geofit.settings import FitSettings
-from geofit.site import Site
+from geofit.data.errors import GeofitError
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.data.site import Site
 
 if TYPE_CHECKING:
     from geofit import io
-    from geofit.pipeline import fit_horizon
-    from geofit.surface import HorizonSurface
+    from geofit.fitting.pipeline import fit_horizon
+    from geofit.surfaces.surface import HorizonSurface
 
 __version__ = "0.1.0"
 
 __all__ = ["FitSettings", "GeofitError", "HorizonSurface", "PointSet", "Site", "fit_horizon", "io"]
 
 # scipy and OpenCASCADE are imported when they are first needed.
-_LAZY = {"fit_horizon": "geofit.pipeline", "HorizonSurface": "geofit.surface", "io": "geofit.io"}
+_LAZY = {"fit_horizon": "geofit.fitting.pipeline", "HorizonSurface": "geofit.surfaces.surface", "io": "geofit.io"}
 
 
 def __getattr__(name: str) -> Any:

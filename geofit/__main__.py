@@ -1,5 +1,5 @@
 """``python -m geofit`` is the command ``geofit``."""
 
-from geofit.cli import main
+from geofit.cli.main import main
 
 main()

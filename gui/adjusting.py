@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject
 
-from geofit.accuracy import Accuracy
-from geofit.gui.document.document import Document
-from geofit.gui.document.making import edited
-from geofit.gui.document.recipe import HandEdit, Move, Pull, Weigh
+from geofit.data.accuracy import Accuracy
+from geofit.data.progress import Progress
 from geofit.gui.fitting import Fitting
 from geofit.gui.panels.adjust import AdjustPanel
 from geofit.gui.words import spoken
 from geofit.gui.worker import Task, run
-from geofit.progress import Progress
-from geofit.surface import HorizonSurface
+from geofit.project.building import edited
+from geofit.project.document import Document
+from geofit.project.provenance import HandEdit, Move, Pull, Weigh
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Adjusting"]
 

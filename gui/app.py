@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from geofit import __version__
-from geofit.errors import GeofitError
+from geofit.data.errors import GeofitError
 from geofit.gui.ready import require_display, require_packages
 
 __all__ = ["main", "start"]

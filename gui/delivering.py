@@ -10,18 +10,18 @@ from PySide6.QtCore import QObject, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QWidget
 
-from geofit.errors import GeofitError
-from geofit.exporting import FORMATS, Request
-from geofit.files import file_stems
+from geofit.data.errors import GeofitError
+from geofit.data.files import file_stems
 from geofit.gui.activity import Activity
-from geofit.gui.document.document import Document
-from geofit.gui.document.exporting import export_surfaces
-from geofit.gui.document.step_files import StepFile
 from geofit.gui.preferences import Preferences
 from geofit.gui.showing import Showing
 from geofit.gui.workspace import Workspace
+from geofit.project.document import Document
+from geofit.project.export import FORMATS, Request
+from geofit.project.export_task import export_surfaces
+from geofit.project.step_files import StepFile
 from geofit.report.result import HorizonResult
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Delivering"]
 

@@ -14,7 +14,6 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from geofit import __version__
-from geofit.gui.document.making import get_ready
 from geofit.gui.icons import application_icon
 from geofit.gui.language import apply_language
 from geofit.gui.main_window import MainWindow
@@ -24,6 +23,7 @@ from geofit.gui.session import Session
 from geofit.gui.theme import apply_theme, missing_chinese, set_font
 from geofit.gui.view3d.opengl import require_opengl
 from geofit.gui.worker import finish_all, warm
+from geofit.project.building import get_ready
 
 __all__ = ["Desktop"]
 

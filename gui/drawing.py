@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Signal
 
+from geofit.data.prediction import Uncertainty
 from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.worker import run_apart
-from geofit.offdata import Uncertainty
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Drawing"]
 

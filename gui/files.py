@@ -9,17 +9,17 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
 
+from geofit.data.progress import Progress, tell
+from geofit.data.site import Site
 from geofit.gui.activity import Activity
 from geofit.gui.dialogs.recovery import RecoveryDialog
-from geofit.gui.document.journal import Unfinished, unfinished
-from geofit.gui.document.recipe import Recipe
-from geofit.gui.document.saving import Opened, Written, read_project, read_surfaces, save_state
 from geofit.gui.fitting import Fitting
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
-from geofit.progress import Progress, tell
-from geofit.site import Site
-from geofit.surface import HorizonSurface
+from geofit.project.journal import Unfinished, unfinished
+from geofit.project.provenance import Recipe
+from geofit.project.saving import Opened, Written, read_project, read_surfaces, save_state
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Files"]
 

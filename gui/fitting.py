@@ -8,9 +8,15 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from geofit.accuracy import Accuracy
+from geofit.data.accuracy import Accuracy
+from geofit.data.messages import said
+from geofit.data.prediction import OffData
+from geofit.data.settings import FitSettings
 from geofit.gui.activity import Activity, Work
-from geofit.gui.document.commands import (
+from geofit.gui.session import Session
+from geofit.gui.words import spoken
+from geofit.project.building import changed, examined, made
+from geofit.project.commands import (
     AdjustControlPoint,
     ChangeWeight,
     Command,
@@ -22,16 +28,10 @@ from geofit.gui.document.commands import (
     SetSettings,
     SetSurface,
 )
-from geofit.gui.document.making import changed, examined, made
-from geofit.gui.document.parting import Parted, measured, part_at_faults
-from geofit.gui.document.recipe import DocumentError, Recipe, Row
-from geofit.gui.session import Session
-from geofit.gui.words import spoken
-from geofit.offdata import OffData
-from geofit.settings import FitSettings
-from geofit.stack.throw import FaultCut
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.project.fault_blocks import Parted, measured, part_at_faults
+from geofit.project.provenance import DocumentError, Recipe, Row
+from geofit.site.throw import FaultCut
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Fitting"]
 

@@ -10,12 +10,12 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QDialog, QMenuBar, QMessageBox, QWidget
 
 from geofit import __version__
+from geofit.data.site import Site
 from geofit.gui.dialogs.issues import IssuesDialog
 from geofit.gui.dialogs.preferences import PreferencesDialog
 from geofit.gui.dialogs.shortcuts import ShortcutsDialog
 from geofit.gui.dialogs.system_report import SystemReport
 from geofit.gui.preferences import Preferences
-from geofit.site import Site
 
 __all__ = ["Help"]
 

@@ -14,8 +14,6 @@ from geofit.gui.activity_bar import ActivityBar
 from geofit.gui.adjusting import Adjusting
 from geofit.gui.delivering import Delivering
 from geofit.gui.dialogs.error import ErrorDialog
-from geofit.gui.document.commands import RenameSite
-from geofit.gui.document.recipe import Row
 from geofit.gui.files import Files
 from geofit.gui.fitting import Fitting
 from geofit.gui.help import Help
@@ -29,6 +27,8 @@ from geofit.gui.showing import Showing
 from geofit.gui.theme import apply_theme, is_dark
 from geofit.gui.worker import finish_all
 from geofit.gui.workspace import Workspace
+from geofit.project.commands import RenameSite
+from geofit.project.provenance import Row
 
 __all__ = ["MainWindow"]
 

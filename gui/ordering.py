@@ -8,19 +8,19 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QDialog, QInputDialog, QWidget
 
+from geofit.data.site import Site
 from geofit.gui.activity import Activity
 from geofit.gui.dialogs.order import OrderDialog
-from geofit.gui.document.commands import PushApart, SetOrder
-from geofit.gui.document.document import Document
-from geofit.gui.document.ordering import all_orders, comparable, over_map, pushed_apart
-from geofit.gui.document.recipe import DocumentError
 from geofit.gui.fitting import Fitting
 from geofit.gui.showing import Showing
 from geofit.gui.words import spoken
 from geofit.gui.workspace import Workspace
-from geofit.site import Site
-from geofit.stack.repair import Repair
-from geofit.surface import HorizonSurface
+from geofit.project.commands import PushApart, SetOrder
+from geofit.project.document import Document
+from geofit.project.ordering import all_orders, comparable, over_map, pushed_apart
+from geofit.project.provenance import DocumentError
+from geofit.site.separate import Repair
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Ordering"]
 

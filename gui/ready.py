@@ -7,7 +7,7 @@ import importlib.util
 import os
 import sys
 
-from geofit.errors import MissingDependencyError
+from geofit.data.errors import MissingDependencyError
 
 __all__ = ["INSTALL", "require_display", "require_packages"]
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, Signal
 
-from geofit.gui.document.document import Document, Selection
-from geofit.gui.document.recipe import Row
+from geofit.data.points import PointSet
 from geofit.gui.showing import Showing
 from geofit.gui.words import spoken
 from geofit.gui.workspace import Workspace
-from geofit.points import PointSet
+from geofit.project.document import Document, Selection
+from geofit.project.provenance import Row
 
 __all__ = ["Selecting"]
 

@@ -1,4 +1,4 @@
-"""What the windows' own model and log say (:func:`geofit.words.said`, and lines for logging), for the translators."""
+"""What the windows' own model and log say (``said``, and lines for logging), for the translators."""
 
 from __future__ import annotations
 

@@ -8,12 +8,12 @@ from pathlib import Path
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
-from geofit.gui.document.commands import Command
-from geofit.gui.document.document import Document
-from geofit.gui.document.journal import Journal, Unfinished
-from geofit.gui.document.state import State
+from geofit.data.site import Site
 from geofit.gui.words import spoken
-from geofit.site import Site
+from geofit.project.commands import Command
+from geofit.project.document import Document
+from geofit.project.journal import Journal, Unfinished
+from geofit.project.state import State
 
 __all__ = ["Session"]
 

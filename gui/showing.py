@@ -8,15 +8,15 @@ from typing import cast
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from geofit.accuracy import ReadBack
-from geofit.gui.document.document import Document
+from geofit.data.accuracy import ReadBack
+from geofit.data.settings import FitSettings
 from geofit.gui.drawing import Drawing
 from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.workspace import Workspace
-from geofit.settings import FitSettings
-from geofit.stack.order import Order
-from geofit.stack.throw import FaultCut
-from geofit.surface import HorizonSurface
+from geofit.project.document import Document
+from geofit.site.order import Order
+from geofit.site.throw import FaultCut
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Showing"]
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 from PySide6.QtCore import QCoreApplication
 
-from geofit.errors import GeofitError
+from geofit.data.errors import GeofitError
+from geofit.data.messages import Verbatim, said
 from geofit.gui.sentences import SENTENCES
 from geofit.report.language import EN, ZH, Language, tell
-from geofit.words import Verbatim, said
 
 __all__ = ["bare", "failure", "speak", "spoken", "spoken_language"]
 

@@ -1,6 +1,6 @@
 """Long tasks beside the window: stages, progress, Cancel; results come back in the window's own thread.
 
-A task is a function that takes ``progress=`` (see :mod:`geofit.progress`). :func:`run` calls it in a thread.
+A task is a function that takes ``progress=`` (see :mod:`geofit.data.progress`). :func:`run` calls it in a thread.
 :func:`run_apart` calls it in a process of its own: whatever holds the interpreter's lock in a thread (OpenCASCADE for
 seconds, a fit for tenths) would stop the window; such a function, its arguments and its result must be picklable.
 """
@@ -19,8 +19,8 @@ from typing import Any
 from PySide6.QtCore import QCoreApplication, QObject, QRunnable, Qt, QThreadPool, Signal
 from shiboken6 import isValid
 
-from geofit.errors import Cancelled, GeofitError
-from geofit.words import said
+from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.messages import said
 
 __all__ = ["Task", "finish_all", "run", "run_apart", "tasks", "warm"]
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.site import Hole
 from geofit.io.axes import Region
 from geofit.io.dxf import Entity, on_layers, open_drawing, problem
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.polyline import along, chainage
 from geofit.io.source import Source
-from geofit.points import PointSet
-from geofit.site import Hole
-from geofit.words import said
 
 __all__ = ["draw_adits", "drawn_contacts"]
 

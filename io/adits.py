@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.site import Hole
 from geofit.io.adit_dxf import draw_adits, drawn_contacts
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import ADIT_CONTACTS, ADIT_PATH
@@ -13,9 +16,6 @@ from geofit.io.journal import Journal
 from geofit.io.polyline import along, chainage, named_lines
 from geofit.io.rows import read_rows
 from geofit.io.source import Source
-from geofit.points import PointSet
-from geofit.site import Hole
-from geofit.words import said
 
 __all__ = ["load_adit_contacts", "load_adits"]
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass, field
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, said
 from geofit.io.cells import table_of
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode, is_number
 from geofit.io.source import Source
 from geofit.io.tables import Table
-from geofit.words import Verbatim, said
 
 __all__ = ["group_names", "read_group"]
 

@@ -7,9 +7,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.rows import Rows
-from geofit.words import said
 
 __all__ = ["Region", "check_axes", "place_in", "region_of"]
 

@@ -11,7 +11,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, listed, said
+from geofit.data.site import Ground, Hole, ImportIssue, TableCount
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
 from geofit.io.desurvey import Desurvey, WellPath, desurvey
@@ -20,8 +22,6 @@ from geofit.io.lower_limits import tops_from_above
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source, as_source
 from geofit.io.surveys import Stations, read_stations
-from geofit.site import Ground, Hole, ImportIssue, TableCount
-from geofit.words import Verbatim, listed, said
 
 __all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreholes"]
 

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.columns import BOUNDARY
 from geofit.io.journal import Journal
 from geofit.io.parser_words import told_by
@@ -17,7 +18,6 @@ from geofit.io.rows import read_rows
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
 from geofit.io.vector import RING
-from geofit.words import said
 
 __all__ = ["load_boundary", "read_boundary"]
 

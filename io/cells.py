@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, unique_names
-from geofit.words import said
 
 __all__ = ["number_text", "table_of"]
 

@@ -8,13 +8,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, said
+from geofit.data.points import PointSet
+from geofit.data.site import ImportIssue
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
 from geofit.io.hints import nearest
 from geofit.io.journal import Journal
-from geofit.points import PointSet
-from geofit.site import ImportIssue
-from geofit.words import Verbatim, said
 
 __all__ = ["Contacts", "Limit", "load_contacts", "take_contacts"]
 

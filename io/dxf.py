@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.units import metres_of
-from geofit.words import said
 
 __all__ = ["LINES", "Entity", "count_points", "on_layers", "open_drawing", "problem"]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-from geofit.errors import MissingDependencyError
-from geofit.words import said
+from geofit.data.errors import MissingDependencyError
+from geofit.data.messages import said
 
 __all__ = ["need"]
 

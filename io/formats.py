@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, read_table
-from geofit.words import said
 
 __all__ = ["TABLE_FORMATS", "USUAL_TABLES", "read_any_table", "table_names"]
 

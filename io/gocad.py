@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.cells import table_of
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.tables import Table
-from geofit.words import said
 
 __all__ = ["read_vertices"]
 

@@ -6,14 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, said
+from geofit.data.points import PointSet
+from geofit.data.site import Ground
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
-from geofit.points import PointSet
-from geofit.site import Ground
-from geofit.words import Verbatim, said
 
 __all__ = ["grid_unit", "load_grid", "load_ground", "read_ground"]
 

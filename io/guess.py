@@ -8,14 +8,14 @@ from string import ascii_uppercase
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, listed, said
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, Schema, plain_name
 from geofit.io.guess_values import by_values
 from geofit.io.hints import nearest
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, parse_numbers
-from geofit.words import Verbatim, listed, said
 
 __all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as"]
 

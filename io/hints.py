@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-from geofit.words import Said, Verbatim, said
+from geofit.data.messages import Said, Verbatim, said
 
 __all__ = ["nearest"]
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, said
+from geofit.data.points import PointSet
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import HORIZON_COLUMNS
 from geofit.io.guess import locate
@@ -15,8 +17,6 @@ from geofit.io.rows import NO_DATA, Rows, read_rows
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers
 from geofit.io.units import length_factors
-from geofit.points import PointSet
-from geofit.words import Verbatim, said
 
 __all__ = ["load_horizon_columns"]
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.points import PointSet
 from geofit.io.rows import Rows
-from geofit.points import PointSet
 
 __all__ = ["HorizonNames"]
 

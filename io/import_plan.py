@@ -8,7 +8,9 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, listed, said
+from geofit.data.site import ImportIssue, TableCount
 from geofit.io.columns import SCHEMAS, plain_name
 from geofit.io.grid import load_ground
 from geofit.io.journal import Journal
@@ -17,8 +19,6 @@ from geofit.io.preview import TablePreview, preview_file
 from geofit.io.rows import read_rows
 from geofit.io.sections import load_lines
 from geofit.io.source import Source
-from geofit.site import ImportIssue, TableCount
-from geofit.words import Verbatim, listed, said
 
 __all__ = ["Part", "Plan", "campaigns", "look_at", "settle"]
 

@@ -6,8 +6,8 @@ import hashlib
 from dataclasses import dataclass, field
 from typing import Literal
 
+from geofit.data.site import ImportIssue, TableCount
 from geofit.io.source import Source
-from geofit.site import ImportIssue, TableCount
 
 __all__ = ["Journal"]
 

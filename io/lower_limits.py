@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.messages import said
 from geofit.io.rows import Rows
-from geofit.words import said
 
 __all__ = ["tops_from_above"]
 

@@ -9,14 +9,14 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from geofit.errors import InputError
-from geofit.files import replacing
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.messages import Verbatim, said
 from geofit.io.columns import SCHEMAS
 from geofit.io.hints import nearest
 from geofit.io.parser_words import told_by
 from geofit.io.source import Source
 from geofit.io.toml_text import toml_key, toml_value
-from geofit.words import Verbatim, said
 
 __all__ = ["KINDS", "ColumnMapping", "load_mappings", "save_mappings"]
 

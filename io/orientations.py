@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.site import Orientations
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import ORIENTATIONS
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
-from geofit.site import Orientations
-from geofit.words import said
 
 __all__ = ["load_orientations"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 
-from geofit.words import said
+from geofit.data.messages import said
 
 __all__ = ["told_by"]
 

@@ -8,6 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from geofit.data.points import PointSet
+from geofit.data.progress import Progress, tell
+from geofit.data.site import ImportIssue, TableCount
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import PICKS, Schema
 from geofit.io.horizons import HorizonNames
@@ -16,9 +19,6 @@ from geofit.io.mapping import ColumnMapping
 from geofit.io.places import list_places
 from geofit.io.rows import read_rows
 from geofit.io.source import Source
-from geofit.points import PointSet
-from geofit.progress import Progress, tell
-from geofit.site import ImportIssue, TableCount
 
 __all__ = ["Picks", "load_picks", "read_points"]
 

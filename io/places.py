@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from geofit.data.messages import said
+from geofit.data.points import PointSet
 from geofit.io.journal import Journal
-from geofit.points import PointSet
-from geofit.words import said
 
 __all__ = ["list_places"]
 

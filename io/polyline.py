@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.messages import said
 from geofit.io.rows import Rows
-from geofit.words import said
 
 __all__ = ["along", "chainage", "named_lines"]
 

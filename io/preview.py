@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from geofit.errors import GeofitError
+from geofit.data.errors import GeofitError
+from geofit.data.site import ImportIssue
 from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS, SECTIONS, Schema
 from geofit.io.formats import TABLE_FORMATS, USUAL_TABLES, read_any_table, table_names
 from geofit.io.guess import USABLE, RoleGuess, guess_roles, sample_of
@@ -14,7 +15,6 @@ from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table
-from geofit.site import ImportIssue
 
 __all__ = ["GROUNDS", "TablePreview", "preview_file", "preview_table"]
 

@@ -28,13 +28,13 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from geofit import __version__
-from geofit.accuracy import plain
-from geofit.errors import InputError, SettingsError
-from geofit.files import file_stems, replacing
+from geofit.data.accuracy import plain
+from geofit.data.errors import InputError, SettingsError
+from geofit.data.files import file_stems, replacing
+from geofit.data.messages import said
+from geofit.data.settings import FitSettings
 from geofit.io.parser_words import told_by
-from geofit.settings import FitSettings
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = [
     "VERSION",
@@ -240,8 +240,8 @@ def open_project(path: str | PathLike[str]) -> Project:
 
 
 def load_surfaces(project: Project, folder: str | PathLike[str]) -> dict[str, HorizonSurface]:
-    """Read the surfaces of a project by horizon; errors as :func:`geofit.io.step.read_step`."""
-    from geofit.io.step import read_step
+    """Read the surfaces of a project by horizon; errors as :func:`geofit.cad.step.read_step`."""
+    from geofit.cad.step import read_step
 
     found = {}
     for result in project.results:
@@ -304,7 +304,7 @@ def _folder(target: Path) -> Path:
 
 
 def _write_surface(name: str, surface: HorizonSurface, target: Path) -> ProjectResult:
-    from geofit.io.step import store_step
+    from geofit.cad.step import store_step
 
     folder = _folder(target)
     try:

@@ -6,14 +6,14 @@ import warnings
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.site import Ground
 from geofit.io.crs import is_code
 from geofit.io.extra import need
 from geofit.io.grid import grid_unit
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.site import Ground
-from geofit.words import said
 
 __all__ = ["read_raster"]
 

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, said
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
 from geofit.io.crs import is_code, project
 from geofit.io.formats import read_any_table
@@ -20,7 +21,6 @@ from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
 from geofit.io.units import length_factors
-from geofit.words import Verbatim, said
 
 __all__ = ["NO_DATA", "Rows", "read_rows"]
 

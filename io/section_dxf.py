@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.dxf import on_layers, open_drawing, problem
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.words import said
 
 __all__ = ["Drawn", "read_drawing"]
 

@@ -8,7 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.site import Section
 from geofit.io.axes import Region, check_axes, place_in
 from geofit.io.columns import SECTION, SECTION_LINES, SECTIONS, TRACES, Schema
 from geofit.io.horizons import HorizonNames
@@ -17,9 +20,6 @@ from geofit.io.polyline import along, chainage, named_lines
 from geofit.io.rows import Rows, read_rows
 from geofit.io.section_dxf import read_drawing
 from geofit.io.source import Source
-from geofit.points import PointSet
-from geofit.site import Section
-from geofit.words import said
 
 __all__ = ["Drawing", "lift", "load_level", "load_lines", "load_section", "load_sections"]
 

@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.site import Section
 from geofit.io.axes import Region, place_in
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.sections import Drawing, load_level, load_lines, load_section, load_sections
 from geofit.io.site_keys import Reader
-from geofit.points import PointSet
-from geofit.site import Section
-from geofit.words import said
 
 __all__ = ["gather", "read_sections"]
 

@@ -11,7 +11,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError, SettingsError
+from geofit.data.errors import InputError, SettingsError
+from geofit.data.messages import Verbatim, said
+from geofit.data.points import KINDS, PointSet
+from geofit.data.progress import Progress, tell
+from geofit.data.settings import FitSettings
+from geofit.data.site import Ground, Hole, Orientations, Site
 from geofit.io.adits import load_adit_contacts, load_adits
 from geofit.io.axes import Region, place_in, region_of
 from geofit.io.boreholes import Boreholes, load_boreholes
@@ -33,11 +38,6 @@ from geofit.io.site_drawings import gather, read_sections
 from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
 from geofit.io.source import Source
 from geofit.io.traces import load_traces
-from geofit.points import KINDS, PointSet
-from geofit.progress import Progress, tell
-from geofit.settings import FitSettings
-from geofit.site import Ground, Hole, Orientations, Site
-from geofit.words import Verbatim, said
 
 __all__ = ["load_site", "read_site"]
 

@@ -8,12 +8,12 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, said
+from geofit.data.settings import FitSettings
 from geofit.io.hints import nearest
 from geofit.io.mapping import ColumnMapping
 from geofit.io.source import Source
-from geofit.settings import FitSettings
-from geofit.words import Verbatim, said
 
 __all__ = ["HORIZON", "SETTINGS", "TABLE", "TOP", "Reader"]
 

@@ -7,9 +7,9 @@ import re
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.parser_words import told_by
-from geofit.words import said
 
 __all__ = ["decode", "find_decimal", "find_separator", "is_header", "is_number", "is_units_row", "split_line"]
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from geofit.errors import InputError
-from geofit.words import said
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 
 __all__ = ["Source", "as_source"]
 

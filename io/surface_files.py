@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from geofit.errors import InputError
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ENDINGS", "is_surface_file", "read_surface_file"]
 
@@ -30,11 +30,11 @@ def read_surface_file(path: str | Path) -> Mapping[str, HorizonSurface]:
     """
     match Path(path).suffix.casefold():
         case ".step" | ".stp":
-            from geofit.io.step import read_step as read
+            from geofit.cad.step import read_step as read
         case ".igs" | ".iges":
-            from geofit.io.cad import read_iges as read
+            from geofit.cad.iges_brep import read_iges as read
         case ".brep" | ".brp":
-            from geofit.io.cad import read_brep as read
+            from geofit.cad.iges_brep import read_brep as read
         case ".ts":
             from geofit.io.tsurf import read_tsurf
 

@@ -7,12 +7,12 @@ import struct
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.site import Ground
 from geofit.io.grid import grid_unit
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.site import Ground
-from geofit.words import said
 
 __all__ = ["read_surfer"]
 

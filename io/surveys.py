@@ -9,13 +9,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.columns import SURVEY
 from geofit.io.desurvey import minimum_curvature
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
-from geofit.words import said
 
 __all__ = ["Stations", "read_stations"]
 

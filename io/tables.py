@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, split_line
 from geofit.io.source import Source
-from geofit.words import said
 
 __all__ = ["Table", "parse_numbers", "read_table", "unique_names"]
 

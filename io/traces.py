@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.site import Ground
 from geofit.io.axes import Region, check_axes, place_in
 from geofit.io.columns import TRACES
 from geofit.io.horizons import HorizonNames
@@ -12,9 +15,6 @@ from geofit.io.journal import Journal
 from geofit.io.rows import read_rows
 from geofit.io.section_dxf import read_drawing
 from geofit.io.source import Source
-from geofit.points import PointSet
-from geofit.site import Ground
-from geofit.words import said
 
 __all__ = ["load_traces"]
 

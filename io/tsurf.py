@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh, MeshSurface
 from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.units import metres_of
-from geofit.points import PointSet
-from geofit.words import said
 
 __all__ = ["read_tsurf"]
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.columns import plain_name
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table
-from geofit.words import said
 
 __all__ = ["LENGTHS", "METRES", "length_factors", "metres_of"]
 

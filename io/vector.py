@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.cells import number_text, table_of
 from geofit.io.extra import need
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table
-from geofit.words import said
 
 __all__ = ["RING", "layer_names", "read_features"]
 

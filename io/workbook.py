@@ -10,14 +10,14 @@ import zlib
 from typing import Any
 from xml.etree.ElementTree import ParseError
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.cells import number_text, table_of
 from geofit.io.extra import need
 from geofit.io.journal import Journal
 from geofit.io.sniff import is_header, is_units_row
 from geofit.io.source import Source
 from geofit.io.tables import Table
-from geofit.words import said
 
 __all__ = ["read_sheet", "sheet_names"]
 

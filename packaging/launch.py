@@ -9,5 +9,5 @@ if __name__ == "__main__":
     if Path(sys.executable).stem.endswith("gui"):
         from geofit.gui.app import main
     else:
-        from geofit.cli import main
+        from geofit.cli.main import main
     sys.exit(main())

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import get_args
 
-from geofit.errors import GeofitError
-from geofit.offdata import Scheme
+from geofit.data.errors import GeofitError
+from geofit.data.prediction import Scheme
 from geofit.report.language import ZH, tell
 
 __all__ = ["english_left", "literals"]

@@ -6,7 +6,7 @@ import numpy as np
 from truth import EASTING, NORTHING, hills
 
 from geofit import FitSettings, PointSet
-from geofit.site import Site
+from geofit.data.site import Site
 
 ORIGIN = np.array([EASTING, NORTHING])
 BOUNDARY = np.array([[0, 0], [1200, 0], [1200, 1000], [0, 1000]]) + ORIGIN

@@ -12,11 +12,11 @@ import pytest
 pytest.importorskip("PySide6", reason="the windows need PySide6 (extra gui)")
 
 import geofit
+from geofit.data.points import PointSet
+from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
+from geofit.data.site import Site
 from geofit.io.site_file import read_site
-from geofit.offdata import LeftOut, OffData, Outlier, Suggestion, Uncertainty
-from geofit.points import PointSet
-from geofit.site import Site
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 SITE = Path(__file__).parent.parent / "sample_data" / "site.toml"
 WITH_PERIPHERY, FAULT = "T3-T2", "F1"

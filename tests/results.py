@@ -7,14 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from geofit import FitSettings, PointSet, Site
-from geofit.accuracy import Accuracy, Check, Conflict, Group, ReadBack, Seam
 from geofit.checks.storage import equal_accuracy
-from geofit.offdata import LeftOut, OffData, Outlier, Suggestion, Uncertainty
+from geofit.data.accuracy import Accuracy, Check, Conflict, Group, ReadBack, Seam
+from geofit.data.messages import said
+from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
+from geofit.data.site import Hole, ImportIssue, Section, TableCount
 from geofit.report.result import HorizonResult
-from geofit.site import Hole, ImportIssue, Section, TableCount
 from geofit.splines import bspline
-from geofit.surface import HorizonSurface, Partition, Patch
-from geofit.words import said
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface, Partition
 
 ORIGIN = np.array([500_000.0, 3_100_000.0, 1500.0])
 

@@ -6,10 +6,11 @@ from itertools import pairwise
 
 import numpy as np
 
-from geofit.points import PointSet
-from geofit.settings import FitSettings
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
 from geofit.splines import bspline
-from geofit.surface import HorizonSurface, Patch
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 ORIGIN = np.array([5e5, 3.1e6, 400.0])
 
@@ -94,7 +95,7 @@ def bored(path, patches):
     from OCP.GProp import GProp_GProps
     from OCP.TopLoc import TopLoc_Location
 
-    from geofit.steps.stitch import shell
+    from geofit.cad.sewing import shell
 
     shape = shell(horizon(patches)).Located(TopLoc_Location())
     for x, y, radius in ((500, 350, 120), (250, 180, 60), (700, 700, 90)):

@@ -12,7 +12,7 @@ import pytest
 
 from geofit import FitSettings, HorizonSurface, PointSet
 from geofit.splines.bspline import clamped_knots
-from geofit.surface import Patch
+from geofit.splines.patch import Patch
 
 FOLDER = Path(__file__).resolve().parents[1] / "benchmarks"
 

@@ -14,7 +14,9 @@ from PIL import Image
 from PySide6.QtCore import QBuffer, QCoreApplication, QEvent, QSettings, Qt
 from PySide6.QtWidgets import QApplication, QDialog, QWidget
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.data.site import Site
 from geofit.gui.desktop import Desktop
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.export_step import ExportDialog
@@ -27,8 +29,6 @@ from geofit.gui.wizard.import_wizard import ImportWizard, memory_file
 from geofit.gui.worker import tasks
 from geofit.report.result import HorizonResult
 from geofit.sample import write_site
-from geofit.site import Site
-from geofit.words import said
 
 __all__ = ["take"]
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from geofit import PointSet
-from geofit.occ import from_geom
-from geofit.surface import HorizonSurface
+from geofit.cad.faces import from_geom
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["geom_plate"]
 

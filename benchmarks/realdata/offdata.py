@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import isfinite, nan
 
 from geofit import FitSettings, GeofitError, HorizonSurface, PointSet, fit_horizon
-from geofit.offdata import OffData
+from geofit.data.prediction import OffData
 from geofit.prediction.examine import examine
 
 from .why import metres

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from geofit import FitSettings, PointSet
+from geofit.data.site import Site
 from geofit.io import Boreholes, Picks, read_boreholes, read_points, take_contacts
-from geofit.site import Site
 
 __all__ = ["SETS", "RealSet", "data_folder", "rectangle"]
 

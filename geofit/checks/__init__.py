@@ -1,1 +1,1 @@
-"""Questions asked of a finished surface; one a module. :func:`geofit.check.check` asks them."""
+"""Questions asked of a finished surface; one a module. :func:`geofit.checks.check.check` asks them."""

@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.geometry.clip import inside
-from geofit.geometry.loops import inside as inside_loops
-from geofit.geometry.loops import loops_of
+from geofit.geometry.trim_loops import inside as inside_loops
+from geofit.geometry.trim_loops import loops_of
 from geofit.splines.bspline import collocation
-from geofit.surface import HorizonSurface, Patch
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Lattice", "lattices", "places"]
 

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from geofit.accuracy import Check
 from geofit.checks.lattice import Lattice
 from geofit.checks.residual_tests import partly
-from geofit.geometry.distance import Projection
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.data.accuracy import Check
+from geofit.data.messages import said
+from geofit.geometry.projection import Projection
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["oscillation"]
 

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from scipy.special import binom, ndtri
 
-from geofit.accuracy import Check
-from geofit.words import said
+from geofit.data.accuracy import Check
+from geofit.data.messages import said
 
 __all__ = ["by_label", "residual_checks"]
 

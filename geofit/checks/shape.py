@@ -8,13 +8,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.accuracy import Check
 from geofit.checks.lattice import Lattice, places
+from geofit.data.accuracy import Check
+from geofit.data.messages import listed, said
 from geofit.geometry.elevation import plan_map
-from geofit.geometry.loops import inside, loops_of
+from geofit.geometry.trim_loops import inside, loops_of
 from geofit.splines.bspline import greville
-from geofit.surface import HorizonSurface, Patch
-from geofit.words import listed, said
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["shape_checks"]
 

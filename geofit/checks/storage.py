@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.surface import HorizonSurface, Patch
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Storage", "equal_accuracy"]
 

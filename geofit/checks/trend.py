@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from geofit.accuracy import Check
 from geofit.checks.lattice import Lattice, places
 from geofit.checks.residual_tests import partly
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.data.accuracy import Check
+from geofit.data.messages import said
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["trend"]
 

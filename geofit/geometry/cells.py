@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.splines import bspline
-from geofit.surface import Patch
+from geofit.splines.patch import Patch
 
 __all__ = ["Cells", "Place", "descend", "tabulate"]
 

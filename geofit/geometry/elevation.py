@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.geometry.cells import Cells, Place, descend, tabulate
 from geofit.splines import bspline
-from geofit.surface import HorizonSurface, Patch
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     from shapely import Polygon

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.points import PointSet
+from geofit.data.points import PointSet
 
 __all__ = ["Frame", "best_plane_frame", "map_frame", "section_azimuth"]
 

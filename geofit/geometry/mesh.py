@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.errors import SettingsError
+from geofit.data.errors import SettingsError
+from geofit.data.messages import said
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
-from geofit.surface import HorizonSurface, Patch
-from geofit.words import said
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Mesh", "MeshSurface", "triangulate"]
 
@@ -72,13 +73,13 @@ class MeshSurface(HorizonSurface):
 
     def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """Return the height at map coordinates in metres, nan outside, the highest of several; arrays broadcast."""
-        from geofit.geometry.facets import elevation
+        from geofit.geometry.mesh_projection import elevation
 
         return elevation(self.mesh, x, y)
 
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""
-        from geofit.geometry.facets import nearest
+        from geofit.geometry.mesh_projection import nearest
 
         return nearest(self.mesh, np.atleast_2d(np.asarray(xyz, float)) - self.mesh.origin).distance
 
@@ -112,7 +113,7 @@ def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
     """
     if not (tolerance > 0 and math.isfinite(tolerance)):
         raise SettingsError(said("The chordal tolerance is {tolerance}; give metres above 0.", tolerance=tolerance))
-    from geofit.geometry.loops import TrimmedSurface, trim
+    from geofit.geometry.trim_loops import TrimmedSurface, trim
 
     if isinstance(surface, MeshSurface):
         return surface.mesh

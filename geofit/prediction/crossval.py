@@ -7,15 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.model import Model
-from geofit.offdata import LeftOut, Scheme
+from geofit.data.messages import Said, said
+from geofit.data.prediction import LeftOut, Scheme
+from geofit.fitting.deletion import LinearFit, Prediction
+from geofit.fitting.model import Model
+from geofit.fitting.posterior import Posterior
 from geofit.prediction.calibration import FEWEST, SHARE, Calibration, LeftOutPoints, calibrate, factor_for, share_inside
-from geofit.prediction.deletion import LinearFit, Prediction
 from geofit.prediction.folds import beyond_hull, block_labels, groups_of, hole_labels
 from geofit.prediction.kriging import krige_left_out
-from geofit.prediction.posterior import Posterior
 from geofit.prediction.thinplate import thin_plate_left_out
-from geofit.words import Said, said
 
 __all__ = ["BLOCK", "Fold", "about_the_hull", "calibrated", "common_factor", "folds_of", "left_out", "one_by_one"]
 

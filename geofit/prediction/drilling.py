@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.offdata import Suggestion
-from geofit.prediction.spread import Grid, Spread
+from geofit.data.prediction import Suggestion
+from geofit.prediction.bands import Grid, Spread
 
 __all__ = ["Plan", "greedy_holes", "suggest_holes"]
 

@@ -6,21 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from geofit.errors import FitError
-from geofit.model import Model
-from geofit.offdata import LeftOut, OffData, Outlier
+from geofit.data.errors import FitError
+from geofit.data.messages import said
+from geofit.data.prediction import LeftOut, OffData, Outlier
+from geofit.data.progress import Progress, tell
+from geofit.fitting.deletion import linear_fit
+from geofit.fitting.model import Model
+from geofit.fitting.outliers import find_outliers
+from geofit.fitting.posterior import posterior
+from geofit.prediction.bands import Spread, grid_over, uncertainty_on
 from geofit.prediction.calibration import uncalibrated
 from geofit.prediction.crossval import about_the_hull, calibrated, folds_of, left_out, one_by_one
-from geofit.prediction.deletion import linear_fit
 from geofit.prediction.drilling import suggest_holes
-from geofit.prediction.outliers import find_outliers
-from geofit.prediction.posterior import posterior
 from geofit.prediction.refits import sections_by_refit
-from geofit.prediction.spread import Spread, grid_over, uncertainty_on
 from geofit.prediction.thinplate import thin_plate_inverse
-from geofit.progress import Progress, tell
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["MOST", "examine"]
 
@@ -45,7 +45,7 @@ def examine(surface: HorizonSurface, progress: Progress | None = None) -> OffDat
     Returns
     -------
     OffData
-        Errors at holes, sections and blocks left out (no refit: :mod:`geofit.prediction.deletion`) beside the
+        Errors at holes, sections and blocks left out (no refit: :mod:`geofit.fitting.deletion`) beside the
         thin-plate spline and kriging on the same folds; standard deviation on a grid, held to those errors; the next
         holes; outliers.
 

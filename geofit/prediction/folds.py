@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, Delaunay, QhullError
 
-from geofit.points import PointSet
+from geofit.data.points import PointSet
 
 __all__ = ["beyond_hull", "block_labels", "groups_of", "hole_labels"]
 

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from geofit.errors import GeofitError
-from geofit.model import Model
-from geofit.offdata import LeftOut, OffData
-from geofit.pipeline import fit_horizon
+from geofit.data.errors import GeofitError
+from geofit.data.messages import said
+from geofit.data.prediction import LeftOut, OffData
+from geofit.data.progress import Progress, tell
+from geofit.fitting.model import Model
+from geofit.fitting.pipeline import fit_horizon
 from geofit.prediction.folds import groups_of
-from geofit.progress import Progress, tell
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["sections_by_refit"]
 

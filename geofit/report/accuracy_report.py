@@ -14,8 +14,8 @@ from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-from geofit.accuracy import plain
-from geofit.files import replacing
+from geofit.data.accuracy import plain
+from geofit.data.files import replacing
 
 __all__ = [
     "AccuracyReport",

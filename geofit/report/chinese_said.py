@@ -1,4 +1,4 @@
-"""What fits, checks and examinations say, in Chinese, by the English templates of :func:`geofit.words.said`."""
+"""What fits, checks and examinations say, in Chinese, by the English templates of :func:`geofit.data.messages.said`."""
 
 from __future__ import annotations
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
-from geofit.errors import MissingDependencyError
-from geofit.words import said
+from geofit.data.errors import MissingDependencyError
+from geofit.data.messages import said
 
 __all__ = ["NO_CHINESE_FONT", "FontFile", "PdfFonts", "families", "missing_font", "pdf_fonts"]
 

@@ -14,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import geofit
-from geofit.accuracy import Check, Seam
-from geofit.offdata import LeftOut, OffData
+from geofit.data.accuracy import Check, Seam
+from geofit.data.prediction import LeftOut, OffData
+from geofit.data.site import Site
 from geofit.report.accuracy_report import (
     AccuracyReport,
     CheckLine,
@@ -38,12 +39,11 @@ from geofit.report.accuracy_report import (
     SuggestionLine,
 )
 from geofit.report.result import HorizonResult, sigma_of
-from geofit.site import Site
 
 if TYPE_CHECKING:
-    from geofit.stack.order import Order
-    from geofit.stack.repair import Contradiction
-    from geofit.stack.throw import FaultCut
+    from geofit.site.order import Order
+    from geofit.site.separate import Contradiction
+    from geofit.site.throw import FaultCut
 
 __all__ = ["PICTURES", "accuracy_report", "picture_name", "today"]
 
@@ -83,11 +83,11 @@ def accuracy_report(
     results : sequence of HorizonResult
         At least one; all of one site.
     orders : sequence of Order, optional
-        What :func:`geofit.stack.order.orders` found; None: not examined.
+        What :func:`geofit.site.order.orders` found; None: not examined.
     cuts : sequence of FaultCut
-        What faults displace, by :func:`geofit.stack.throw.throws`.
+        What faults displace, by :func:`geofit.site.throw.throws`.
     contradictions : sequence of Contradiction
-        What :func:`geofit.stack.repair.repair` could not mend.
+        What :func:`geofit.site.separate.repair` could not mend.
     failures : mapping of str to str, optional
         Horizons that could not be fitted, and why.
     date : str

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import zip_longest
 
+from geofit.data.messages import said
 from geofit.report import digits
 from geofit.report.accuracy_report import CheckLine, FileCheck, GroupLine, HorizonReport
 from geofit.report.document import (
@@ -23,7 +24,6 @@ from geofit.report.document import (
 from geofit.report.language import Language, sentence, tell
 from geofit.report.off_data_blocks import off_data_blocks
 from geofit.report.point_table import point_cells, point_columns
-from geofit.words import said
 
 __all__ = ["horizon_chapter"]
 

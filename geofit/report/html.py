@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from geofit.files import replacing
+from geofit.data.files import replacing
 from geofit.report.document import Document
 
 if TYPE_CHECKING:

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from geofit.errors import SettingsError
+from geofit.data.errors import SettingsError
+from geofit.data.messages import Said, Verbatim, said
 from geofit.report.chinese import LABELS
 from geofit.report.chinese_errors import REFUSED
 from geofit.report.chinese_files import UNREADABLE
 from geofit.report.chinese_io import LISTED
 from geofit.report.chinese_said import SAID
-from geofit.words import Said, Verbatim, said
 
 __all__ = ["EN", "ZH", "Language", "language", "sentence", "tell"]
 
@@ -60,9 +60,9 @@ def language(code: str) -> Language:
 
 
 def tell(text: str, language: Language) -> str:
-    """Return a text of the core (:func:`geofit.words.said`) or one of its words (a kind, a patch) in a language.
+    """Return a text of :func:`geofit.data.messages.said` or a word of the core (a kind, a patch) in a language.
 
-    What the language does not have stays English, what is :class:`geofit.words.Verbatim` as it is.
+    What the language does not have stays English, what is :class:`geofit.data.messages.Verbatim` as it is.
     """
     if isinstance(text, Verbatim):
         return str(text)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from geofit.data.messages import said
 from geofit.report import digits
 from geofit.report.accuracy_report import HorizonReport, LeftOutLine, OffDataReport
 from geofit.report.document import Block, Cell, Column, Facts, Heading, Mark, Paragraph, Picture, Table
 from geofit.report.language import Language, sentence, tell
 from geofit.report.point_table import point_cells, point_columns
-from geofit.words import said
 
 __all__ = ["CALIBRATED", "off_data_blocks"]
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from fpdf import FPDF
 
-from geofit.files import replacing
+from geofit.data.files import replacing
 from geofit.report.document import (
     Block,
     Chapter,

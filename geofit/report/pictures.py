@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geofit.errors import MissingDependencyError
-from geofit.files import replacing
+from geofit.data.errors import MissingDependencyError
+from geofit.data.files import replacing
 from geofit.report import digits, plots, scene
 from geofit.report.gather import SITE_PICTURE, picture_name
 from geofit.report.histogram import histogram, normal_plot

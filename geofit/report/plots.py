@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.site import Hole
 from geofit.report.histogram import histogram
 from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
 from geofit.report.style import CORE, INK, LINE, MUTED, bands, kind_style, quiet
 from geofit.report.view import choose_view, rims, trimmed
-from geofit.site import Hole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

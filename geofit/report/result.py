@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import geofit
-from geofit.accuracy import Accuracy, ReadBack, Seam, plain
 from geofit.checks.storage import Storage
-from geofit.files import replacing
-from geofit.offdata import OffData
-from geofit.site import ImportIssue, Site
-from geofit.surface import HorizonSurface
+from geofit.data.accuracy import Accuracy, ReadBack, Seam, plain
+from geofit.data.files import replacing
+from geofit.data.prediction import OffData
+from geofit.data.site import ImportIssue, Site
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["HorizonResult", "horizon_data", "sigma_of", "write_json"]
 

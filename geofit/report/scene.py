@@ -12,13 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import MissingDependencyError
+from geofit.data.errors import MissingDependencyError
+from geofit.data.messages import said
+from geofit.data.site import Hole
 from geofit.report.result import HorizonResult
 from geofit.report.style import HORIZONS, kind_style
 from geofit.report.view import rims, trimmed
-from geofit.site import Hole
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     import pyvista

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geofit.files import replacing
-from geofit.geometry.cut import CutLine
+from geofit.data.files import replacing
 from geofit.report.style import INK, LINE, MUTED, drawing, horizon_colours, quiet
+from geofit.sampling.cut import CutLine
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.settings import FitSettings
 from geofit.report.fonts import families
-from geofit.settings import FitSettings
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

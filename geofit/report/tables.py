@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from geofit.files import replacing
+from geofit.data.files import replacing
+from geofit.data.site import ImportIssue
 from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
-from geofit.site import ImportIssue
 
 __all__ = ["write_issues", "write_residuals"]
 

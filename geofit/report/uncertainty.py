@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.offdata import Uncertainty
+from geofit.data.prediction import Uncertainty
 from geofit.report.language import EN, Language
 from geofit.report.plots import legend, map_axes
 from geofit.report.result import HorizonResult

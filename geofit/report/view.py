@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.surface import HorizonSurface, Patch
-from geofit.words import said
+from geofit.data.messages import said
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["View", "choose_view", "rims", "trimmed"]
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.site import Ground
 from geofit.sample.ledger import Ledger, errors_of
 from geofit.sample.paths import Path, borehole_path, crossings, polyline_path
 from geofit.sample.truth import AZIMUTH, HORIZONS, fault_at, horizon_truth, overburden, to_map
-from geofit.site import Ground
 
 __all__ = ["Adit", "Borehole", "drill_adits", "drill_boreholes"]
 

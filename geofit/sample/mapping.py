@@ -7,11 +7,11 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.site import Ground
 from geofit.sample.ledger import Ledger, errors_of
 from geofit.sample.paths import zero_between
 from geofit.sample.truth import CORE, MapTruth, PlaneTruth, horizon_truth, inside, river, to_map, to_site
 from geofit.sample.truth import ground as true_ground
-from geofit.site import Ground
 
 __all__ = ["map_outcrops", "pick_lines"]
 

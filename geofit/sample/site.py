@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.site import Ground
 from geofit.sample import tables
 from geofit.sample.holes import Adit, Borehole, drill_adits, drill_boreholes
 from geofit.sample.ledger import Ledger
@@ -16,7 +17,6 @@ from geofit.sample.mapping import map_outcrops, pick_lines
 from geofit.sample.sections import CROSS_SECTIONS, Drawing, draw, section_lines
 from geofit.sample.truth import BOUNDARY, HORIZONS
 from geofit.sample.truth import ground as true_ground
-from geofit.site import Ground
 
 __all__ = ["CORE_POINTS", "POINTS", "observe", "write_site"]
 

@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.files import replacing
+from geofit.data.files import replacing
+from geofit.data.site import Ground
 from geofit.sample.holes import Adit, Borehole
 from geofit.sample.sections import Drawing
 from geofit.sample.truth import BOUNDARY
-from geofit.site import Ground
 
 __all__ = [
     "section_file",

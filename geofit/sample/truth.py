@@ -16,8 +16,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import SettingsError
-from geofit.words import said
+from geofit.data.errors import SettingsError
+from geofit.data.messages import said
 
 __all__ = [
     "BOUNDARY",

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.sparse import csr_array
 
-from geofit.errors import FitError
+from geofit.data.errors import FitError
 from geofit.splines.tensor import RIDGES
 
 __all__ = ["BlockFactor", "InverseBlocks"]

@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse import csr_array
 
-from geofit.errors import FitError
+from geofit.data.errors import FitError
+from geofit.data.messages import said
 from geofit.splines import bspline
 from geofit.splines.sums import CellSums, cell_sums
-from geofit.words import said
 
 __all__ = ["Factor", "TensorSpace", "band_times"]
 

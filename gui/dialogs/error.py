@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit import __version__
-from geofit.errors import GeofitError, InputError
+from geofit.data.errors import GeofitError, InputError
 from geofit.gui.words import failure, spoken
 
 __all__ = ["ErrorDialog"]

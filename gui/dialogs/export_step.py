@@ -27,15 +27,15 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.accuracy import Check
-from geofit.files import file_stems
+from geofit.data.accuracy import Check
+from geofit.data.files import file_stems
 from geofit.gui.dialogs.task_dialog import TaskDialog
-from geofit.gui.document.step_files import StepFile, step_paths, write_step_files
 from geofit.gui.panels.marks import verdict_mark
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
+from geofit.project.step_files import StepFile, step_paths, write_step_files
 from geofit.report import digits
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ExportDialog"]
 

@@ -16,8 +16,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from geofit.data.site import ImportIssue, Site
 from geofit.gui.words import spoken, spoken_language
-from geofit.site import ImportIssue, Site
 
 __all__ = ["IssuesDialog"]
 

@@ -17,8 +17,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.gui.document.journal import Unfinished
 from geofit.gui.words import spoken
+from geofit.project.journal import Unfinished
 
 __all__ = ["RecoveryDialog"]
 

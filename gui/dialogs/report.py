@@ -23,16 +23,16 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.deliver import Form
+from geofit.data.site import Site
 from geofit.gui.dialogs.task_dialog import TaskDialog
-from geofit.gui.document.making import Given
-from geofit.gui.document.parting import Blocks
-from geofit.gui.document.reporting import ReportFiles, write_report_files
 from geofit.gui.preferences import Preferences
 from geofit.gui.words import spoken
+from geofit.project.building import Given
+from geofit.project.fault_blocks import Blocks
+from geofit.project.reporting import ReportFiles, write_report_files
+from geofit.project.run import Form
 from geofit.report.gather import today
 from geofit.report.result import HorizonResult
-from geofit.site import Site
 
 __all__ = ["ReportDialog"]
 

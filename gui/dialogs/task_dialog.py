@@ -10,7 +10,7 @@ from PySide6.QtGui import QCloseEvent, QPixmap
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QHBoxLayout, QLabel, QProgressBar, QPushButton, QWidget
 from shiboken6 import isValid
 
-from geofit.errors import GeofitError
+from geofit.data.errors import GeofitError
 from geofit.gui.panels.marks import icon
 from geofit.gui.words import failure, spoken
 from geofit.gui.worker import Task, run, run_apart

@@ -5,13 +5,13 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtWidgets import QFrame, QPushButton, QScrollArea, QTabWidget, QVBoxLayout, QWidget
 
-from geofit.accuracy import Accuracy
+from geofit.data.accuracy import Accuracy
 from geofit.gui.panels.control_point import ControlPointPage
 from geofit.gui.panels.data_point import DataPointPage
 from geofit.gui.panels.effect import Effect
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["AdjustPanel"]
 

@@ -18,15 +18,15 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.accuracy import Accuracy, Check, ReadBack
+from geofit.data.accuracy import Accuracy, Check, ReadBack
+from geofit.data.prediction import OffData
 from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken
-from geofit.offdata import OffData
 from geofit.report.digits import measured
-from geofit.stack.order import Order
-from geofit.stack.throw import FaultCut
-from geofit.surface import HorizonSurface
+from geofit.site.order import Order
+from geofit.site.throw import FaultCut
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ChecksPanel"]
 

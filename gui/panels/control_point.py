@@ -19,11 +19,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.errors import GeofitError
+from geofit.data.errors import GeofitError
+from geofit.fitting.edit import acted_on, support
 from geofit.gui.panels.weight import WeightBox
 from geofit.gui.words import spoken
-from geofit.handwork import acted_on, support
-from geofit.surface import HorizonSurface, Patch
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ControlPointPage"]
 

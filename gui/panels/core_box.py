@@ -7,13 +7,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.errors import GeofitError
+from geofit.data.errors import GeofitError
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.fitting.parametrize import Chart, choose_chart
+from geofit.fitting.partition import split_rectangle
 from geofit.geometry.frame import Frame
-from geofit.points import PointSet
-from geofit.settings import FitSettings
-from geofit.steps.chart import Chart, choose_chart
-from geofit.steps.partition import split_rectangle
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["CoreBox", "chart_of", "taken"]
 

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
-from geofit.geometry.cut import CutLine, cut, section_line
+from geofit.data.progress import Progress, tell
+from geofit.data.site import Site
 from geofit.geometry.mesh import Mesh, triangulate
-from geofit.progress import Progress, tell
-from geofit.site import Site
-from geofit.surface import HorizonSurface
+from geofit.sampling.cut import CutLine, cut, section_line
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Curtain", "Traces", "extent", "trace"]
 

@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QVBoxLayout, QWidget
 
 from geofit.gui.words import spoken
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["DataPointPage"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel
 
-from geofit.accuracy import Accuracy
+from geofit.data.accuracy import Accuracy
 from geofit.report.digits import metres
 
 __all__ = ["Effect"]

@@ -18,14 +18,14 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.errors import SettingsError
+from geofit.data.errors import SettingsError
+from geofit.data.settings import FitSettings
 from geofit.gui.panels.fit_fields import AutoField, ChoiceField, CoreField, Field, NumberField
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.marks import icon, readable
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken
 from geofit.report.style import FAIL
-from geofit.settings import FitSettings
 
 __all__ = ["FitPanel"]
 

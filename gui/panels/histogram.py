@@ -8,15 +8,15 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from geofit.data.messages import said
+from geofit.data.site import Site
 from geofit.gui.panels.canvas import Canvas, Ink, place, recolour, wrapped
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.language import Language
 from geofit.report.result import HorizonResult
-from geofit.site import Site
-from geofit.surface import HorizonSurface
-from geofit.words import said
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["HistogramPanel"]
 

@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
+from geofit.data.points import PointSet
+from geofit.data.prediction import LeftOut, OffData
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
-from geofit.offdata import LeftOut, OffData
-from geofit.points import PointSet
 
 __all__ = ["OffDataPanel"]
 

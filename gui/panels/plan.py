@@ -7,6 +7,9 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
+from geofit.data.settings import FitSettings
+from geofit.data.site import Site
+from geofit.fitting.parametrize import Chart
 from geofit.geometry.frame import Frame, map_frame
 from geofit.gui.panels.core_box import CoreBox, chart_of, taken
 from geofit.gui.panels.flow import FlowLayout
@@ -15,10 +18,7 @@ from geofit.gui.panels.plan_view import PlanData, PlanView
 from geofit.gui.words import spoken
 from geofit.report.style import horizon_colours
 from geofit.report.view import rims
-from geofit.settings import FitSettings
-from geofit.site import Site
-from geofit.steps.chart import Chart
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["PlanPanel"]
 

@@ -9,14 +9,14 @@ from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
 from PySide6.QtGui import QIcon, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QLineEdit, QTreeView, QVBoxLayout, QWidget
 
+from geofit.data.site import Site
 from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import natural
 from geofit.gui.words import spoken
 from geofit.report.digits import given, metres
 from geofit.report.style import horizon_colours
-from geofit.site import Site
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ProjectTree"]
 

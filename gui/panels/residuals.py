@@ -16,7 +16,7 @@ from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable, spoken_words
 from geofit.report.style import bands
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ResidualTable"]
 

@@ -6,14 +6,14 @@ import numpy as np
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 
-from geofit.accuracy import Seam
-from geofit.check import ANGLE_LIMIT, GAP_LIMIT
+from geofit.checks.check import ANGLE_LIMIT, GAP_LIMIT
+from geofit.data.accuracy import Seam
+from geofit.data.settings import FitSettings
 from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable, spoken_words
 from geofit.gui.view3d.colouring import seam_colours
-from geofit.settings import FitSettings
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["SeamTable", "seam_holds"]
 

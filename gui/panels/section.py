@@ -12,6 +12,8 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QPaintEvent
 from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QVBoxLayout, QWidget
 
+from geofit.data.prediction import Uncertainty
+from geofit.data.site import Site
 from geofit.gui.panels.canvas import Canvas, Ink, place
 from geofit.gui.panels.curtain import Curtain, Meshes, Traces, extent, trace
 from geofit.gui.panels.flow import FlowLayout
@@ -27,9 +29,7 @@ from geofit.gui.panels.section_ink import (
 from geofit.gui.panels.section_scale import automatic, grown, window
 from geofit.gui.words import failure
 from geofit.gui.worker import Task, run
-from geofit.offdata import Uncertainty
-from geofit.site import Site
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["SectionPanel"]
 

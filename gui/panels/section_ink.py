@@ -12,12 +12,12 @@ from matplotlib.text import Annotation, Text
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
+from geofit.data.prediction import Uncertainty
+from geofit.data.site import Ground, Site
 from geofit.gui.panels.canvas import DOT, Ink
 from geofit.gui.panels.curtain import Curtain, Traces
 from geofit.gui.panels.section_scale import Extent
-from geofit.offdata import Uncertainty
 from geofit.report.style import horizon_colours, kind_style, quiet
-from geofit.site import Ground, Site
 
 __all__ = ["SectionData", "draw_section", "explain", "near_points", "seen_in", "thin_names"]
 

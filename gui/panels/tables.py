@@ -21,7 +21,7 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QAction, QIcon, QKeySequence, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHeaderView, QMenu, QTableView, QWidget
 
-from geofit.files import replacing
+from geofit.data.files import replacing
 from geofit.gui.words import spoken
 
 __all__ = ["ArrayModel", "Column", "DataTable", "natural", "spoken_words"]

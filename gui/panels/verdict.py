@@ -6,7 +6,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPalette, QPen
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
 
-from geofit.accuracy import Accuracy
+from geofit.data.accuracy import Accuracy
 from geofit.gui.panels.marks import is_dark, paint, readable
 from geofit.report.digits import count, given, metres
 from geofit.report.style import FAIL, PASS, QUIET

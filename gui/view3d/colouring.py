@@ -9,12 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.accuracy import Seam
-from geofit.check import ANGLE_LIMIT, GAP_LIMIT
+from geofit.checks.check import ANGLE_LIMIT, GAP_LIMIT
+from geofit.data.accuracy import Seam
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
 from geofit.gui.view3d.layers import Legend, Swatch
-from geofit.points import PointSet
 from geofit.report.style import FAIL, PASS, bands, kind_style
-from geofit.settings import FitSettings
 
 __all__ = ["PointColours", "Ramp", "legible", "plain_points", "points_by", "ramp", "rgb", "seam_colours"]
 

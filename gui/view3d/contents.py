@@ -7,6 +7,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.points import PointSet
+from geofit.data.prediction import Suggestion, Uncertainty
+from geofit.data.settings import FitSettings
+from geofit.data.site import Site
 from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.view3d.horizon_items import control_item, points_item, seams_item, shape_item, suggestions_item
 from geofit.gui.view3d.item import Item, Look
@@ -14,12 +18,8 @@ from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import next_below, seam_lines
 from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, holes_item, sections_item
 from geofit.gui.view3d.stage import Stage
-from geofit.offdata import Suggestion, Uncertainty
-from geofit.points import PointSet
 from geofit.report.style import horizon_colours
-from geofit.settings import FitSettings
-from geofit.site import Site
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Contents"]
 

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.prediction import Uncertainty
+from geofit.data.progress import Progress, tell
 from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of
-from geofit.offdata import Uncertainty
-from geofit.prediction.spread import band
-from geofit.prediction.spread import sd_at as sd_of_fit
-from geofit.progress import Progress, tell
-from geofit.surface import HorizonSurface
+from geofit.prediction.bands import band
+from geofit.prediction.bands import sd_at as sd_of_fit
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["BAND", "Drawn", "drawn_of"]
 

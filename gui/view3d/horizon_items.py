@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkFiltersCore import vtkContourFilter
 
-from geofit.accuracy import Seam
-from geofit.geometry.contours import interval_for
+from geofit.data.accuracy import Seam
+from geofit.data.points import PointSet
+from geofit.data.prediction import Suggestion
+from geofit.data.settings import FitSettings
 from geofit.gui.view3d.actors import Part, coloured, dots, lines, poly, ramped, shaded, triangles
 from geofit.gui.view3d.colouring import PointColours, points_by, ramp, rgb, seam_colours
 from geofit.gui.view3d.item import Item, Look, extent
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import Shape
-from geofit.offdata import Suggestion
-from geofit.points import PointSet
-from geofit.settings import FitSettings
-from geofit.surface import HorizonSurface
+from geofit.sampling.contours import interval_for
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["control_item", "points_item", "seams_item", "shape_item", "suggestions_item"]
 

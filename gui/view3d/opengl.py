@@ -7,7 +7,7 @@ import sys
 
 from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QSurfaceFormat
 
-from geofit.errors import MissingDependencyError
+from geofit.data.errors import MissingDependencyError
 
 __all__ = ["NoOpenGLError", "require_opengl"]
 

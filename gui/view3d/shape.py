@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from geofit.accuracy import Seam
+from geofit.data.accuracy import Seam
+from geofit.data.prediction import Uncertainty
+from geofit.data.site import Ground
 from geofit.geometry.cells import tabulate
 from geofit.geometry.mesh import Mesh, MeshSurface, triangulate
-from geofit.offdata import Uncertainty
 from geofit.report.view import trimmed
-from geofit.site import Ground
-from geofit.surface import HorizonSurface, Patch
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Shape", "across", "next_below", "sd_at", "seam_lines", "shape_of"]
 

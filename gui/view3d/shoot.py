@@ -12,11 +12,11 @@ from PySide6.QtGui import QImage, QImageWriter, QPainter
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
-from geofit.errors import SettingsError
-from geofit.files import replacing
+from geofit.data.errors import SettingsError
+from geofit.data.files import replacing
+from geofit.data.messages import said
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.stage import Stage
-from geofit.words import said
 
 __all__ = ["shoot"]
 

@@ -8,13 +8,13 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.site import Ground, Hole, Orientations, Section
 from geofit.gui.view3d.actors import Part, dots, lines, poly, triangles
 from geofit.gui.view3d.colouring import legible
 from geofit.gui.view3d.item import Item, Look, extent
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import Shape
 from geofit.report.style import FAIL, KIND_STYLE
-from geofit.site import Ground, Hole, Orientations, Section
 
 __all__ = ["boundary_item", "dips_item", "ground_item", "holes_item", "sections_item"]
 

@@ -12,7 +12,8 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QImage, QResizeEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from geofit.geometry.cut import section_line
+from geofit.data.prediction import Suggestion, Uncertainty
+from geofit.data.site import Site
 from geofit.gui.view3d.actors import Part, lines, poly
 from geofit.gui.view3d.axes import floor_lines, marks, nice
 from geofit.gui.view3d.camera import Eye, framed
@@ -30,9 +31,8 @@ from geofit.gui.view3d.shoot import shoot
 from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, SectionPlane
 from geofit.gui.view3d.writing import Writing, theme_of
-from geofit.offdata import Suggestion, Uncertainty
-from geofit.site import Site
-from geofit.surface import HorizonSurface
+from geofit.sampling.cut import section_line
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["SceneView"]
 

@@ -8,14 +8,14 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.errors import GeofitError
+from geofit.data.errors import GeofitError
+from geofit.data.progress import Progress, tell
 from geofit.io.columns import HORIZON_COLUMNS, SCHEMAS
 from geofit.io.guess import WORDS
 from geofit.io.mapping import ColumnMapping
 from geofit.io.preview import TablePreview, preview_file, preview_table
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers
-from geofit.progress import Progress, tell
 
 __all__ = ["Draft", "drafts_of", "free_name", "read_again"]
 

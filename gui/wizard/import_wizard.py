@@ -33,8 +33,8 @@ from geofit.gui.wizard.result_page import ResultPage
 from geofit.gui.wizard.table_page import TablePage
 from geofit.gui.wizard.words import kind_name
 from geofit.gui.words import spoken_language
-from geofit.importing import Import, import_files
 from geofit.io.source import Source
+from geofit.project.importing import Import, import_files
 
 __all__ = ["ImportWizard", "memory_file"]
 

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 from geofit.gui.panels.marks import icon
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
-from geofit.importing import Import
+from geofit.project.importing import Import
 
 __all__ = ["ResultPage"]
 
@@ -29,7 +29,7 @@ _REASON = 330
 
 
 class ResultPage(QWidget):
-    """Shows an :class:`geofit.importing.Import`."""
+    """Shows an :class:`geofit.project.importing.Import`."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)

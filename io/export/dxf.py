@@ -7,10 +7,10 @@ from contextlib import contextmanager
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from geofit.files import file_stems, replacing
-from geofit.geometry.contours import Contour
-from geofit.geometry.cut import CutLine
+from geofit.data.files import file_stems, replacing
 from geofit.geometry.mesh import Mesh
+from geofit.sampling.contours import Contour
+from geofit.sampling.cut import CutLine
 
 if TYPE_CHECKING:
     from ezdxf.document import Drawing

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
-from geofit.files import replacing
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.messages import said
+from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
 from geofit.io.extra import need
-from geofit.points import PointSet
-from geofit.words import said
 
 __all__ = ["write_geoh5"]
 

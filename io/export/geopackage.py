@@ -8,11 +8,11 @@ from os import PathLike
 
 import numpy as np
 
-from geofit.errors import InputError
-from geofit.files import replacing
-from geofit.geometry.contours import Contour
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.messages import said
 from geofit.io.extra import need
-from geofit.words import said
+from geofit.sampling.contours import Contour
 
 __all__ = ["write_contours_gpkg"]
 

@@ -7,11 +7,11 @@ from os import PathLike
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
-from geofit.files import replacing
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.messages import said
+from geofit.data.site import Ground
 from geofit.io.extra import need
-from geofit.site import Ground
-from geofit.words import said
 
 __all__ = ["write_esri", "write_geotiff", "write_surfer"]
 

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from geofit import __version__
-from geofit.errors import InputError
-from geofit.files import replacing
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.messages import said
+from geofit.data.site import Hole
 from geofit.geometry.mesh import triangulate
 from geofit.io.extra import need
-from geofit.site import Hole
-from geofit.surface import HorizonSurface, Patch
-from geofit.words import said
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["write_ifc"]
 

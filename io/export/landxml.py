@@ -10,10 +10,10 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from geofit import __version__
-from geofit.errors import InputError
-from geofit.files import replacing
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.messages import said
 from geofit.geometry.mesh import Mesh
-from geofit.words import said
 
 __all__ = ["write_landxml"]
 

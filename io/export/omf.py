@@ -18,10 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
-from geofit.files import replacing
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
-from geofit.points import PointSet
 
 __all__ = ["write_omf"]
 

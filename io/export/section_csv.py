@@ -6,8 +6,8 @@ import csv
 from collections.abc import Mapping, Sequence
 from os import PathLike
 
-from geofit.files import replacing
-from geofit.geometry.cut import CutLine
+from geofit.data.files import replacing
+from geofit.sampling.cut import CutLine
 
 __all__ = ["HEADER", "write_section_csv"]
 

@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.errors import InputError
-from geofit.files import replacing
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
 from geofit.geometry.mesh import Mesh
 
 __all__ = ["common_origin", "write_glb", "write_obj", "write_ply", "write_stl"]

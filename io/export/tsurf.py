@@ -6,7 +6,7 @@ import re
 from collections.abc import Mapping
 from os import PathLike
 
-from geofit.files import replacing
+from geofit.data.files import replacing
 from geofit.geometry.mesh import Mesh
 
 __all__ = ["write_tsurf"]

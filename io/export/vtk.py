@@ -12,11 +12,11 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.errors import InputError
-from geofit.files import file_stems, replacing
+from geofit.data.errors import InputError
+from geofit.data.files import file_stems, replacing
+from geofit.data.messages import said
+from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
-from geofit.points import PointSet
-from geofit.words import said
 
 __all__ = ["write_vtm", "write_vtp"]
 

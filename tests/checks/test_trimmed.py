@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from surfaces import ORIGIN, area, bored, fold, height_field, horizon, split
 
-from geofit.checks.given import check_given
-from geofit.geometry.loops import TrimmedSurface
+from geofit.checks.imported import check_given
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
 from geofit.geometry.mesh import triangulate
+from geofit.geometry.trim_loops import TrimmedSurface
 from geofit.io.surface_files import read_surface_file
-from geofit.points import PointSet
-from geofit.settings import FitSettings
 
 #: Rings in the parameters of a patch of 1,000 by 700 m: all of it nearly, its west, a hole in the east.
 ALL = np.array([[10, 10], [990, 10], [990, 690], [10, 690]], float)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from surfaces import ORIGIN, fold, height_field, horizon, nine, wave
 
-from geofit.errors import SettingsError
+from geofit.data.errors import SettingsError
 from geofit.geometry.clip import inside
 from geofit.geometry.mesh import triangulate
 

@@ -16,7 +16,10 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.gui.document.commands import (
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.data.site import Site
+from geofit.project.commands import (
     AdjustControlPoint,
     Command,
     ExcludeRow,
@@ -28,12 +31,9 @@ from geofit.gui.document.commands import (
     SetSettings,
     SetSurface,
 )
-from geofit.gui.document.document import Document
-from geofit.gui.document.journal import Journal
-from geofit.gui.document.recipe import DocumentError, Row
-from geofit.points import PointSet
-from geofit.settings import FitSettings
-from geofit.site import Site
+from geofit.project.document import Document
+from geofit.project.journal import Journal
+from geofit.project.provenance import DocumentError, Row
 
 STEPS = 400
 NAMES = ("上层 T3/T2", "T2-T1", "W")

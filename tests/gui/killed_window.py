@@ -9,10 +9,10 @@ from pathlib import Path
 
 from PySide6.QtCore import QTimer
 
+from geofit.data.settings import FitSettings
 from geofit.gui.desktop import Desktop
-from geofit.gui.document.commands import RenameSite, SetSettings
-from geofit.gui.document.state import State
-from geofit.settings import FitSettings
+from geofit.project.commands import RenameSite, SetSettings
+from geofit.project.state import State
 
 
 def digest(state: State) -> str:

@@ -7,8 +7,8 @@ import pytest
 from panel_samples import FAULT, failing, fitted
 from PySide6.QtCore import Qt
 
+from geofit.fitting.edit import adjust, support
 from geofit.gui.panels.adjust import AdjustPanel
-from geofit.handwork import adjust, support
 
 
 @pytest.fixture

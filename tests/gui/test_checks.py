@@ -8,9 +8,9 @@ import pytest
 from panel_samples import failing, fitted, off_data
 from PySide6.QtWidgets import QApplication
 
-from geofit.accuracy import Check, Conflict, ReadBack
+from geofit.data.accuracy import Check, Conflict, ReadBack
 from geofit.gui.panels.checks import ChecksPanel
-from geofit.stack.order import Order
+from geofit.site.order import Order
 
 
 @pytest.fixture

@@ -9,11 +9,11 @@ import pytest
 from panel_samples import FAULT, WITH_PERIPHERY, fitted
 from PySide6.QtCore import QSettings, Qt
 
-from geofit.accuracy import Check
+from geofit.cad.step import read_step
+from geofit.data.accuracy import Check
 from geofit.gui.dialogs import task_dialog
 from geofit.gui.dialogs.export_step import ExportDialog
-from geofit.gui.document.step_files import step_paths
-from geofit.io.step import read_step
+from geofit.project.step_files import step_paths
 
 
 def opened(qtbot, *names):

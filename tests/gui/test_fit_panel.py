@@ -8,8 +8,8 @@ import pytest
 from panel_samples import fitted
 from PySide6.QtCore import Qt
 
+from geofit.data.settings import FitSettings
 from geofit.gui.panels.fit_panel import FitPanel
-from geofit.settings import FitSettings
 
 CORNERS = ((0.0, 0.0), (10.0, 0.0), (10.0, 20.0), (0.0, 20.0))
 

@@ -7,7 +7,7 @@ from panel_samples import SITE, sample_site
 from PySide6.QtCore import QByteArray
 from PySide6.QtWidgets import QToolBar
 
-from geofit.site import Site
+from geofit.data.site import Site
 
 
 def opened(app):

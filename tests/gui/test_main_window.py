@@ -19,18 +19,18 @@ from PySide6.QtGui import QDropEvent, QGuiApplication, QKeySequence
 from PySide6.QtWidgets import QDialog, QMessageBox
 from shiboken6 import isValid
 
-from geofit.errors import FitError, InputError
+from geofit.data.errors import FitError, InputError
+from geofit.data.site import ImportIssue, Site, TableCount
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.issues import IssuesDialog
 from geofit.gui.dialogs.recovery import RecoveryDialog
 from geofit.gui.dialogs.shortcuts import ShortcutsDialog
 from geofit.gui.dialogs.system_report import SystemReport, system_report
-from geofit.gui.document.commands import RenameSite
-from geofit.gui.document.journal import unfinished
-from geofit.gui.document.state import State
 from geofit.gui.preferences import Preferences
 from geofit.gui.theme import is_dark
-from geofit.site import ImportIssue, Site, TableCount
+from geofit.project.commands import RenameSite
+from geofit.project.journal import unfinished
+from geofit.project.state import State
 
 WINDOW_KILLS = 3
 

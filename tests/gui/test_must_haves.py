@@ -19,8 +19,8 @@ from panel_samples import SITE, fitted, off_data, sample_site
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from geofit.errors import InputError
-from geofit.gui.document.commands import SetSurface
+from geofit.data.errors import InputError
+from geofit.project.commands import SetSurface
 
 NAME = "T3-T2"
 
@@ -72,7 +72,7 @@ def click(view, place):
 def test_01_the_library_needs_no_qt():
     code = (
         "import sys; sys.modules['PySide6'] = None\n"
-        "import geofit, geofit.cli, geofit.pipeline, geofit.prediction.examine, geofit.stack.repair\n"
+        "import geofit, geofit.cli.main, geofit.fitting.pipeline, geofit.prediction.examine, geofit.site.separate\n"
         "import geofit.report.accuracy_report\n"
         "assert not [name for name in sys.modules if name.startswith('PySide6.')]"
     )
@@ -200,7 +200,7 @@ def test_10_every_change_has_a_name_and_can_be_undone(shown):
 
 
 def _row(app, index):
-    from geofit.gui.document.recipe import Row
+    from geofit.project.provenance import Row
 
     return Row.of(fitted().points, index)
 
@@ -218,7 +218,7 @@ def test_11_the_project_is_versioned_text_and_the_title_says_what_is_unsaved(sho
 
 
 def test_12_what_was_done_is_in_the_journal_before_the_next_thing(shown):
-    from geofit.gui.document.journal import Journal
+    from geofit.project.journal import Journal
 
     journal = shown.window.session._journal
     assert isinstance(journal, Journal)

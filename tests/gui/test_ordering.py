@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from PySide6.QtWidgets import QDialog
 
-from geofit.errors import FitError
+from geofit.data.errors import FitError
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.data.site import Site
 from geofit.gui.dialogs.order import OrderDialog
-from geofit.gui.document.making import make
-from geofit.gui.document.ordering import over_map
-from geofit.points import PointSet
-from geofit.settings import FitSettings
-from geofit.site import Site
-from geofit.stack.order import order_of
+from geofit.project.building import make
+from geofit.project.ordering import over_map
+from geofit.site.order import order_of
 
 
 def scattered(seed, lift):

@@ -10,18 +10,18 @@ import pytest
 from faulted import ORIGIN, START, WAY, faulted_site, off, throw
 
 from geofit import FitSettings
-from geofit.gui.document.commands import ExcludeRow, IncludeRow, PartAtFaults, SetSettings, SetSurface
-from geofit.gui.document.document import Document
-from geofit.gui.document.making import make
-from geofit.gui.document.ordering import comparable
-from geofit.gui.document.parting import measured, part_at_faults
-from geofit.gui.document.recipe import DocumentError, Row
-from geofit.gui.document.reporting import write_report_files
-from geofit.gui.document.saving import project_of, read_surfaces, state_of, write_project
+from geofit.data.site import Orientations
 from geofit.io.project import open_project
+from geofit.project.building import make
+from geofit.project.commands import ExcludeRow, IncludeRow, PartAtFaults, SetSettings, SetSurface
+from geofit.project.document import Document
+from geofit.project.fault_blocks import measured, part_at_faults
+from geofit.project.ordering import comparable
+from geofit.project.provenance import DocumentError, Row
+from geofit.project.reporting import write_report_files
+from geofit.project.saving import project_of, read_surfaces, state_of, write_project
 from geofit.report.result import HorizonResult
-from geofit.site import Orientations
-from geofit.stack.sitefit import fit_site
+from geofit.site.fit_site import fit_site
 
 BLOCKS = ["T2 (A)", "T2 (B)"]
 

@@ -13,14 +13,14 @@ from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtTest import QTest
 
 import geofit
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
 from geofit.geometry.frame import map_frame
 from geofit.gui.panels.core_box import CoreBox
 from geofit.gui.panels.plan import PlanPanel
 from geofit.gui.panels.plan_ink import draw_labels, round_length
 from geofit.gui.panels.plan_view import PERIPHERY
-from geofit.points import PointSet
 from geofit.report.style import CORE
-from geofit.settings import FitSettings
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
-from geofit.gui.document.commands import SetSurface
+from geofit.project.commands import SetSurface
 
 
 @pytest.fixture

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geofit.gui.document.commands import PullToPoint, RenameSite, SetSettings, SetSurface
-from geofit.gui.document.document import Document
-from geofit.gui.document.journal import Journal, unfinished
-from geofit.gui.document.making import make
-from geofit.settings import FitSettings
+from geofit.data.settings import FitSettings
+from geofit.project.building import make
+from geofit.project.commands import PullToPoint, RenameSite, SetSettings, SetSurface
+from geofit.project.document import Document
+from geofit.project.journal import Journal, unfinished
 
 CHILD = Path(__file__).with_name("cut_off.py")
 KILLS = 60

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QDesktopServices
 
-from geofit.cli import main
+from geofit.cli.main import main
 from geofit.gui.dialogs.export_step import ExportDialog
 from geofit.gui.dialogs.report import ReportDialog
 from geofit.report import pictures

@@ -7,10 +7,10 @@ from dataclasses import replace
 import pytest
 from panel_samples import fitted
 
-from geofit.accuracy import Seam
+from geofit.data.accuracy import Seam
+from geofit.data.settings import FitSettings
 from geofit.gui.panels.seams import SeamTable, seam_holds
 from geofit.gui.words import speak, spoken
-from geofit.settings import FitSettings
 
 
 @pytest.fixture

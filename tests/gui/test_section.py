@@ -7,12 +7,12 @@ import pytest
 from panel_samples import FAULT, WITH_PERIPHERY, fitted, off_data, sample_site
 from PySide6.QtCore import QPoint, Qt
 
+from geofit.data.prediction import Uncertainty
 from geofit.gui import worker
 from geofit.gui.panels.curtain import Curtain, extent
 from geofit.gui.panels.section import SectionPanel
 from geofit.gui.panels.section_ink import near_points
 from geofit.gui.panels.section_scale import Extent, automatic, window
-from geofit.offdata import Uncertainty
 
 #: Triangles of the surfaces, made once for all tests.
 MESHES = {}

@@ -7,7 +7,7 @@ from panel_samples import SITE, sample_site
 from PySide6.QtWidgets import QTreeWidgetItemIterator
 
 from geofit.gui.dialogs.shortcuts import ShortcutsDialog
-from geofit.gui.document.commands import RenameSite
+from geofit.project.commands import RenameSite
 
 
 @pytest.fixture

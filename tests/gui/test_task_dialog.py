@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLineEdit, QVBoxLayout
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.gui.dialogs.task_dialog import TaskDialog
 
 
@@ -91,7 +91,7 @@ def test_progress_comes_with_patience_and_goes(qtbot):
 def endless(_, progress):
     while progress("on and on", 0.1) is not False:
         time.sleep(0.02)
-    from geofit.errors import Cancelled
+    from geofit.data.errors import Cancelled
 
     raise Cancelled("stopped")
 

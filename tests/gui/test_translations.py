@@ -14,13 +14,13 @@ from chinese import literals
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QDialogButtonBox, QLabel, QWidget
 
-from geofit.errors import InputError
-from geofit.gui.document.recipe import DocumentError
+from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.gui.language import apply_language
 from geofit.gui.panels.log import LogPanel
 from geofit.gui.words import spoken
 from geofit.gui.worker import run
-from geofit.words import said
+from geofit.project.provenance import DocumentError
 
 ROOT = Path(__file__).resolve().parents[2]
 

@@ -17,14 +17,14 @@ from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 
 from geofit import HorizonSurface, PointSet
-from geofit.accuracy import Seam
-from geofit.check import check
-from geofit.errors import SettingsError
+from geofit.checks.check import check
+from geofit.data.accuracy import Seam
+from geofit.data.errors import SettingsError
+from geofit.data.prediction import Suggestion, Uncertainty
+from geofit.data.site import Ground, Hole, Orientations, Section, Site
 from geofit.gui.view3d.colouring import rgb
-from geofit.offdata import Suggestion, Uncertainty
 from geofit.report.style import HORIZONS
-from geofit.site import Ground, Hole, Orientations, Section, Site
-from geofit.surface import Patch
+from geofit.splines.patch import Patch
 
 ORIGIN = np.array([501_000.0, 3_100_000.0, 1_500.0])
 SLOPE = 0.2

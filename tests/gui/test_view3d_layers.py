@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geofit import FitSettings, PointSet
-from geofit.accuracy import Seam
+from geofit.data.accuracy import Seam
 from geofit.gui.view3d.axes import grouped, marks, nice, ticks
 from geofit.gui.view3d.camera import VIEWS, Eye, between, framed
 from geofit.gui.view3d.colouring import legible, points_by, ramp, rgb, seam_colours
@@ -244,9 +244,9 @@ def test_the_clip_box_cannot_be_turned_inside_out():
 def test_the_disc_of_a_dip_lies_as_it_was_measured():
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
+    from geofit.data.site import Orientations
     from geofit.gui.view3d.item import Look
     from geofit.gui.view3d.site_items import dips_item
-    from geofit.site import Orientations
 
     one = Orientations(ORIGIN[None], *map(np.array, ([60.0], [25.0], ["W"], ["a.csv"], [2])))
     item = dips_item(one, 1000.0, Layer("dips", "dips", labels=True), Look(ORIGIN, False))

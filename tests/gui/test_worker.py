@@ -9,9 +9,9 @@ import time
 import pytest
 from PySide6.QtCore import QObject
 
-from geofit.errors import FitError
+from geofit.data.errors import FitError
+from geofit.data.progress import tell
 from geofit.gui import worker
-from geofit.progress import tell
 
 
 def double(value, *, progress):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.io import Source, read_boreholes, take_contacts
 
 COLLAR = "hole,x,y,z,depth\nB1,0,0,100,50\n"

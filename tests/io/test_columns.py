@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.io import columns
 from geofit.io.guess import find_columns
 from geofit.io.journal import Journal

@@ -6,10 +6,10 @@ import ezdxf
 import numpy as np
 import pytest
 
-from geofit.errors import InputError
-from geofit.importing import import_files
+from geofit.data.errors import InputError
 from geofit.io import read_site
 from geofit.io.mapping import ColumnMapping
+from geofit.project.importing import import_files
 
 GROUND = "ncols 3\nnrows 3\nxllcenter 500000\nyllcenter 3100000\ncellsize 500\n700 750 800\n600 650 700\n500 550 600\n"
 

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from geofit.errors import InputError, MissingDependencyError
+from geofit.data.errors import InputError, MissingDependencyError
+from geofit.data.site import Ground
 from geofit.io.export.grids import write_esri, write_geotiff, write_surfer
 from geofit.io.grid import read_ground
-from geofit.site import Ground
 
 WRITERS = {"a.asc": write_esri, "a.grd": write_surfer, "a.tif": write_geotiff}
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from surfaces import area, bored, height_field, split
 
-from geofit.exporting import Request, export, read_surfaces, section
-from geofit.geometry.contours import contours
+from geofit.project.export import Request, export, read_surfaces, section
+from geofit.sampling.contours import contours
 
 ROUND = ((500, 350, 120), (250, 180, 60), (700, 700, 90))
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from surfaces import fold, horizon, nine
 
-from geofit.errors import InputError, MissingDependencyError
+from geofit.data.errors import InputError, MissingDependencyError
+from geofit.data.site import Hole
 from geofit.io.export.ifc import write_ifc
-from geofit.site import Hole
-from geofit.surface import Patch
+from geofit.splines.patch import Patch
 
 HOLES = (
     Hole("ZK1", "borehole", np.array([0.0, 50.0]), np.array([[5e5, 3.1e6, 520.0], [5e5, 3.1e6, 470.0]])),

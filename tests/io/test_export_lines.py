@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from surfaces import ORIGIN, height_field, horizon, nine
 
-from geofit.errors import InputError, MissingDependencyError
-from geofit.geometry.contours import contours
-from geofit.geometry.cut import cut
+from geofit.data.errors import InputError, MissingDependencyError
 from geofit.io.export.dxf import write_contours_dxf, write_section_dxf
 from geofit.io.export.geopackage import write_contours_gpkg
+from geofit.sampling.contours import contours
+from geofit.sampling.cut import cut
 
 
 @pytest.fixture(scope="module")

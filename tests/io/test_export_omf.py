@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from surfaces import fold, horizon, nine
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.points import PointSet
 from geofit.geometry.mesh import triangulate
 from geofit.io.export.omf import write_omf
-from geofit.points import PointSet
 
 POINTS = PointSet(np.array([[5e5, 3.1e6, 400.0], [500010.5, 3100020.25, 410.125]]))
 OFF = np.array([0.25, -0.5])

@@ -12,10 +12,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from surfaces import fold, horizon, nine
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh, triangulate
 from geofit.io.export import dxf, landxml, triangles, tsurf, vtk
-from geofit.points import PointSet
 
 
 @pytest.fixture(scope="module")

@@ -7,7 +7,7 @@ import struct
 import numpy as np
 import pytest
 
-from geofit.errors import InputError, MissingDependencyError
+from geofit.data.errors import InputError, MissingDependencyError
 from geofit.io import read_boreholes, read_boundary, read_ground, read_points
 from geofit.io.formats import read_any_table, table_names
 from geofit.io.journal import Journal

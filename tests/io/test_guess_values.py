@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.importing import import_files
 from geofit.io import preview_file
 from geofit.io.guess_values import CONFIDENCE
 from geofit.io.mapping import ColumnMapping
+from geofit.project.importing import import_files
 
 HOLES = [(f"ZK{k}", 500000 + 37.5 * k, 3100000 + 11.2 * k, 120.25 + k) for k in range(8)]
 LOGS = [(name, top, base, code) for name, *_ in HOLES for top, base, code in ((0, 9.5, "Q"), (9.5, 30, "T2"))]

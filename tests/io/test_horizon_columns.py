@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.errors import InputError
-from geofit.importing import import_files
+from geofit.data.errors import InputError
 from geofit.io import read_points, read_site
 from geofit.io.mapping import ColumnMapping, load_mappings
 from geofit.io.preview import preview_file
+from geofit.project.importing import import_files
 from geofit.report.language import ZH, tell
 
 WELLS = """\

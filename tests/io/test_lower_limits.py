@@ -8,10 +8,10 @@ import io
 import numpy as np
 import pytest
 
-from geofit.errors import InputError
-from geofit.importing import import_files
+from geofit.data.errors import InputError
 from geofit.io import Source, read_boreholes, take_contacts
 from geofit.io.preview import preview_file
+from geofit.project.importing import import_files
 from geofit.report.language import ZH, tell
 
 COLLAR = "hole,x,y,z,depth\nA,0,0,100,60\nB,50,0,103,60\nC,90,10,98.5,60\n"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.io import read_site
 
 

@@ -7,7 +7,7 @@ import json
 import numpy as np
 import pytest
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.io import read_boundary, read_ground, read_points
 
 

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.io import read_points, read_site
 from geofit.io.columns import SURVEY
 from geofit.io.formats import read_any_table

@@ -11,11 +11,11 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from surfaces import fold, horizon, nine
 
-from geofit.errors import InputError
-from geofit.files import replacing
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.settings import FitSettings
 from geofit.io import project as module
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
-from geofit.settings import FitSettings
 
 VERSION_0 = """{"format": "geofit project", "version": 0, "title": "Old dam",
 "files": {"collar.csv": "ab12"}, "epsilon": {"T1": 0.25}}"""

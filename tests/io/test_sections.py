@@ -6,13 +6,13 @@ import ezdxf
 import numpy as np
 import pytest
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
+from geofit.data.site import Section
 from geofit.io import read_site
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.sections import Drawing, load_section
 from geofit.io.source import Source
-from geofit.site import Section
 
 SECTION = Section("C1", np.array([[1000.0, 2000.0], [1300.0, 2400.0], [1300.0, 2900.0]]))
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from chinese import english_left
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.io import read_site
 
 
@@ -349,7 +349,7 @@ def test_trace_with_its_own_elevation_is_not_draped(make_site):
 
 
 def test_progress_can_cancel(make_site):
-    from geofit.errors import Cancelled
+    from geofit.data.errors import Cancelled
 
     with pytest.raises(Cancelled):
         read_site(make_site(), progress=lambda stage, fraction: fraction < 0.3)

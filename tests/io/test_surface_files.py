@@ -10,16 +10,16 @@ import numpy as np
 import pytest
 from surfaces import ORIGIN, fold, height_field, horizon, nine
 
-from geofit.checks.given import check_given
-from geofit.errors import InputError
-from geofit.exporting import Request, export, read_surfaces
-from geofit.geometry.loops import TrimmedSurface
+from geofit.cad.export import write_brep, write_iges
+from geofit.checks.imported import check_given
+from geofit.data.errors import InputError
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
 from geofit.geometry.mesh import MeshSurface, triangulate
-from geofit.io.export.cad import write_brep, write_iges
+from geofit.geometry.trim_loops import TrimmedSurface
 from geofit.io.export.tsurf import write_tsurf
 from geofit.io.surface_files import read_surface_file
-from geofit.points import PointSet
-from geofit.settings import FitSettings
+from geofit.project.export import Request, export, read_surfaces
 
 OUTLINE = [[100, 80], [500, 20], [900, 100], [950, 600], [80, 650]]
 LONG = "T1, top of the weathered zone"
@@ -185,7 +185,7 @@ def test_a_mesh_goes_to_triangle_formats_and_grids_not_to_nurbs(files, tmp_path)
 
 
 def run(monkeypatch, capsys, *arguments):
-    from geofit.cli import main
+    from geofit.cli.main import main
 
     monkeypatch.setattr("sys.argv", ["geofit", *map(str, arguments)])
     with pytest.raises(SystemExit) as stop:

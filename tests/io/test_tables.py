@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers, read_table

@@ -12,16 +12,16 @@ from truth import paper_arrangement, rms
 
 import geofit
 from geofit import FitSettings, PointSet, fit_horizon
-from geofit.errors import SettingsError
-from geofit.offdata import OffData
+from geofit.data.errors import SettingsError
+from geofit.data.prediction import OffData
+from geofit.prediction.bands import grid_over
 from geofit.prediction.calibration import BAND, LeftOutPoints, calibrate, factor_for, share_inside, uncalibrated
 from geofit.prediction.examine import examine
 from geofit.prediction.folds import beyond_hull, block_labels, groups_of, hole_labels
 from geofit.prediction.kriging import NEIGHBOURS, Variogram, fit_variogram, krige_left_out
-from geofit.prediction.spread import grid_over
 from geofit.prediction.thinplate import thin_plate_left_out
 from geofit.sample import horizon_truth
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 SITE = Path(__file__).parents[2] / "sample_data" / "site.toml"
 

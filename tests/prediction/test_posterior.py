@@ -9,17 +9,17 @@ import pytest
 from truth import Truth, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
-from geofit.errors import FitError, SettingsError
+from geofit.data.errors import FitError, SettingsError
+from geofit.fitting.deletion import LinearFit, linear_fit
+from geofit.fitting.field import energy_band
+from geofit.fitting.posterior import posterior
+from geofit.prediction.bands import Spread, band, grid_over, sd_at, uncertainty_on
 from geofit.prediction.calibration import uncalibrated
-from geofit.prediction.deletion import LinearFit, linear_fit
 from geofit.prediction.drilling import greedy_holes, suggest_holes
-from geofit.prediction.posterior import posterior
-from geofit.prediction.spread import Spread, band, grid_over, sd_at, uncertainty_on
 from geofit.splines import bspline
 from geofit.splines.blocks import BlockFactor
 from geofit.splines.tensor import RIDGES, TensorSpace
-from geofit.steps.field import energy_band
-from geofit.surface import HorizonSurface
+from geofit.surfaces.surface import HorizonSurface
 
 
 def dense(band: np.ndarray) -> np.ndarray:
@@ -182,7 +182,7 @@ def test_band_lies_z_times_sd_above_and_below_and_keeps_its_seams():
     assert upper.elevation(x, y) - middle == pytest.approx(middle - lower.elevation(x, y), abs=1e-6)
     ratio = (upper.elevation(x, y) - middle) / (1.6449 * sd)
     assert 0.9 < np.median(ratio) < 1.3
-    from geofit.checks.seams import seams
+    from geofit.geometry.seams import seams
 
     assert all(seam.gap < 1e-9 and seam.angle < 0.1 for seam in seams(upper.patches))
     with pytest.raises(SettingsError, match="probability"):

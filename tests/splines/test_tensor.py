@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.polynomial.legendre import leggauss
 
-from geofit.errors import FitError
+from geofit.data.errors import FitError
 from geofit.splines import bspline, tensor
 from geofit.splines.tensor import CELLWISE, Factor, TensorSpace, band_times
 

@@ -1,0 +1,1 @@
+"""OpenCASCADE: faces, trimming, sewing, STEP, IGES, BREP, and what is read back from them."""

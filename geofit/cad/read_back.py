@@ -1,0 +1,332 @@
+"""What OpenCASCADE finds in a STEP file that was written: distances, seams, validity, self-intersection."""
+
+from __future__ import annotations
+
+import hashlib
+from collections import defaultdict
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.cad.faces import along, edges_with_faces, faces_of, free_edges, free_loops
+from geofit.data.accuracy import Check, ReadBack, Seam
+from geofit.data.messages import said
+from geofit.geometry.projection import project
+from geofit.surfaces.surface import HorizonSurface
+
+if TYPE_CHECKING:
+    from geofit.cad.imported import FileShape
+
+__all__ = ["read_back", "self_intersects"]
+
+Floats = NDArray[np.float64]
+
+#: Limits that the file must keep: metres, metres, degrees, metres.
+CORE, GAP, ANGLE, EDGE = 1e-6, 1e-6, 0.1, 1e-6
+#: Places along every seam.
+SAMPLES = 200
+#: OpenCASCADE projects some 670 points a second: so many are left to it, of more it measures a share.
+MEASURED = 2000
+
+
+def read_back(surface: HorizonSurface, shape: FileShape, found: HorizonSurface, written: Any, path: Path) -> ReadBack:
+    """Check a horizon as it stands in the file against the one that was written.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        What was written, with its points.
+    shape : FileShape
+        What was read, as OpenCASCADE's shape.
+    found : HorizonSurface
+        The same as patches, whole even where the outline trims them: points beyond it are measured as in the
+        fit.
+    written : TopoDS_Shell
+        The shell that was handed to the writer.
+    path : Path
+        The file.
+
+    Returns
+    -------
+    ReadBack
+        With a :class:`~geofit.data.accuracy.Check` for each demand.
+    """
+    from OCP.BRepCheck import BRepCheck_Analyzer
+
+    distance, how = _distances(surface, shape, found)
+    squares = float(np.sum(distance**2))
+    sigma = float(np.sqrt(squares / (len(distance) - 1))) if len(distance) > 1 else float("nan")
+    core = distance[surface.core] if len(surface.core) == len(distance) else distance[:0]
+    core_max = float(np.abs(core).max()) if core.size else float("nan")
+    seams = _seams(shape)
+    valid = bool(BRepCheck_Analyzer(shape.shape).IsValid())
+    free, expected = free_edges(shape.shape), len(free_edges(written))
+    loops = free_loops(shape.shape)
+    inner, outer = _edge_tolerances(shape.shape)
+    rim = surface.settings.boundary_tolerance
+    crossing = self_intersects(shape.shape)
+    gap = max((seam.gap for seam in seams), default=0.0)
+    angle = max((seam.angle for seam in seams), default=0.0)
+    tangent = surface.settings.seam == "tangent"
+    checks = (
+        Check(
+            "read-back core",
+            core_max <= CORE if core.size else None,
+            core_max,
+            CORE,
+            "m",
+            said(
+                "largest distance of {count} core points from the surface in the file ({how})", count=core.size, how=how
+            ),
+        ),
+        Check("read-back seam gap", gap <= GAP, gap, GAP, "m", _words(seams, "gap", "m")),
+        Check(
+            "read-back seam angle",
+            (angle <= ANGLE) if tangent else None,
+            angle,
+            ANGLE,
+            "deg",
+            _words(seams, "angle", "deg"),
+        ),
+        Check(
+            "read-back validity",
+            valid,
+            float(not valid),
+            0.0,
+            "",
+            said("OpenCASCADE's BRepCheck of the shape read"),
+        ),
+        Check(
+            "read-back free edges",
+            len(free) == expected and loops == 1,
+            float(len(free)),
+            float(expected),
+            "edges",
+            said(
+                "free edges: {free}, edges of the outline: {expected}, closed loops: {loops}",
+                free=len(free),
+                expected=expected,
+                loops=loops,
+            ),
+        ),
+        _outline_check(surface, shape, free),
+        Check(
+            "read-back seam tolerance",
+            inner <= EDGE,
+            inner,
+            EDGE,
+            "m",
+            said("largest tolerance of an edge between faces: a larger one could hide a gap"),
+        ),
+        Check(
+            "read-back rim tolerance",
+            outer <= rim,
+            outer,
+            rim,
+            "m",
+            said("largest tolerance of a free edge: how far the outline's curve may leave the surface"),
+        ),
+        Check(
+            "read-back self-intersection",
+            not crossing,
+            float(crossing),
+            0.0,
+            "",
+            said("OpenCASCADE's boolean argument analyser finds the shell crossing itself")
+            if crossing
+            else said("OpenCASCADE's boolean argument analyser is silent"),
+        ),
+        _normal_check(found, seams),
+    )
+    return ReadBack(
+        file=path.name,
+        sha256=hashlib.sha256(path.read_bytes()).hexdigest(),
+        faces=len(found.patches),
+        sigma=sigma,
+        core_max_abs=core_max,
+        max_abs=float(np.abs(distance).max(initial=0.0)),
+        seams=seams,
+        brep_valid=valid,
+        free_edges=len(free),
+        outline_edges=expected,
+        edge_tolerance=max(inner, outer),
+        self_intersects=crossing,
+        checks=checks,
+    )
+
+
+def self_intersects(shape: Any) -> bool:
+    """Whether faces of a shape cross themselves or each other, by BOPAlgo_ArgumentAnalyzer.
+
+    BRepCheck does not find a face that crosses itself.
+    """
+    from OCP.BOPAlgo import BOPAlgo_ArgumentAnalyzer
+
+    analyser = BOPAlgo_ArgumentAnalyzer()
+    analyser.SetShape1(shape)
+    analyser.ArgumentTypeMode = False
+    analyser.SmallEdgeMode = False
+    analyser.SelfInterMode = True
+    analyser.Perform()
+    return bool(analyser.HasFaulty())
+
+
+def _words(seams: tuple[Seam, ...], field: str, unit: str) -> str:
+    if not seams:
+        return said("one face, no seam")
+    worst = max(seams, key=lambda seam: float(getattr(seam, field)))
+    return said(
+        "{places} places on each seam ({count}); largest between {first} and {second}: {value:.2g} {unit}",
+        places=SAMPLES,
+        count=len(seams),
+        first=worst.first,
+        second=worst.second,
+        value=float(getattr(worst, field)),
+        unit=unit,
+    )
+
+
+def _distances(surface: HorizonSurface, shape: FileShape, found: HorizonSurface) -> tuple[Floats, str]:
+    """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
+    xyz = surface.points.xyz
+    if not len(xyz):
+        return np.empty(0), said("no points")
+    ours = project(found.patches, xyz - found.origin)
+    distance = ours.distance.copy()
+    chosen = np.arange(len(xyz))
+    how = said("OpenCASCADE's projection")
+    if len(xyz) > MEASURED:
+        core = np.flatnonzero(surface.core) if len(surface.core) == len(xyz) else chosen[:0]
+        spread = np.unique(np.linspace(0, len(xyz) - 1, MEASURED // 4).astype(int))
+        chosen = np.unique(np.concatenate([core[:: max(1, len(core) // MEASURED)], spread]))
+    length = _occ_lengths(shape, xyz, ours.patch, chosen, np.abs(ours.distance))
+    if len(chosen) < len(xyz):
+        apart = np.abs(length - np.abs(ours.distance[chosen])).max()
+        how = said(
+            "OpenCASCADE's projection of {count}; ours of the others, at most {apart:.1e} m from it",
+            count=len(chosen),
+            apart=float(apart),
+        )
+    distance[chosen] = np.where(ours.distance[chosen] < 0, -length, length)
+    return distance, how
+
+
+def _occ_lengths(shape: FileShape, xyz: Floats, patch: NDArray[np.int64], chosen: Any, ours: Floats) -> Floats:
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeVertex
+    from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+    from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
+    from OCP.gp import gp_Pnt
+
+    length = np.empty(len(chosen))
+    faces = faces_of(shape.shape.Located(shape.location))
+    for index, face in enumerate(faces):
+        rows = np.flatnonzero(patch[chosen] == index)
+        if not rows.size:
+            continue
+        geometry = BRep_Tool.Surface_s(face)
+        bounds = geometry.Bounds()
+        whole = BRepBuilderAPI_MakeFace(geometry, *bounds, 1e-7).Face()
+        projector = GeomAPI_ProjectPointOnSurf()
+        projector.Init(geometry, *bounds)
+        for row in rows:
+            point = gp_Pnt(*xyz[chosen[row]].tolist())
+            projector.Perform(point)
+            length[row] = projector.LowerDistance() if projector.NbPoints() else np.inf
+            # A foot on the edge of the face is no orthogonal projection.
+            if length[row] > ours[chosen[row]] + 1e-8:
+                vertex = BRepBuilderAPI_MakeVertex(point).Vertex()
+                length[row] = min(length[row], BRepExtrema_DistShapeShape(vertex, whole).Value())
+    return length
+
+
+def _seams(shape: FileShape) -> tuple[Seam, ...]:
+    """Gap and angle on every edge between two faces, each face evaluated on its own parameter curve."""
+    from OCP.BRep import BRep_Tool
+
+    names = dict(zip((hash(face) for face in faces_of(shape.shape)), shape.face_names, strict=True))
+    worst: dict[tuple[str, str], tuple[float, float]] = defaultdict(lambda: (0.0, 0.0))
+    for edge, faces in edges_with_faces(shape.shape):
+        if len(faces) != 2:
+            continue
+        first, last = BRep_Tool.Range_s(edge)
+        t = np.linspace(first, last, SAMPLES)
+        (a, normal_a), (b, normal_b) = (_on_face(edge, face, t) for face in faces)
+        gap = float(np.linalg.norm(a - b, axis=1).max())
+        cosine = np.einsum("nk,nk->n", normal_a, normal_b)
+        sine = np.linalg.norm(np.cross(normal_a, normal_b), axis=1)
+        angle = float(np.degrees(np.arctan2(sine, cosine)).max())
+        pair = names[hash(faces[0])], names[hash(faces[1])]
+        worst[pair] = max(worst[pair][0], gap), max(worst[pair][1], angle)
+    return tuple(Seam(*pair, gap, angle) for pair, (gap, angle) in worst.items())
+
+
+def _on_face(edge: Any, face: Any, t: Floats) -> tuple[Floats, Floats]:
+    """Points and unit normals of a face along one of its edges, from the edge's parameter curve on it."""
+    from OCP.BRep import BRep_Tool
+    from OCP.gp import gp_Pnt, gp_Vec
+    from OCP.TopAbs import TopAbs_REVERSED
+
+    curve = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 1.0)
+    surface = BRep_Tool.Surface_s(face)
+    point, du, dv = gp_Pnt(), gp_Vec(), gp_Vec()
+    points, normals = [], []
+    for value in t.tolist():
+        uv = curve.Value(value)
+        surface.D1(uv.X(), uv.Y(), point, du, dv)
+        points.append((point.X(), point.Y(), point.Z()))
+        cross = du.Crossed(dv)
+        normals.append((cross.X(), cross.Y(), cross.Z()))
+    normal = np.array(normals)
+    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    return np.array(points), -normal if face.Orientation() == TopAbs_REVERSED else normal
+
+
+def _edge_tolerances(shape: Any) -> tuple[float, float]:
+    """Return the largest tolerance of the edges between faces, and of the free ones."""
+    from OCP.BRep import BRep_Tool
+
+    inner, outer = 0.0, 0.0
+    for edge, faces in edges_with_faces(shape):
+        tolerance = float(BRep_Tool.Tolerance_s(edge))
+        if len(faces) == 1:
+            outer = max(outer, tolerance)
+        else:
+            inner = max(inner, tolerance)
+    return inner, outer
+
+
+def _outline_check(surface: HorizonSurface, shape: FileShape, free: list[Any]) -> Check:
+    name, limit = "read-back outline", surface.settings.boundary_tolerance
+    if surface.outline is None:
+        return Check(name, None, 0.0, limit, "m", said("not trimmed: the free edges are the patches' own"))
+    import shapely
+
+    ring = shapely.LinearRing(surface.outline - surface.origin[:2])
+    points = np.concatenate([along(edge, 24)[:, :2] for edge in free])
+    off = float(shapely.distance(ring, shapely.points(points)).max())
+    follows, short = said("the free edges follow the outline"), said("the surface does not reach its whole outline")
+    reach = follows if off <= limit else short
+    return Check(name, True if off <= limit else None, off, limit, "m", reach)
+
+
+def _normal_check(found: HorizonSurface, seams: tuple[Seam, ...]) -> Check:
+    """All normals on one side of the mean one; a fold has none such, there neighbours must not flip."""
+    share = np.linspace(0.01, 0.99, 25)
+    normals = []
+    for patch in found.patches:
+        u0, u1, v0, v1 = patch.domain
+        normals.append(patch.normal(u0 + share[:, None] * (u1 - u0), v0 + share * (v1 - v0)).reshape(-1, 3))
+    every = np.concatenate(normals)
+    mean = every.mean(axis=0)
+    least = float((every @ mean).min() / max(float(np.linalg.norm(mean)), 1e-300))
+    flips = any(seam.angle > 90 for seam in seams)
+    passed = True if least > 0 and not flips else (False if flips else None)
+    text = {
+        True: said("all normals lie on one side"),
+        False: said("the normals of neighbouring faces flip"),
+        None: said("the surface folds over: no single side, neighbours do not flip"),
+    }[passed]
+    return Check("read-back normals", passed, least, 0.0, "cosine", text)

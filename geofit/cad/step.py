@@ -1,0 +1,276 @@
+"""STEP AP242 (ISO 10303-242): horizons written as one assembly, and any file's faces read as surfaces.
+
+The geometry of each horizon stays about its local origin and the offset to map coordinates is its placement
+in the assembly: at 3e6 m a control point would lose the digits that the core's exactness needs. OpenCASCADE
+is imported inside the functions: it takes seconds to load.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from geofit import __version__
+from geofit.cad.faces import faces_of, placement
+from geofit.cad.imported import FileShape, document, products, quiet, surface_of
+from geofit.cad.read_back import read_back
+from geofit.cad.sewing import shell
+from geofit.cad.step_text import canonical
+from geofit.data.accuracy import ReadBack
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["UNITS", "Unit", "read_shapes", "read_step", "store_step", "write_step"]
+
+Unit = Literal["m", "mm"]
+#: Length units of a file, and OpenCASCADE's words for them. No feet: the writer gives 13 digits, and a placement in
+#: map coordinates that is no whole number of the unit would lose more than the core may miss its points by.
+UNITS: dict[Unit, str] = {"m": "M", "mm": "MM"}
+
+#: Fixed, so that the same surfaces give the same bytes.
+TIMESTAMP = "2000-01-01T00:00:00"
+
+PARAMETERS = {
+    "write.step.schema": "AP242DIS",
+    "xstep.cascade.unit": "M",
+    "write.stepcaf.subshapes.name": 1,
+    "read.stepcaf.subshapes.name": 1,
+    "write.precision.mode": 1,
+    "write.precision.val": 1e-7,
+}
+
+
+def write_step(
+    surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str], *, unit: Unit = "m"
+) -> dict[str, ReadBack]:
+    """Write horizons as one STEP AP242 assembly, read it back with OpenCASCADE and check it.
+
+    Each horizon is a named, coloured product, each face has its patch's name. The file is written under a
+    temporary name and renamed when it is complete; the same surfaces give the same bytes.
+
+    Parameters
+    ----------
+    surfaces : mapping of str to HorizonSurface
+        Horizons by the name that the file shall give them.
+    path : path
+        The file, usually ``*.step``.
+    unit : {"m", "mm"}
+        In which the file gives lengths. It says so, and CAD systems convert: the surfaces are the same.
+
+    Returns
+    -------
+    dict of str to ReadBack
+        What the reader found in the file, a horizon; in metres, whatever the file's unit.
+
+    Raises
+    ------
+    StitchError
+        If patches do not make one valid shell.
+    InputError
+        If there is nothing to write, the unit is unknown, or the file cannot be written.
+    """
+    target = Path(path)
+    shells = store_step(surfaces, target, unit=unit)
+    return {
+        name: read_back(surface, shape, surface_of(shape, whole=True), shells[name], target)
+        for (name, surface), shape in zip(surfaces.items(), read_shapes(target), strict=True)
+    }
+
+
+def store_step(
+    surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str], *, unit: Unit = "m"
+) -> dict[str, Any]:
+    """Write the same file without reading it back, for a project of one's own; return the shells by horizon.
+
+    Errors as :func:`write_step`.
+    """
+    target = Path(path)
+    if not surfaces:
+        raise InputError("No surface to write", "Give at least one horizon.", file=str(target))
+    if unit not in UNITS:
+        raise InputError(
+            said("A STEP file in '{unit}' is unknown", unit=unit),
+            said("Choose {names}.", names=" or ".join(UNITS)),
+            file=str(target),
+        )
+    shells = {name: shell(surface) for name, surface in surfaces.items()}
+    with _parameters(unit):
+        filled = document()
+        _fill(filled, surfaces, shells)
+        _save(filled, [_patch_names(shells[name], s.patches) for name, s in surfaces.items()], target)
+    return shells
+
+
+def read_step(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
+    """Read the faces of a STEP file, ours or any other, as surfaces: one for each product.
+
+    Planes, cylinders and other surfaces are converted to NURBS. A trimmed face becomes the patch over the
+    smallest parameter rectangle that holds it, with the loops that cut it: such a surface is a
+    :class:`geofit.geometry.trim_loops.TrimmedSurface`, whose ``distance`` ends at the loops. If the product is a height
+    field, the loop of its free edges becomes the surface's outline, which ``elevation`` respects.
+
+    Parameters
+    ----------
+    path : path
+        A STEP file in any length unit; the result is in metres.
+
+    Returns
+    -------
+    dict of str to HorizonSurface
+        Without points. The origin is the product's placement, or for a product that stands in map coordinates
+        itself, a rounded corner near its first control point.
+
+    Raises
+    ------
+    InputError
+        If the file does not exist, is no STEP file or holds no face.
+    """
+    return {shape.name: surface_of(shape) for shape in read_shapes(path)}
+
+
+def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
+    """Read the products of a STEP file that have faces, in its order; errors as :func:`read_step`."""
+    from OCP.IFSelect import IFSelect_RetDone
+    from OCP.STEPCAFControl import STEPCAFControl_Reader
+
+    source = Path(path)
+    if not source.is_file():
+        raise InputError("There is no such file", "Check the path.", file=str(source))
+    with _parameters(), quiet():
+        found = document()
+        reader = STEPCAFControl_Reader()
+        reader.SetNameMode(True)
+        done = reader.ReadFile(str(source)) == IFSelect_RetDone and reader.Transfer(found)
+    shapes = list(products(found, source.stem)) if done else []
+    if not shapes:
+        what = "The file holds no face" if done else "The file cannot be read as STEP"
+        raise InputError(what, "Export the surface as STEP (AP203, AP214 or AP242) again.", file=str(source))
+    return shapes
+
+
+@contextmanager
+def _parameters(unit: Unit = "m") -> Iterator[None]:
+    """Set OpenCASCADE's global STEP parameters, and put them back."""
+    from OCP.Interface import Interface_Static
+    from OCP.STEPControl import STEPControl_Controller
+
+    STEPControl_Controller.Init_s()
+    before: dict[str, Any] = {}
+    for name, value in {**PARAMETERS, "write.step.unit": UNITS[unit]}.items():
+        if isinstance(value, str):
+            before[name] = Interface_Static.CVal_s(name)
+            Interface_Static.SetCVal_s(name, value)
+        elif isinstance(value, int):
+            before[name] = Interface_Static.IVal_s(name)
+            Interface_Static.SetIVal_s(name, value)
+        else:
+            before[name] = Interface_Static.RVal_s(name)
+            Interface_Static.SetRVal_s(name, value)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            setter = {str: "SetCVal_s", int: "SetIVal_s", float: "SetRVal_s"}[type(value)]
+            getattr(Interface_Static, setter)(name, value)
+
+
+def _fill(document: Any, surfaces: Mapping[str, HorizonSurface], shells: Mapping[str, Any]) -> None:
+    from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+    tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
+    assembly = tool.NewShape()
+    _name(assembly, "horizons")
+    for name, surface in surfaces.items():
+        product = tool.AddShape(shells[name], False)
+        _name(product, name)
+        _name(tool.AddComponent(assembly, product, placement(surface.origin)), name)
+    tool.UpdateAssemblies()
+
+
+def _name(label: Any, name: str) -> None:
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDataStd import TDataStd_Name
+
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))
+
+
+def _patch_names(shape: Any, patches: Sequence[Patch]) -> list[str]:
+    """Name the faces of a sewn shell after the patches that they came from."""
+    from OCP.BRep import BRep_Tool
+
+    names = []
+    for face in faces_of(shape):
+        surface = BRep_Tool.Surface_s(face)
+        count = surface.NbUPoles(), surface.NbVPoles()
+        corners = [surface.Pole(i, j) for i in (1, count[0]) for j in (1, count[1])]
+        place = np.array([(p.X(), p.Y(), p.Z()) for p in corners])
+        names.append(
+            next(
+                patch.name
+                for patch in patches
+                if patch.control.shape[:2] == count
+                and np.array_equal(patch.control[[0, 0, -1, -1], [0, -1, 0, -1]], place)
+            )
+        )
+    return names
+
+
+def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> None:
+    from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+    from OCP.IFSelect import IFSelect_RetDone
+    from OCP.STEPCAFControl import STEPCAFControl_Writer
+    from OCP.TCollection import TCollection_HAsciiString
+
+    try:
+        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=".step")
+    except OSError as error:
+        raise InputError(
+            said("The file cannot be written: {error}", error=error.strerror or str(error)),
+            "Make the folder, or name another.",
+            file=str(target),
+        ) from None
+    os.close(handle)
+    try:
+        with quiet():
+            writer = STEPCAFControl_Writer()
+            writer.SetNameMode(True)
+            writer.Transfer(document)
+            _name_faces(writer.ChangeWriter().Model(), face_names)
+            header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
+            header.SetName(TCollection_HAsciiString("horizons"))
+            header.SetTimeStamp(TCollection_HAsciiString(TIMESTAMP))
+            header.SetAuthorValue(1, TCollection_HAsciiString("geofit"))
+            header.SetOrganizationValue(1, TCollection_HAsciiString(""))
+            header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
+            done = writer.Write(temporary) == IFSelect_RetDone
+        if not done:
+            raise InputError("OpenCASCADE cannot write the file", "Check the disk.", file=str(target))
+        Path(temporary).write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, target)
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+
+
+def _name_faces(model: Any, names: Sequence[Sequence[str]]) -> None:
+    """Give the faces in the file, shell by shell, the names of their patches.
+
+    Names of sub-shapes in the document get lost where the writer rebuilds a face.
+    """
+    from OCP.StepShape import StepShape_OpenShell
+    from OCP.TCollection import TCollection_HAsciiString
+
+    entities = (model.Value(k) for k in range(1, model.NbEntities() + 1))
+    shells = [entity for entity in entities if isinstance(entity, StepShape_OpenShell)]
+    for entity, faces in zip(shells, names, strict=True):
+        for k, name in enumerate(faces, 1):
+            entity.CfsFacesValue(k).SetName(TCollection_HAsciiString(name))

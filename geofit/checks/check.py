@@ -1,0 +1,178 @@
+"""The check before stitching: sigma against epsilon, and what sigma cannot see (paper, sec. 3.3; eq. 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from geofit.checks.lattice import lattices
+from geofit.checks.oscillation import oscillation
+from geofit.checks.residual_tests import by_label, residual_checks
+from geofit.checks.selfcross import self_crossing
+from geofit.checks.shape import shape_checks
+from geofit.checks.trend import trend
+from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Seam
+from geofit.data.messages import said
+from geofit.geometry.projection import Projection, project
+from geofit.geometry.seams import seams
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["check", "sigma"]
+
+Floats = NDArray[np.float64]
+
+#: Limits that a sound surface keeps (METHOD, sec. 4 to 7).
+CORE_LIMIT, GAP_LIMIT, ANGLE_LIMIT = 1e-6, 1e-6, 0.1
+#: Points with the largest distances that are named.
+WORST = 20
+
+
+def sigma(residuals: Floats) -> float:
+    """Return sqrt(sum d_i^2 / (n - 1)), eq. 3; for one point its |d|.
+
+    Examples
+    --------
+    >>> round(sigma(np.array([0.3, -0.4])), 12)
+    0.5
+    """
+    if len(residuals) == 0:
+        return 0.0
+    return float(np.sqrt(np.square(residuals).sum() / max(len(residuals) - 1, 1)))
+
+
+def check(
+    surface: HorizonSurface,
+    conflicts: Sequence[Conflict] = (),
+    notes: Sequence[str] = (),
+    *,
+    projection: Projection | None = None,
+) -> Accuracy:
+    """Measure every original point against the surface, and look at the surface itself.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        The fit; its ``core`` marks the points that it must meet exactly. Without patches (triangles of a file) the
+        surface itself is not looked at.
+    conflicts : sequence of Conflict
+        Points that gave way before the fit. Their residuals count in sigma like all others.
+    notes : sequence of str
+        What the fit has to say.
+    projection : Projection, optional
+        The points' nearest places where they are known already, or are not those of whole patches.
+    """
+    points, settings = surface.points, surface.settings
+    if projection is None:
+        projection = project(surface.patches, points.xyz - surface.origin)
+    d = projection.distance
+    names = np.array([patch.name for patch in surface.patches] or [surface.name])
+    patch = names[projection.patch] if len(d) else np.empty(0, dtype=names.dtype)
+    found = seams(surface.patches)
+    value = sigma(d)
+    magnitude = np.abs(d)
+    over = {
+        f"interior tolerance {settings.interior_tolerance:g} m": int((magnitude > settings.interior_tolerance).sum()),
+        f"epsilon {settings.epsilon:g} m": int((magnitude > settings.epsilon).sum()),
+    }
+    honoured = np.ones(len(d), bool)
+    honoured[[conflict.dropped for conflict in conflicts]] = False
+    exact = surface.core & honoured if len(surface.core) == len(d) else np.zeros(len(d), bool)
+    # The systems of a few points each are small: starting threads for them costs more than the work.
+    with threadpool_limits(limits=1):
+        checks = [
+            *_tolerance_checks(surface, d, exact),
+            *_seam_checks(surface, found),
+            *_residual_checks(surface, d, patch, honoured & ~exact),
+            *_surface_checks(surface, projection, honoured),
+        ]
+    return Accuracy(
+        n=len(d),
+        sigma=value,
+        epsilon=settings.epsilon,
+        passed=value < settings.epsilon,
+        max_abs=float(magnitude.max(initial=0.0)),
+        mean=float(d.mean()) if len(d) else 0.0,
+        residuals=d,
+        patch=patch,
+        by_patch=_groups(d, patch),
+        by_kind=_groups(d, points.kind),
+        by_hole=_groups(d, points.hole),
+        by_section=_groups(d, points.section),
+        over=over,
+        worst=_worst(magnitude),
+        seams=found,
+        checks=tuple(checks),
+        conflicts=tuple(conflicts),
+        notes=tuple(notes),
+    )
+
+
+def _groups(d: Floats, labels: NDArray[np.str_]) -> dict[str, Group]:
+    return {
+        label: Group(len(part), sigma(part), float(np.abs(part).max()), float(part.mean()))
+        for label, part in by_label(d, labels).items()
+        if label
+    }
+
+
+def _worst(magnitude: Floats) -> tuple[int, ...]:
+    """Return the points with the largest distances, the largest first, equal ones in their order."""
+    least = np.partition(magnitude, -WORST)[-WORST] if len(magnitude) > WORST else 0.0
+    some = np.flatnonzero(magnitude >= least)
+    return tuple(some[np.argsort(-magnitude[some], kind="stable")[:WORST]].tolist())
+
+
+def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool_]) -> list[Check]:
+    """Ask whether the core's points are on the surface, and the other ones within the interior tolerance."""
+    checks, tolerance = [], surface.settings.interior_tolerance
+    if exact.any():
+        worst = float(np.abs(d[exact]).max())
+        text = said("core points on the surface: {count}", count=int(exact.sum()))
+        checks.append(Check("core", worst <= CORE_LIMIT, worst, CORE_LIMIT, "m", text))
+    loose = ~exact
+    if loose.any():
+        worst = float(np.abs(d[loose]).max())
+        figures = {"count": int((np.abs(d[loose]) > tolerance).sum()), "total": int(loose.sum())}
+        text = said("{count} of {total} points beyond the interior tolerance", **figures)
+        if surface.partition is not None:
+            text = said("{count} of {total} approximated points beyond the interior tolerance", **figures)
+        checks.append(Check("interior tolerance", figures["count"] == 0, worst, tolerance, "m", text))
+    return checks
+
+
+def _seam_checks(surface: HorizonSurface, found: tuple[Seam, ...]) -> list[Check]:
+    if not found:
+        return []
+    gap, angle = max(seam.gap for seam in found), max(seam.angle for seam in found)
+    limit = min(GAP_LIMIT, surface.settings.boundary_tolerance)
+    tangent = surface.settings.seam == "tangent"
+    gaps = said("largest gap of the seams ({count})", count=len(found))
+    angles = said("largest angle at a seam") if tangent else said("largest angle at a seam (breaks are allowed)")
+    return [
+        Check("seam gap", gap <= limit, gap, limit, "m", gaps),
+        Check("seam angle", angle <= ANGLE_LIMIT if tangent else None, angle, ANGLE_LIMIT, "deg", angles),
+    ]
+
+
+def _residual_checks(
+    surface: HorizonSurface, d: Floats, patch: NDArray[np.str_], loose: NDArray[np.bool_]
+) -> list[Check]:
+    """Test the residuals of the approximated points: a core's are zero by construction."""
+    if not loose.any():
+        return []
+    some = slice(None) if loose.all() else loose
+    xyz = surface.points.xyz[some] - surface.origin
+    return residual_checks(xyz, d[some], patch[some], surface.settings.interior_tolerance)
+
+
+def _surface_checks(surface: HorizonSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:
+    """Look at the surface itself, at and between its points."""
+    if not surface.patches:
+        return []
+    parts = lattices(surface)
+    asked = (oscillation(surface, parts, projection, honoured), trend(surface, parts, honoured))
+    found = [one for one in asked if one is not None]
+    return [*shape_checks(surface, parts), self_crossing(surface, parts), *found]

@@ -1,0 +1,278 @@
+"""What the command line shows: results on stdout; progress, findings and errors on stderr."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from functools import wraps
+from typing import TYPE_CHECKING, Any, ParamSpec
+
+import typer
+
+from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.progress import Progress
+from geofit.data.site import ImportIssue, TableCount
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from geofit.report.result import HorizonResult
+
+__all__ = [
+    "guarded",
+    "listening",
+    "print_counts",
+    "print_issues",
+    "print_json",
+    "print_results",
+    "print_table",
+    "say",
+]
+
+P = ParamSpec("P")
+
+#: Debian's package of each system library that a dependency loads.
+_PACKAGES = {
+    "libGL.so": "libgl1",
+    "libEGL.so": "libegl1",
+    "libGLX.so": "libglx0",
+    "libOpenGL.so": "libopengl0",
+    "libX11.so": "libx11-6",
+    "libXext.so": "libxext6",
+    "libXrender.so": "libxrender1",
+    "libxcb": "libxcb1",
+    "libxkbcommon.so": "libxkbcommon0",
+    "libfontconfig.so": "libfontconfig1",
+    "libfreetype.so": "libfreetype6",
+    "libexpat.so": "libexpat1",
+    "libgomp.so": "libgomp1",
+    "libstdc++.so": "libstdc++6",
+    "libSM.so": "libsm6",
+    "libICE.so": "libice6",
+    "libglib-2.0.so": "libglib2.0-0",
+    "libdbus-1.so": "libdbus-1-3",
+}
+_MISSING = re.compile(r"(lib[\w+.-]+\.so[.\d]*): cannot open shared object file")
+#: Columns of a table that goes into a pipe.
+PIPE_WIDTH = 160
+FIRST_ISSUES = 5
+
+
+def guarded(command: Callable[P, int]) -> Callable[P, None]:
+    """Turn a command's number into the exit code, and known errors into one clear line."""
+
+    @wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        try:
+            code = command(*args, **kwargs)
+        except Cancelled as stop:
+            say(str(stop))
+            code = 130
+        except KeyboardInterrupt:
+            say("Stopped. Files that were begun have been removed; finished ones are whole.")
+            code = 130
+        except GeofitError as error:
+            say(f"geofit: {error}")
+            code = 2
+        except OSError as error:
+            # A full disk, a folder that may not be written: the user's to mend.
+            if isinstance(error, BrokenPipeError):
+                raise
+            say(f"geofit: {error.filename or 'a file'}: {error.strerror or error}. Check its permissions.")
+            code = 2
+        except ImportError as error:
+            advice = _system_library(str(error))
+            if advice is None:
+                raise
+            say(f"geofit: {advice}")
+            code = 2
+        raise typer.Exit(code)
+
+    return run
+
+
+def _system_library(message: str) -> str | None:
+    found = _MISSING.search(message)
+    if found is None:
+        return None
+    library = found[1]
+    package = next((package for stem, package in _PACKAGES.items() if library.startswith(stem)), None)
+    if package is None:
+        return f"The system library {library} is missing. Find its package (Debian: apt-file search {library})."
+    return f"The system library {library} is missing. Install it (Debian and Ubuntu: apt-get install {package})."
+
+
+def say(text: str) -> None:
+    """Write a line to stderr as it stands."""
+    sys.stderr.write(text + "\n")
+
+
+@contextmanager
+def listening() -> Iterator[Progress]:
+    """Show stages and the time left on a terminal; nothing in a pipe. Ctrl-C stops at the next stage at last."""
+    with _interrupts() as stopped, _bars() as show:
+
+        def listen(stage: str, fraction: float, /) -> bool:
+            show(stage, fraction)
+            return not stopped()
+
+        yield listen
+
+
+@contextmanager
+def _interrupts() -> Iterator[Callable[[], bool]]:
+    """Remember Ctrl-C: a library's callback in which the exception is raised may lose it."""
+    elsewhere = threading.current_thread() is not threading.main_thread()
+    if elsewhere or signal.getsignal(signal.SIGINT) is not signal.default_int_handler:
+        yield lambda: False
+        return
+    asked = threading.Event()
+
+    def handle(_number: int, _frame: object) -> None:
+        asked.set()
+        raise KeyboardInterrupt
+
+    signal.signal(signal.SIGINT, handle)
+    try:
+        yield asked.is_set
+        if asked.is_set():
+            raise KeyboardInterrupt
+    finally:
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@contextmanager
+def _bars() -> Iterator[Callable[[str, float], None]]:
+    if not sys.stderr.isatty():
+        yield lambda stage, fraction: None
+        return
+    from rich.console import Console
+    from rich.markup import escape
+    from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+    from rich.progress import Progress as Bars
+
+    columns = (
+        BarColumn(28),
+        TextColumn("{task.percentage:>3.0f} %"),
+        TimeRemainingColumn(),
+        TextColumn("{task.description}"),
+    )
+    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
+        task = bars.add_task("starting", total=1.0)
+
+        def show(stage: str, fraction: float) -> None:
+            bars.update(task, completed=fraction, description=escape(stage))
+
+        yield show
+
+
+def print_results(results: Sequence[HorizonResult]) -> None:
+    """Print one line a horizon."""
+    from geofit.report.digits import metres
+
+    header = (
+        "horizon",
+        "n",
+        "core/periphery",
+        "sigma, m",
+        "epsilon, m",
+        "max, m",
+        "verdict",
+        "seams",
+        "fit, s",
+        "all, s",
+    )
+    rows = []
+    for r in results:
+        a, core = r.accuracy, int(r.core.sum())
+        verdict = a.verdict if r.sound or not a.passed else f"{a.verdict} (!)"
+        rows.append(
+            (
+                r.name, str(a.n), f"{core}/{a.n - core}", metres(a.sigma), f"{a.epsilon:g}", metres(a.max_abs),
+                verdict, _seams(r), _time(r.seconds.get("fit")), _time(sum(r.seconds.values())),
+            )
+        )  # fmt: skip
+    print_table(header, rows, left=(0, 6, 7))
+    for r in results:
+        a = r.accuracy
+        failed = [c for c in (*a.checks, *(r.read_back.checks if r.read_back else ())) if c.passed is False]
+        for check in failed:
+            say(f"{r.name}: check '{check.name}' does not hold: {check.text}")
+        for note in a.notes:
+            say(f"{r.name}: {note}")
+
+
+def _time(seconds: float | None) -> str:
+    return f"{seconds:.1f}" if seconds else "–"
+
+
+def _seams(result: HorizonResult) -> str:
+    seams = result.read_back.seams if result.read_back else result.accuracy.seams
+    if not seams:
+        return "none"
+    return f"{len(seams)}: gap {max(s.gap for s in seams):.0e} m, angle {max(s.angle for s in seams):.1g}°"
+
+
+def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], left: Sequence[int] = (0,)) -> None:
+    """Print a table to stdout; numbers stand right, the columns ``left`` left."""
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=SIMPLE_HEAD, pad_edge=False)
+    for i, word in enumerate(header):
+        table.add_column(word, justify="left" if i in left else "right", overflow="fold", no_wrap=i not in left)
+    styles = {"PASS": "green", "FAIL": "bold red", "PASS (!)": "yellow"}
+    for row in rows:
+        table.add_row(*(Text(cell, style=styles.get(cell, "")) for cell in row))
+    _stdout().print(table)
+
+
+def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
+    """Summarise what the readers found on stderr: counts, and the first errors and warnings."""
+    if not issues:
+        return
+    counts = {word: sum(issue.severity == word for issue in issues) for word in ("error", "warning", "note")}
+    summary = ", ".join(f"{count} {word}{'s' * (count != 1)}" for word, count in counts.items() if count)
+    say(f"Import: {summary}." + (f" All of them: {where}" if where else ""))
+    grave = [issue for word in ("error", "warning") for issue in issues if issue.severity == word]
+    for issue in grave[:FIRST_ISSUES]:
+        say("  " + _sentence(issue))
+    if len(grave) > FIRST_ISSUES:
+        say(f"  ... and {len(grave) - FIRST_ISSUES} more.")
+
+
+def _sentence(issue: ImportIssue) -> str:
+    place = [issue.file]
+    if issue.row:
+        place.append(f"row {issue.row}")
+    if issue.column:
+        place.append(f"column '{issue.column}'")
+    if issue.value:
+        place.append(f"value '{issue.value}'")
+    remedy = f" {issue.remedy}" if issue.remedy else ""
+    return f"{issue.severity}: {', '.join(place)}: {issue.reason.rstrip('.')}.{remedy}"
+
+
+def print_counts(counts: Sequence[TableCount]) -> None:
+    """Say on stderr how many rows were read, used and listed."""
+    read, used, listed = (sum(getattr(c, name) for c in counts) for name in ("read", "used", "listed"))
+    files = f"{len(counts)} file{'s' * (len(counts) != 1)}"
+    say(f"Rows of {files}: {read} read = {used} used + {listed} listed.")
+
+
+def print_json(data: Any) -> None:
+    """Write one JSON document to stdout."""
+    sys.stdout.write(json.dumps(data, ensure_ascii=False, indent=1, allow_nan=False) + "\n")
+
+
+def _stdout() -> Console:
+    from rich.console import Console
+
+    console = Console()
+    return console if console.is_terminal else Console(width=PIPE_WIDTH, no_color=True)

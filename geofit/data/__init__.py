@@ -1,0 +1,1 @@
+"""Plain data: points, site, settings, results, messages, errors. No algorithms."""

@@ -1,0 +1,165 @@
+"""Settings of a fit: frozen, keyword-only, validated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from geofit.data.errors import SettingsError
+from geofit.data.messages import Said, said
+
+__all__ = ["LABELS", "FitSettings"]
+
+#: What the fit panel calls each setting, and its keyword.
+LABELS: dict[str, Said] = {
+    "epsilon": said("Control error (epsilon)"),
+    "interior_tolerance": said("Interior tolerance (interior_tolerance)"),
+    "boundary_tolerance": said("Seam tolerance (boundary_tolerance)"),
+    "across": said("Across sections (across)"),
+    "seam": said("At the seams (seam)"),
+    "core": said("Exact core (core)"),
+    "frame": said("Laid over (frame)"),
+    "smoothing": said("Smoothing (smoothing)"),
+    "robust": said("Outliers (robust)"),
+    "max_iterations": said("Rounds, at most (max_iterations)"),
+    "max_control_points": said("Control points (max_control_points)"),
+    "conflict_distance": said("One place within (conflict_distance)"),
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class FitSettings:
+    """How a horizon is fitted and judged.
+
+    Parameters
+    ----------
+    epsilon : float
+        Control error in metres: the fit passes when sigma (eq. 3) is below it.
+    interior_tolerance : float
+        Largest distance in metres at which a peripheral point may lie from the surface (paper, sec. 3.2).
+    boundary_tolerance : float
+        Largest distance in metres between the edges of neighbouring patches (paper, sec. 3.2). The patches
+        share their edge control points, so the gap is zero up to the STEP file's digits.
+    across : {"cubic", "linear"}
+        Interpolation of the core across its sections. The paper usually chooses "linear"; "cubic" is
+        smoother, and on gentle horizons several times nearer to the rock between the sections.
+    seam : {"tangent", "position"}
+        Whether patches meet with one tangent plane, or at the edge only (a break is allowed).
+    core : "auto", "all", "none" or (k, 2) polygon
+        Region that is interpolated exactly: found by density, unless its points do not bear each other out within
+        epsilon; every point; no point; or the rectangle around a polygon in map coordinates. A core is bounded by
+        parameter lines, so the rectangle runs along the surface's frame (along the sections where most run one way,
+        else east and north), whatever way the polygon's sides run; a side goes on to the edge of the study area where
+        the strip between them is narrow and holds next to no points. ``surface.partition`` has its corners.
+    frame : {"auto", "map", "best-plane", "sections"}
+        Whether the surface is a height field over the map, over its best plane (steep faults), or a
+        parametric surface through ordered section lines (overturned folds).
+    smoothing : "auto" or float
+        Weight of the bending energy in the periphery: restricted maximum likelihood, or the ratio of noise
+        variance to field variance in m^2 per unit of energy.
+    robust : bool
+        Whether peripheral points that their neighbours do not bear out (left-out error beyond 3.5 times its
+        standard deviation) take no part in the fit. They are named in the notes, and count in sigma.
+    max_iterations : int
+        Cap of the refinement and adjustment steps.
+    max_control_points : int or None
+        Cap of the number of control points; None: ten a data point, at least 400 and at most 60,000.
+    conflict_distance : float
+        Points nearer to each other in plan than this many metres count as one place: if their elevations
+        differ they are settled by accuracy, and listed.
+
+    Raises
+    ------
+    SettingsError
+        If a value is out of its range.
+
+    Examples
+    --------
+    >>> FitSettings(epsilon=0.25, seam="position").epsilon
+    0.25
+    """
+
+    epsilon: float = 0.5
+    interior_tolerance: float = 0.1
+    boundary_tolerance: float = 0.01
+    across: Literal["cubic", "linear"] = "cubic"
+    seam: Literal["tangent", "position"] = "tangent"
+    core: Literal["auto", "all", "none"] | tuple[tuple[float, float], ...] = "auto"
+    frame: Literal["auto", "map", "best-plane", "sections"] = "auto"
+    smoothing: Literal["auto"] | float = "auto"
+    robust: bool = False
+    max_iterations: int = 20
+    max_control_points: int | None = None
+    conflict_distance: float = 0.01
+
+    def __post_init__(self) -> None:
+        for name in ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance"):
+            _positive(name, getattr(self, name), said("metres"))
+        _one_of("across", self.across, ("cubic", "linear"))
+        _one_of("seam", self.seam, ("tangent", "position"))
+        _one_of("frame", self.frame, ("auto", "map", "best-plane", "sections"))
+        if isinstance(self.core, str):
+            _one_of("core", self.core, ("auto", "all", "none"), polygon=True)
+        else:
+            object.__setattr__(self, "core", _polygon(self.core))
+        if self.smoothing != "auto":
+            _positive("smoothing", self.smoothing, said("the auto value's unit, or the word 'auto'"))
+        if not isinstance(self.robust, bool):
+            raise SettingsError(said("{setting} is {value}; true or false is needed.", **_given("robust", self.robust)))
+        if not isinstance(self.max_iterations, int) or isinstance(self.max_iterations, bool) or self.max_iterations < 0:
+            raise SettingsError(
+                said(
+                    "{setting} is {value}; a whole number >= 0 is needed.",
+                    **_given("max_iterations", self.max_iterations),
+                )
+            )
+        most = self.max_control_points
+        if most is not None and (not isinstance(most, int) or isinstance(most, bool) or most < 16):
+            raise SettingsError(
+                said(
+                    "{setting} is {value}; a whole number of at least 16 is needed.",
+                    **_given("max_control_points", most),
+                )
+            )
+
+
+def _given(name: str, value: Any) -> dict[str, Any]:
+    return {"setting": LABELS[name], "value": repr(value)}
+
+
+def _positive(name: str, value: Any, unit: str) -> None:
+    if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value) or value <= 0:
+        text = said(
+            "{setting} is {value}; a finite number above 0 is needed ({unit}).", **_given(name, value), unit=unit
+        )
+        raise SettingsError(text)
+
+
+def _one_of(name: str, value: Any, words: tuple[str, ...], *, polygon: bool = False) -> None:
+    if value in words:
+        return
+    given = {**_given(name, value), "words": ", ".join(map(repr, words))}
+    if polygon:
+        raise SettingsError(
+            said("{setting} is {value}; choose one of {words} or a polygon of map coordinates.", **given)
+        )
+    raise SettingsError(said("{setting} is {value}; choose one of {words}.", **given))
+
+
+def _polygon(value: ArrayLike) -> tuple[tuple[float, float], ...]:
+    try:
+        corners = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        corners = np.empty(0)
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
+        text = said(
+            "{setting} has shape {shape}; a polygon of at least three (easting, northing) corners is needed.",
+            shape=corners.shape,
+            setting=LABELS["core"],
+        )
+        raise SettingsError(text)
+    return tuple((float(x), float(y)) for x, y in corners)

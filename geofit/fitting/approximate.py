@@ -1,0 +1,134 @@
+"""The periphery: approximated within the tolerance, its boundary borrowed from the core (paper, sec. 3.2, step 2).
+
+The smoothest surface for the data's own noise comes first. Points that it leaves outside the tolerance are then
+met by the smallest change of the control points around them, as the core's points are: what lies between them
+stays the regional field's, where a surface bent as a whole would swing between points that disagree.
+
+The control points that act on the core stay as the core has them; they are eliminated from the unknowns, not
+penalised. Neighbouring patches therefore share their edge curve, and their tangent planes, to the last digit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from geofit.fitting.skin import damped_change
+from geofit.splines.tensor import Factor, TensorSpace, band_times
+
+__all__ = ["Approximation", "approximate", "borrowed"]
+
+Floats = NDArray[np.float64]
+
+#: Pull towards the start where a break leaves control points free, relative to the energy's diagonal.
+_HOLD = 1e-3
+#: Where a pulled point comes to lie, as a share of the tolerance.
+RIM = 0.9
+
+
+@dataclass(frozen=True, eq=False)
+class Approximation:
+    """Coefficients, the misfit (m,) at the peripheral points in metres, and the rounds it took."""
+
+    coefficients: Floats
+    misfit: Floats
+    rounds: int
+
+
+def borrowed(space: TensorSpace, core: tuple[float, float, float, float]) -> NDArray[np.bool_]:
+    """Return (nu, nv) bool: the control points that act inside the core's rectangle."""
+    p = space.degree
+    masks = []
+    for knots, low, high in ((space.knots_u, core[0], core[1]), (space.knots_v, core[2], core[3])):
+        count = len(knots) - p - 1
+        edge = 1e-12 * max(abs(low), abs(high), 1.0)
+        masks.append((knots[:count] < high - edge) & (knots[p + 1 : p + 1 + count] > low + edge))
+    return masks[0][:, None] & masks[1][None, :]
+
+
+def approximate(
+    space: TensorSpace,
+    energy: Floats | None,
+    start: Floats,
+    frozen: NDArray[np.bool_],
+    plane: Floats,
+    height: Floats,
+    weight: Floats,
+    tolerance: float,
+    rounds: int,
+) -> Approximation:
+    """Fit the control points that are not frozen where asked to, then bring every point within the tolerance.
+
+    Parameters
+    ----------
+    space : TensorSpace
+        The space of the whole surface.
+    energy : (bandwidth + 1, size) array or None
+        Band of lambda times the energy; None: the start is the regional field's fit already.
+    start : (size,) or (size, k) array
+        Coefficients to start from; those that are frozen stay.
+    frozen : (size,) array of bool
+        Control points borrowed from the core.
+    plane : (m, 2) array
+        Places of the peripheral points.
+    height : (m,) or (m, k) array
+        Their heights (or coordinates), metres.
+    weight : (m,) array
+        Their weights.
+    tolerance : float
+        How far from the surface a point may lie, metres.
+    rounds : int
+        Cap of the number of rounds; with none, points outside the tolerance stay there.
+    """
+    matrix = space.matrix(plane)
+    best = start if energy is None else _solve(space, energy, start, frozen, plane, height, weight)
+    misfit = height - matrix @ best
+    held = np.zeros(len(plane), bool)
+    done = 0
+    while done < rounds and (_size(misfit) > tolerance).any():
+        done += 1
+        held |= _size(misfit) > tolerance
+        # Points that are pulled once stay at the rim of their tolerance while their neighbours are pulled.
+        length = _size(misfit[held])
+        share = (1 - RIM * tolerance / np.maximum(length, RIM * tolerance)).reshape(-1, *[1] * (misfit.ndim - 1))
+        pulled = best + damped_change(csr_array(matrix[held]), share * misfit[held], ~frozen)
+        after = height - matrix @ pulled
+        if np.maximum(_size(after) - tolerance, 0).sum() >= 0.98 * np.maximum(_size(misfit) - tolerance, 0).sum():
+            break
+        best, misfit = pulled, after
+    return Approximation(best, _size(misfit), done)
+
+
+def _solve(
+    space: TensorSpace,
+    energy: Floats,
+    start: Floats,
+    frozen: NDArray[np.bool_],
+    plane: Floats,
+    height: Floats,
+    weight: Floats,
+) -> Floats:
+    band, right = space.normal_equations(plane, height, weight)
+    band = band + energy
+    hold = _HOLD * float(np.median(energy[0]))
+    band[0] += hold
+    right = right + hold * start
+    if frozen.any():
+        known = start.copy()
+        known[~frozen] = 0.0
+        right -= band_times(band, known)
+        right[frozen] = start[frozen]
+        band[:, frozen] = 0.0
+        for k in range(1, len(band)):
+            band[k, : space.size - k][frozen[k:]] = 0.0
+        band[0, frozen] = 1.0
+    solution = Factor(band).solve(right)
+    solution[frozen] = start[frozen]
+    return solution
+
+
+def _size(misfit: Floats) -> Floats:
+    return np.abs(misfit) if misfit.ndim == 1 else np.linalg.norm(misfit, axis=1)

@@ -1,0 +1,368 @@
+"""Changes by hand: one control point moved or weighed, the surface pulled to one point (paper, sec. 3.3).
+
+The patches are parts of one tensor-product surface, so a coefficient of the whole net is moved, never a row of one
+patch: neighbours move with it, and seams stay as closed and as smooth as they were. Nothing outside the support of
+the control points that move is touched, and no change takes the surface off a point that it must meet exactly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array, vstack
+
+from geofit.data.errors import ExactnessError, FitError
+from geofit.data.messages import Said, listed, said
+from geofit.fitting.assemble import Part, divide
+from geofit.fitting.model import Model
+from geofit.fitting.skin import least_change
+from geofit.geometry.projection import project
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["acted_on", "adjust", "pull_to", "support", "weigh"]
+
+Floats = NDArray[np.float64]
+
+#: Rows of control points along a seam that hold its tangent plane.
+TANGENT_ROWS = 2
+
+
+def adjust(surface: HorizonSurface, patch: str, i: int, j: int, dz: float) -> HorizonSurface:
+    """Move one control point, and the check with it.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        A fit.
+    patch : str
+        Name of the patch.
+    i, j : int
+        Row (in u) and column (in v) of the control point in the patch.
+    dz : float
+        How far it moves along the frame's height, metres: upwards over the map and on a folded surface, along the
+        normal of the best plane on a steep one.
+
+    Returns
+    -------
+    HorizonSurface
+        The changed surface with its own check; ``fit["by_hand"]`` counts the changes.
+
+    Raises
+    ------
+    FitError
+        If there is no such control point, or the surface is no fit of this session.
+    ExactnessError
+        If the control point acts on points that the surface must meet exactly.
+    """
+    model = _model(surface)
+    _finite(dz, "dz")
+    part = _part(model, patch)
+    index, share = _coefficient(model, part, i, j)
+    held = _acting(model, index) & _exact(model)
+    if held.any():
+        raise ExactnessError(
+            said(
+                "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
+                "({count}: {names}). Move one that lies farther from them, or exclude them first.",
+                i=i,
+                j=j,
+                patch=patch,
+                count=held.sum(),
+                names=_names(surface, held),
+            )
+        )
+    if model.net.lines is not None and model.net.frozen[index]:
+        raise FitError(said("The core is straight between its section curves: its control points follow the sections."))
+    coefficients = model.net.coefficients.copy()
+    coefficients[(index, 2) if coefficients.ndim == 2 else index] += dz / share
+    return _changed(
+        surface,
+        model.with_net(replace(model.net, coefficients=coefficients)),
+        said("by hand: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m", i=i, j=j, patch=patch, dz=dz),
+    )
+
+
+def pull_to(surface: HorizonSurface, point: int | ArrayLike, share: float = 1.0) -> HorizonSurface:
+    """Pull the surface to a point, by the smallest change of the control points that act there.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        A fit.
+    point : int or (3,) array_like
+        Index of one of its points, or a place in map coordinates, metres.
+    share : float
+        How much of the distance to take away: 1 lets the surface pass through the point.
+
+    Returns
+    -------
+    HorizonSurface
+        The changed surface with its own check; exact points stay exact.
+
+    Raises
+    ------
+    FitError
+        If there is no such point, it lies outside the surface, or weights other than 1 act there.
+    ExactnessError
+        If the points that are met exactly leave no freedom at this place.
+    """
+    model = _model(surface)
+    _finite(share, "share")
+    place, value, name = _target(surface, model, point)
+    net, given = model.net, model.problem
+    row = net.space.matrix(place / net.unit)
+    acting = np.zeros(net.space.size, bool)
+    acting[row.indices] = True
+    if net.lines is not None and net.frozen[acting].any():
+        raise FitError(said("The core is straight between its section curves: pull at a point of the periphery."))
+    if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):
+        raise FitError(said("Control points with weights other than 1 act here. Set their weights to 1 first."))
+    misfit = share * (value - row @ net.coefficients)
+    exact = np.flatnonzero(surface.core)
+    if isinstance(point, (int, np.integer)):
+        exact = exact[exact != point]
+    fixed = csr_array(net.space.matrix(given.chart.plane[exact] / net.unit))
+    fixed = csr_array(fixed[(fixed * acting.astype(float)).sum(axis=1) > 0]) if len(exact) else fixed
+    system = csr_array(vstack([csr_array(row), fixed])) if fixed.shape[0] else csr_array(row)
+    wanted = np.concatenate([misfit, np.zeros((fixed.shape[0], *misfit.shape[1:]))])
+    try:
+        change = least_change(system, wanted, acting)
+    except ExactnessError:
+        raise ExactnessError(
+            said(
+                "The surface cannot be pulled to {name}: the points around it that are met exactly ({count}) leave "
+                "no freedom. Exclude the one that is wrong, or fit with core='none'.",
+                name=name,
+                count=fixed.shape[0],
+            )
+        ) from None
+    return _changed(
+        surface,
+        model.with_net(replace(net, coefficients=net.coefficients + change)),
+        said("by hand: pulled by {share:.0%} of the distance to {name}", share=share, name=name),
+    )
+
+
+def weigh(surface: HorizonSurface, patch: str, i: int, j: int, weight: float) -> HorizonSurface:
+    """Give a control point of the periphery another weight: above 1 draws the surface to it (paper, eq. 1).
+
+    Parameters as those of :func:`adjust`; errors too. Control points that hold the tangent plane of a seam keep 1.
+
+    Raises
+    ------
+    FitError
+        If the weight is not between 0.01 and 100, or the control point holds a seam.
+    """
+    model = _model(surface)
+    if not 0.01 <= weight <= 100:
+        raise FitError(said("The weight is {weight:g}; between 0.01 and 100 is needed (1 is neutral).", weight=weight))
+    part = _part(model, patch)
+    index, _ = _coefficient(model, part, i, j)
+    whole = model.net.space.knots_u, model.net.space.knots_v
+    for k, count, knots, ends in zip((i, j), _shape(part), (part.knots_u, part.knots_v), whole, strict=True):
+        if (k < TANGENT_ROWS and knots[0] != ends[0]) or (k >= count - TANGENT_ROWS and knots[-1] != ends[-1]):
+            text = said(
+                "Control point ({i}, {j}) of patch '{patch}' holds the tangent plane of a seam; its weight stays 1. "
+                "Choose one at least {rows} rows away from the seam.",
+                i=i,
+                j=j,
+                patch=patch,
+                rows=TANGENT_ROWS,
+            )
+            raise FitError(text)
+    held = _acting(model, index) & _exact(model)
+    if held.any():
+        raise ExactnessError(
+            said(
+                "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
+                "({count}: {names}); its weight stays 1.",
+                i=i,
+                j=j,
+                patch=patch,
+                count=held.sum(),
+                names=_names(surface, held),
+            )
+        )
+    weights = dict(model.weights)
+    changed = np.array(weights.get(patch, np.ones(_shape(part))))
+    changed[i, j] = weight
+    weights[patch] = changed
+    return _changed(
+        surface,
+        replace(model, weights=weights),
+        said(
+            "by hand: control point ({i}, {j}) of patch '{patch}' has weight {weight:g}",
+            i=i,
+            j=j,
+            patch=patch,
+            weight=weight,
+        ),
+    )
+
+
+def support(surface: HorizonSurface, patch: str, i: int, j: int) -> tuple[float, float, float, float]:
+    """Return the rectangle (u0, u1, v0, v1) of the frame, metres, outside of which :func:`adjust` moves nothing."""
+    model = _model(surface)
+    return _support(model, _coefficient(model, _part(model, patch), i, j)[0])
+
+
+def acted_on(surface: HorizonSurface, patch: str, i: int, j: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which points a control point acts on, (n,), and which of these are met exactly and so forbid its move.
+
+    Raises
+    ------
+    FitError
+        If there is no such control point, or the surface was read from a file.
+    """
+    model = _model(surface)
+    acting = _acting(model, _coefficient(model, _part(model, patch), i, j)[0])
+    return acting, acting & _exact(model)
+
+
+def _model(surface: HorizonSurface) -> Model:
+    if surface.model is None:
+        text = said(
+            "'{name}' was read from a file: its patches have no common control net. Fit it again, then adjust.",
+            name=surface.name,
+        )
+        raise FitError(text)
+    return surface.model
+
+
+def _finite(value: float, name: str) -> None:
+    if not np.isfinite(value):
+        raise FitError(said("{name} is {value}; a finite number is needed.", name=name, value=value))
+
+
+def _part(model: Model, patch: str) -> Part:
+    given, net = model.problem, model.net
+    parts = divide(net.space, net.core, given.chart.frame, given.split.core is not None).parts
+    for part in parts:
+        if part.name == patch:
+            return part
+    raise FitError(
+        said(
+            "There is no patch '{patch}'. The patches are: {names}.",
+            patch=patch,
+            names=", ".join(part.name for part in parts),
+        )
+    )
+
+
+def _shape(part: Part) -> tuple[int, int]:
+    return part.rows.stop - part.rows.start, part.columns.stop - part.columns.start
+
+
+def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
+    """Return the coefficient of the whole net that moves a patch's control point most, and by which share."""
+    rows, columns = _shape(part)
+    if not (0 <= i < rows and 0 <= j < columns):
+        raise FitError(
+            said(
+                "Patch '{name}' has control points (0, 0) to ({rows}, {columns}); ({i}, {j}) was given.",
+                name=part.name,
+                rows=rows - 1,
+                columns=columns - 1,
+                i=i,
+                j=j,
+            )
+        )
+    given, net = model.problem, model.net
+    whole = divide(net.space, net.core, given.chart.frame, given.split.core is not None)
+    in_u, in_v = whole.refine_u[part.rows.start + i], whole.refine_v[part.columns.start + j]
+    a, b = int(in_u.argmax()), int(in_v.argmax())
+    return a * net.space.shape[1] + b, float(in_u[a] * in_v[b])
+
+
+def _support(model: Model, index: int) -> tuple[float, float, float, float]:
+    space, unit = model.net.space, model.net.unit
+    a, b = divmod(index, space.shape[1])
+    reach = space.degree + 1
+    u, v = space.knots_u * unit, space.knots_v * unit
+    return float(u[a]), float(u[a + reach]), float(v[b]), float(v[b + reach])
+
+
+def _acting(model: Model, index: int) -> NDArray[np.bool_]:
+    """Return which points a coefficient acts on, (n,)."""
+    plane, net = model.problem.chart.plane, model.net
+    u0, u1, v0, v1 = _support(model, index)
+    # Inside it acts; on its edge it does at the surface's own edge only.
+    acting = (plane[:, 0] >= u0) & (plane[:, 0] <= u1) & (plane[:, 1] >= v0) & (plane[:, 1] <= v1)
+    near = np.flatnonzero(acting)
+    acting[near] = net.space.matrix(plane[near] / net.unit)[:, [index]].toarray().ravel() != 0
+    return acting
+
+
+def _exact(model: Model) -> NDArray[np.bool_]:
+    return model.problem.split.inside & model.problem.kept
+
+
+def _weighed(model: Model) -> list[tuple[Part, Floats]]:
+    return [(_part(model, name), weights) for name, weights in model.weights.items()]
+
+
+def _touches(part: Part, weights: Floats, acting: NDArray[np.bool_], model: Model) -> bool:
+    """Tell whether a weight other than 1 belongs to one of the coefficients."""
+    return any(acting[_coefficient(model, part, int(i), int(j))[0]] for i, j in np.argwhere(weights != 1))
+
+
+def _names(surface: HorizonSurface, which: NDArray[np.bool_]) -> str:
+    """Name the first of some points."""
+    first = [surface.points.describe(int(i)) for i in np.flatnonzero(which)[:2]]
+    return listed([*first, "..."] if which.sum() > 2 else first)
+
+
+def _target(surface: HorizonSurface, model: Model, point: int | ArrayLike) -> tuple[Floats, Floats, str]:
+    """Return the place (1, 2) on the chart, the value (1,) or (1, 3) wanted there, and what to call it."""
+    chart = model.problem.chart
+    if isinstance(point, (int, np.integer)):
+        if not 0 <= point < len(surface.points):
+            raise FitError(
+                said(
+                    "'{name}' has points 0 to {last}; {point} was given.",
+                    name=surface.name,
+                    last=len(surface.points) - 1,
+                    point=point,
+                )
+            )
+        only = np.array([point])
+        return chart.plane[only], chart.values[only], surface.points.describe(int(point))
+    xyz = np.asarray(point, float)
+    if xyz.shape != (3,) or not np.isfinite(xyz).all():
+        raise FitError(
+            said(
+                "The point is {point!r}; three finite map coordinates (easting, northing, elevation) are needed.",
+                point=point,
+            )
+        )
+    x, y, z = xyz
+    name = said("({x:.2f}, {y:.2f}, {z:.2f})", x=x, y=y, z=z)
+    if chart.parametric:
+        foot = project(_plain(surface.patches), xyz[None] - surface.origin)
+        return np.column_stack([foot.u, foot.v]), xyz[None] - surface.origin, name
+    local = chart.frame.to_local(xyz[None])
+    u0, u1, v0, v1 = chart.area
+    if not (u0 <= local[0, 0] <= u1 and v0 <= local[0, 1] <= v1):
+        text = said(
+            "The point {point} lies beside the surface '{name}'. Choose a place above or below it.",
+            point=name,
+            name=surface.name,
+        )
+        raise FitError(text)
+    return local[:, :2], local[:, 2], name
+
+
+def _plain(patches: tuple[Patch, ...]) -> tuple[Patch, ...]:
+    return tuple(replace(patch, weights=None) for patch in patches)
+
+
+def _changed(surface: HorizonSurface, model: Model, note: Said) -> HorizonSurface:
+    result = model.surface()
+    before, after = surface.accuracy, result.accuracy
+    assert before is not None
+    assert after is not None
+    figures = {**surface.fit, **result.fit, "by_hand": surface.fit.get("by_hand", 0) + 1}
+    return result.with_(fit=figures, accuracy=replace(after, notes=(*before.notes, note)))

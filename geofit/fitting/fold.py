@@ -1,0 +1,148 @@
+"""Overturned folds: section curves that turn back, one parametrisation for all of them (METHOD, sec. 8).
+
+Each section is an ordered line of points. Along it v is the chord length; the hinges, where the line turns
+back, are given the same v on every section, so that limb is joined to limb. Across the sections u is the
+distance of their lines in plan.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import find_peaks
+
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.geometry.frame import Frame
+
+__all__ = ["Loft", "backtracking", "loft"]
+
+Floats = NDArray[np.float64]
+
+#: A line is drawn in order if this much shorter than its points joined from side to side.
+ORDERED = 0.95
+#: How far a line must run back, as a share of its extent, for a turning point to be a hinge.
+PROMINENT = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Loft:
+    """Parameters: ``plane`` (n, 2) metres, ``on_line`` (n,) bool: points of a curve, ``u`` (k,) of the curves."""
+
+    plane: Floats
+    on_line: NDArray[np.bool_]
+    u: Floats
+    notes: tuple[str, ...]
+
+
+def _curves(points: PointSet) -> dict[str, NDArray[np.int64]]:
+    names = dict.fromkeys(points.section[points.section != ""].tolist())
+    curves = {name: np.flatnonzero(points.section == name) for name in names}
+    return {name: index for name, index in curves.items() if len(index) >= 3}
+
+
+def backtracking(points: PointSet, frame: Frame) -> float:
+    """Return the share of the sections' length in the frame's plane that runs backwards.
+
+    Each section's points are taken in their order and projected on their principal direction in the plane. Zero
+    for sections that go one way, whatever their direction, and for those whose points stand in no order along a
+    line: joined in their order they are longer than joined from one side to the other.
+    """
+    back = total = 0.0
+    for index in _curves(points).values():
+        xyz = points.xyz[index]
+        plane = frame.to_local(xyz)[:, :2]
+        centred = plane - plane.mean(axis=0)
+        along = centred @ np.linalg.svd(centred, full_matrices=False)[2][0]
+        drawn, sorted_ = _chords(xyz)[-1], _chords(xyz[np.argsort(along, kind="stable")])[-1]
+        steps = np.diff(along)
+        forward, backward = steps[steps > 0].sum(), -steps[steps < 0].sum()
+        if drawn < ORDERED * sorted_:
+            back += min(forward, backward)
+        # A steep section has next to no length in plan: measure against its length in space.
+        total += max(forward + backward, 0.2 * drawn)
+    return back / total if total > 0 else 0.0
+
+
+def loft(points: PointSet) -> Loft:
+    """Place the points of the sections on the surface that their curves span.
+
+    Points off the sections get no place here (zeros): the fit projects them on the surface through the
+    sections, and corrects their places as it changes (J. Hoschek, CAGD 5, 1988, 27-31).
+    """
+    curves = _curves(points)
+    plane = np.zeros((len(points), 2))
+    if len(curves) < 2:
+        return Loft(plane, np.zeros(len(points), bool), np.zeros(len(curves)), ())
+    offset = _offsets(points, curves)
+    order = np.argsort(offset, kind="stable")
+    indices = [list(curves.values())[k] for k in order]
+    u = offset[order]
+    parameters = _aligned([points.xyz[index] for index in indices])
+    length = float(np.mean([_chords(points.xyz[index])[-1] for index in indices]))
+    on_line = np.zeros(len(points), bool)
+    for line, index, v in zip(u, indices, parameters, strict=True):
+        plane[index] = np.column_stack([np.full(len(index), line), v * length])
+        on_line[index] = True
+    note = said(
+        "{lines} section curves over {length:.0f} m, {count} points between them",
+        lines=len(u),
+        length=float(u[-1] - u[0]),
+        count=int((~on_line).sum()),
+    )
+    return Loft(plane, on_line, u, (note,))
+
+
+def _offsets(points: PointSet, curves: dict[str, NDArray[np.int64]]) -> Floats:
+    """Return the distance of each section along the common normal of their lines in plan."""
+    doubled = 0j
+    for index in curves.values():
+        centred = points.xyz[index, :2] - points.xyz[index, :2].mean(axis=0)
+        direction = np.linalg.svd(centred, full_matrices=False)[2][0]
+        doubled += np.exp(2j * np.arctan2(direction[1], direction[0]))
+    angle = np.angle(doubled) / 2
+    normal = np.array([np.sin(angle), -np.cos(angle)])
+    centre = points.xyz[:, :2].mean(axis=0)
+    return np.array([((points.xyz[index, :2] - centre) @ normal).mean() for index in curves.values()])
+
+
+def _chords(xyz: Floats) -> Floats:
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(xyz, axis=0), axis=1))])
+
+
+def _aligned(lines: list[Floats]) -> list[Floats]:
+    """Return v in 0..1 for each point of each line: one sense, chord length, each hinge at one v."""
+    parameters, hinges = [], []
+    reference: Floats | None = None
+    for xyz in lines:
+        chord = _chords(xyz)
+        v = chord / chord[-1]
+        shape = np.column_stack([np.interp(np.linspace(0, 1, 50), v, xyz[:, k]) for k in range(3)])
+        turned = reference is not None and np.linalg.norm(shape - reference) > np.linalg.norm(shape[::-1] - reference)
+        reference = shape[::-1] if turned else shape
+        found = _hinges(xyz, v)
+        parameters.append(1 - v if turned else v)
+        hinges.append(1 - found[::-1] if turned else found)
+    if len({len(found) for found in hinges}) > 1 or not len(hinges[0]):
+        return parameters
+    middle = np.concatenate([[0.0], np.mean(hinges, axis=0), [1.0]])
+    return [
+        np.interp(v, np.concatenate([[0.0], found, [1.0]]), middle) for v, found in zip(parameters, hinges, strict=True)
+    ]
+
+
+def _hinges(xyz: Floats, v: Floats) -> Floats:
+    """Return v at the turning points of a line, in order: where it runs back by a share of its extent."""
+    plan = xyz[:, :2] - xyz[:, :2].mean(axis=0)
+    along = plan @ np.linalg.svd(plan, full_matrices=False)[2][0]
+    least = PROMINENT * float(np.ptp(along))
+    turns = np.sort(np.concatenate([find_peaks(sign * along, prominence=least)[0] for sign in (1, -1)]))
+    return np.array([_summit(v[k - 1 : k + 2], along[k - 1 : k + 2]) for k in turns])
+
+
+def _summit(v: Floats, along: Floats) -> float:
+    """Return v at the summit of the parabola through three points."""
+    a, b, _ = np.polyfit(v - v[1], along - along[1], 2)
+    return float(np.clip(v[1] - b / (2 * a), v[0], v[2])) if a else float(v[1])

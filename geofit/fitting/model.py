@@ -1,0 +1,122 @@
+"""What stands behind a surface's patches: what was given to the fit, and the control net that it found."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.checks.check import check
+from geofit.data.accuracy import Conflict
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.fitting.assemble import patches_of
+from geofit.fitting.core import fit_with_core
+from geofit.fitting.net import Net, approximate_all
+from geofit.fitting.parametrize import Chart
+from geofit.fitting.partition import Split
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface, Partition
+
+__all__ = ["Model", "Problem", "trimmed"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What stays the same while a horizon's control points are fitted and adjusted.
+
+    ``kept`` (n,) marks the points that conflicts left; ``boundary`` (k, 2) is the study area in map coordinates;
+    ``outline`` (k, 2) is where the surface ends if that is not the study area: at faults.
+    """
+
+    points: PointSet
+    settings: FitSettings
+    boundary: Floats | None
+    chart: Chart
+    split: Split
+    kept: NDArray[np.bool_]
+    conflicts: tuple[Conflict, ...]
+    name: str
+    outline: Floats | None = None
+
+    def fit(self, honoured: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
+        """Return the control net that meets the core's points and approximates the other honoured ones."""
+        if self.split.core is None:
+            return Model(self, approximate_all(self.points, self.chart, honoured, self.settings, stage))
+        return Model(self, fit_with_core(self.points, self.chart, self.split, honoured, self.settings, stage))
+
+    def partition(self) -> Partition:
+        """Return the split in map coordinates."""
+        corners = None
+        if self.split.core is not None and not self.chart.parametric:
+            u0, u1, v0, v1 = self.split.core
+            local = np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]])
+            xyz = self.chart.frame.turn_back(local) + self.chart.frame.origin
+            corners = tuple((float(x), float(y)) for x, y in xyz[:, :2])
+        inside = int((self.split.inside & self.kept).sum())
+        return Partition(corners, inside, len(self.kept) - inside, self.split.reason)
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """A problem with one control net for the whole surface, of which the patches are parts.
+
+    ``weights`` holds the weights of the control points of patches that were weighed by hand, by name.
+    """
+
+    problem: Problem
+    net: Net
+    weights: Mapping[str, Floats] = field(default_factory=dict)
+
+    def with_net(self, net: Net) -> Model:
+        """Return the same problem with another control net."""
+        return replace(self, net=net)
+
+    def patches(self) -> tuple[Patch, ...]:
+        """Cut the surface into patches along the core's edges."""
+        net, interpolated = self.net, self.problem.split.core is not None
+        frame = self.problem.chart.frame
+        patches = patches_of(net.space, net.coefficients, net.core, frame, net.unit, net.lines, interpolated)
+        return tuple(replace(patch, weights=self.weights.get(patch.name)) for patch in patches)
+
+    def surface(self) -> HorizonSurface:
+        """Return the surface of the control net, with its check."""
+        given, net = self.problem, self.net
+        surface = HorizonSurface(
+            patches=self.patches(),
+            origin=given.chart.frame.origin,
+            points=given.points,
+            settings=given.settings,
+            name=given.name,
+            outline=given.boundary if given.outline is None and given.chart.frame.kind == "map" else given.outline,
+            partition=given.partition(),
+            core=given.split.inside & given.kept,
+            model=self,
+        )
+        figures = {
+            "frame": given.chart.frame.kind,
+            "energy": net.field.energy,
+            "smoothing": net.field.smoothing,
+            "noise": net.field.noise,
+            "spacing": net.unit,
+            "rounds": net.rounds,
+            "control_points": surface.control_points,
+        }
+        surface = surface.with_(fit=figures)
+        return surface.with_(accuracy=check(surface, given.conflicts, (*given.chart.notes, *net.notes)))
+
+
+def trimmed(surface: HorizonSurface, outline: Floats) -> HorizonSurface:
+    """Return a fit that ends at an outline (k, 2), map coordinates, checked anew as far as it reaches.
+
+    What is made from it later, by hand or by a repair, ends there too.
+    """
+    assert surface.model is not None
+    assert surface.accuracy is not None
+    model = replace(surface.model, problem=replace(surface.model.problem, outline=outline))
+    shorter = surface.with_(outline=outline, model=model)
+    return shorter.with_(accuracy=check(shorter, surface.accuracy.conflicts, surface.accuracy.notes))

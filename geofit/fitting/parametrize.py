@@ -1,0 +1,192 @@
+"""Charts: where each point stands on the surface (u, v in metres) and what the surface must take there.
+
+A height field over the map or over the best plane takes heights (n,). An overturned fold is no height field in
+any frame: its chart is laid through the section curves, and it takes coordinates (n, 3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.errors import FitError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.fitting.fold import Loft, backtracking, loft
+from geofit.fitting.sections import section_labels
+from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
+
+__all__ = ["Chart", "choose_chart"]
+
+Floats = NDArray[np.float64]
+Rectangle = tuple[float, float, float, float]
+
+#: A surface steeper than this, degrees, is fitted over its best plane.
+STEEP = 55.0
+#: Thickness of the points across their best plane, relative to their extent, that still counts as a plane.
+PLANAR = 0.2
+#: Share of a section's length that may run backwards before the section counts as overturned.
+OVERTURNED = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """Places and values of all points.
+
+    Parameters
+    ----------
+    frame : Frame
+        Local frame.
+    plane : (n, 2) array
+        u and v of each point, metres.
+    values : (n,) or (n, 3) array
+        Heights in the frame, or coordinates about the origin, metres.
+    area : (u0, u1, v0, v1)
+        The rectangle that the surface covers.
+    notes : tuple of str
+        What was chosen, and why.
+    placed : (n,) array of bool
+        Points whose place is known; the others are projected on the surface of these.
+    section : (n,) array of str
+        Section of each point, as named or as found; empty for the others.
+    """
+
+    frame: Frame
+    plane: Floats
+    values: Floats
+    area: Rectangle
+    notes: tuple[str, ...]
+    placed: NDArray[np.bool_]
+    section: NDArray[np.str_]
+
+    @property
+    def parametric(self) -> bool:
+        """Whether the values are coordinates instead of heights."""
+        return self.values.ndim == 2
+
+    def with_plane(self, plane: Floats) -> Chart:
+        """Return the chart with corrected parameters."""
+        return replace(self, plane=plane)
+
+
+def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | None) -> Chart:
+    """Choose the frame (METHOD, sec. 8) and place the points in it.
+
+    Raises
+    ------
+    FitError
+        If "sections" is asked for and fewer than two sections are named.
+    """
+    kind, reason = _choose_kind(points, settings)
+    if kind == "sections":
+        return _section_chart(points, reason)
+    section = section_labels(points)
+    upright = kind == "best-plane"
+    frame = best_plane_frame(points) if upright else map_frame(points, _direction(section, points, boundary))
+    local = frame.to_local(points.xyz)
+    places: Sequence[Floats] = [local[:, :2]]
+    notes = [reason]
+    if section is not points.section and (section != "").any():
+        lines = len(np.unique(section[section != ""]))
+        notes.append(said("{lines} section lines found in the points' plan", lines=lines))
+    if boundary is not None and kind == "map":
+        corners = frame.plan(boundary)
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        beyond = np.logical_or(*((x < a - 1e-9) | (x > b + 1e-9) for x, a, b in zip(local.T, low, high, strict=False)))
+        if beyond.any():
+            count = int(beyond.sum())
+            notes.append(
+                said("points beyond the study area: {count}; the surface is widened to hold them", count=count)
+            )
+        places = [local[:, :2], corners]
+    placed = np.ones(len(points), bool)
+    return Chart(frame, local[:, :2], local[:, 2], _box(np.concatenate(places)), tuple(notes), placed, section)
+
+
+def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, str]:
+    if settings.frame != "auto":
+        return settings.frame, said("frame '{frame}' as asked", frame=settings.frame)
+    plane = best_plane_frame(points)
+    dip = _dip(points, plane)
+    over_map = backtracking(points, map_frame(points))
+    if dip < STEEP and over_map <= OVERTURNED:
+        return "map", said("height field over the map (mean dip {dip:.0f} degrees)", dip=dip)
+    extent = np.ptp(plane.to_local(points.xyz), axis=0)
+    thin = extent[2] <= PLANAR * max(extent[0], extent[1])
+    over_plane = backtracking(points, plane)
+    steep = said("height field over its best plane: it dips {dip:.0f} degrees", dip=dip)
+    if dip >= STEEP and thin and over_plane <= OVERTURNED:
+        return "best-plane", steep
+    if over_map > OVERTURNED and len(np.unique(points.section[points.section != ""])) >= 2:
+        return (
+            "sections",
+            said(
+                "parametric surface through its sections: {share:.0f} % of their length runs backwards "
+                "(overturned), so it is no height field",
+                share=100 * over_map,
+            ),
+        )
+    if dip >= STEEP:
+        return "best-plane", steep
+    return "map", said("height field over the map; some section lines run backwards, look at the residuals there")
+
+
+def _dip(points: PointSet, plane: Frame) -> float:
+    """Return the mean dip in degrees; of points in one line in plan, the dip along that line."""
+    xyz = points.xyz - points.xyz.mean(axis=0)
+    moments, axes = np.linalg.eigh((xyz.T @ xyz)[:2, :2])
+    if moments[0] < 0.02**2 * moments[1]:
+        along = xyz[:, :2] @ axes[:, 1]
+        rise = np.abs(np.diff(xyz[np.argsort(along, kind="stable"), 2])).sum()
+        if rise > max(4.0, len(xyz) / 6) * np.ptp(xyz[:, 2]):
+            # Up and down from point to point: scattered over a vertical plane, no section of a horizon.
+            return 90.0
+        steep = np.linalg.svd(np.column_stack([along, xyz[:, 2]]), full_matrices=False)[2][0]
+        return float(np.degrees(np.arctan2(abs(steep[1]), abs(steep[0]))))
+    return float(np.degrees(np.arccos(np.clip(plane.axes[2, 2], -1, 1))))
+
+
+def _direction(section: NDArray[np.str_], points: PointSet, boundary: Floats | None) -> float | None:
+    """Return the direction of v: along the sections, else along a tilted study area's longer side."""
+    along = section_azimuth(points.xyz[:, :2], section)
+    if along is not None or boundary is None or len(boundary) < 3:
+        return along
+    best, angle = np.prod(np.ptp(boundary, axis=0)), None
+    for first, second in zip(boundary, np.roll(boundary, -1, axis=0), strict=True):
+        side = second - first
+        if not side.any():
+            continue
+        c, s = side / np.hypot(*side)
+        size = np.prod(np.ptp(boundary @ np.array([[c, -s], [s, c]]), axis=0))
+        if size < 0.8 * best:
+            best, angle = size, float(np.arctan2(s, c))
+    return angle
+
+
+def _section_chart(points: PointSet, reason: str) -> Chart:
+    surface: Loft = loft(points)
+    lines = len(surface.u)
+    if lines < 2:
+        text = said(
+            "frame='sections' needs at least two named sections with ordered points; {lines} were given. Name them in "
+            "the section column, or choose frame='map' or 'best-plane'.",
+            lines=lines,
+        )
+        raise FitError(text)
+    frame = replace(map_frame(points), kind="sections")
+    local = frame.to_local(points.xyz)
+    area = _box(surface.plane[surface.on_line])
+    return Chart(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
+
+
+def _box(plane: Floats) -> Rectangle:
+    low, high = (np.array([end(axis) for axis in plane.T]) for end in (np.min, np.max))
+    # A line of points still needs a strip to stand on.
+    short = 0.05 * max(float((high - low).max()), 1.0)
+    pad = np.where(high - low < short, short, 0.0)
+    low, high = low - pad, high + pad
+    return float(low[0]), float(high[0]), float(low[1]), float(high[1])

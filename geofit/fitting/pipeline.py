@@ -1,0 +1,239 @@
+"""fit_horizon: the paper's steps, in order."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from threadpoolctl import threadpool_limits
+
+from geofit.data.errors import ExactnessError, FitError, PointsError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.progress import Progress, tell
+from geofit.data.settings import FitSettings
+from geofit.fitting.adjust import adjust
+from geofit.fitting.conflicts import settle
+from geofit.fitting.model import Model, Problem
+from geofit.fitting.parametrize import Chart, choose_chart
+from geofit.fitting.partition import Split, split_all, split_auto, split_none, split_rectangle
+from geofit.fitting.robust import fit_robustly
+from geofit.geometry.projection import project
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["fit_horizon"]
+
+Floats = NDArray[np.float64]
+
+#: Rounds of parameter correction for points between the sections of a folded surface.
+CORRECTIONS = 4
+
+
+@dataclass
+class _Clock:
+    """Seconds a stage, and the listener."""
+
+    progress: Progress | None
+    seconds: dict[str, float] = field(default_factory=dict)
+    _stage: str = ""
+    _since: float = 0.0
+
+    def stage(self, name: str, fraction: float) -> None:
+        now = time.perf_counter()
+        if self._stage:
+            self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + now - self._since
+        self._stage, self._since = name, now
+        tell(self.progress, name, fraction)
+
+
+def fit_horizon(
+    points: PointSet,
+    settings: FitSettings | None = None,
+    boundary: ArrayLike | None = None,
+    progress: Progress | None = None,
+    *,
+    name: str = "horizon",
+) -> HorizonSurface:
+    """Fit one horizon: interpolate its dense core, approximate its periphery, check the result.
+
+    Parameters
+    ----------
+    points : PointSet
+        All points of the horizon; coordinates in metres.
+    settings : FitSettings, optional
+        Tolerances and choices.
+    boundary : (k, 2) array_like, optional
+        Corners of the study area in map coordinates. Without it the surface covers the points' rectangle.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``; returning False stops the fit.
+    name : str
+        Name of the horizon.
+
+    Returns
+    -------
+    HorizonSurface
+        Patches, partition and accuracy. ``surface.accuracy.passed`` says whether sigma < epsilon.
+
+    Raises
+    ------
+    PointsError
+        If fewer than three points are given.
+    FitError
+        If the points cannot be fitted in the way that was asked for.
+    Cancelled
+        If ``progress`` returned False.
+
+    Notes
+    -----
+    Li, Miao, Liu, Wang (2011), sec. 3.2 and 3.3. Stitching and export are separate: ``surface.to_shape()``,
+    ``surface.write_step(path)``.
+    """
+    settings = settings or FitSettings()
+    corners = _require(points, boundary)
+    # The banded systems are small: more threads cost more than they give, and change the last digits.
+    with threadpool_limits(limits=1):
+        return _fit_horizon(points, settings, corners, _Clock(progress), name)
+
+
+def _fit_horizon(
+    points: PointSet, settings: FitSettings, corners: Floats | None, clock: _Clock, name: str
+) -> HorizonSurface:
+    clock.stage("conflicts", 0.0)
+    chart = choose_chart(points, settings, corners)
+    place = chart.values if chart.parametric else chart.plane
+    height = chart.values[:, 2] if chart.parametric else chart.values
+    kept, conflicts = settle(points, place, height, settings.conflict_distance)
+
+    clock.stage("partition", 0.1)
+    split = _partition(chart, settings, kept)
+    problem = Problem(points, settings, corners, chart, split, kept, conflicts, name)
+
+    clock.stage("fit", 0.2)
+    try:
+        model = problem.fit(kept & chart.placed, clock.stage)
+    except ExactnessError as error:
+        if settings.core != "auto":
+            raise
+        inside = np.zeros(len(points), bool)
+        reason = said("{reason}, but all points are approximated: {error}", reason=split.reason, error=error.args[0])
+        model = replace(problem, split=Split(None, inside, reason)).fit(kept & chart.placed, clock.stage)
+    if not chart.placed.all():
+        model = _corrected(model, clock)
+    if settings.robust and not chart.parametric:
+        clock.stage("robust", 0.7)
+        model = fit_robustly(model, clock.stage)
+
+    clock.stage("check", 0.8)
+    surface = model.surface()
+
+    clock.stage("adjust", 0.9)
+    surface = _adjusted(model, surface)
+    clock.stage("done", 1.0)
+    return surface.with_(fit={**surface.fit, "seconds": dict(clock.seconds)})
+
+
+def _corrected(model: Model, clock: _Clock) -> Model:
+    """Project the points between the sections on the surface, and fit again with the parameters found."""
+    between = ~model.problem.chart.placed
+    for _ in range(CORRECTIONS):
+        problem, chart = model.problem, model.problem.chart
+        foot = project(model.patches(), chart.frame.turn_back(chart.values[between]))
+        plane = chart.plane.copy()
+        moved = np.abs(plane[between] - np.column_stack([foot.u, foot.v])).max()
+        plane[between] = np.column_stack([foot.u, foot.v])
+        model = replace(problem, chart=chart.with_plane(plane)).fit(problem.kept, clock.stage)
+        if moved < 1e-3:
+            break
+    return model
+
+
+def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
+    """Adjust locally until sigma is below epsilon or no step helps, and say which."""
+    given = model.problem
+    for step in range(given.settings.max_iterations + 1):
+        accuracy = surface.accuracy
+        assert accuracy is not None
+        if accuracy.passed:
+            if step:
+                surface = _with_note(
+                    surface, said("local adjustments until sigma came below epsilon: {step}", step=step)
+                )
+            break
+        better = adjust(model.net, given.chart, given.kept & ~surface.core, accuracy.residuals)
+        tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
+        candidate = None if tried is None else tried.surface()
+        if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
+            words = said("sigma stays above epsilon: no further local adjustment lowers it (made: {step})", step=step)
+            surface = _with_note(surface, words)
+            break
+        assert tried is not None
+        model, surface = tried, candidate
+    return surface
+
+
+def _with_note(surface: HorizonSurface, note: str) -> HorizonSurface:
+    assert surface.accuracy is not None
+    return surface.with_(accuracy=replace(surface.accuracy, notes=(*surface.accuracy.notes, note)))
+
+
+def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
+    if len(points) < 3:
+        given = (
+            said("{count} point given", count=1)
+            if len(points) == 1
+            else said("{count} points given", count=len(points))
+        )
+        text = said(
+            "{given}; at least 3 are needed to lay a surface. Check the horizon's name and the filters of the import.",
+            given=given,
+        )
+        raise PointsError(text)
+    if all(np.ptp(axis) == 0 for axis in points.xyz.T):
+        raise PointsError(
+            said("All {count} points stand at one place; at least 3 places are needed.", count=len(points))
+        )
+    if boundary is None:
+        return None
+    corners = np.asarray(boundary, float)
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
+        text = said(
+            "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.",
+            shape=corners.shape,
+        )
+        raise PointsError(text)
+    return corners
+
+
+def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> Split:
+    """Split the points that are honoured; one that gave way is in no core."""
+    plane = chart.plane[kept]
+    if chart.parametric:
+        found = split_all(plane, chart.area, said("the section curves span the whole surface"))
+    elif settings.core == "all":
+        found = split_all(plane, chart.area, said("core='all': every point is interpolated"))
+    elif settings.core == "none":
+        found = split_none(plane, said("core='none': every point is approximated"))
+    elif settings.core == "auto":
+        found = split_auto(plane, chart.area)
+    elif chart.frame.kind != "map":
+        text = said(
+            "core is a polygon of map coordinates, but the surface is fitted in the frame '{frame}'. Choose "
+            "core='auto', 'all' or 'none', or frame='map'.",
+            frame=chart.frame.kind,
+        )
+        raise FitError(text)
+    else:
+        corners = chart.frame.plan(np.array(settings.core))
+        low = np.maximum(corners.min(axis=0), (chart.area[0], chart.area[2]))
+        high = np.minimum(corners.max(axis=0), (chart.area[1], chart.area[3]))
+        if (high <= low).any():
+            raise FitError(
+                said("The core's polygon lies outside the study area. Check its coordinates and their order.")
+            )
+        rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
+        found = split_rectangle(plane, rectangle, chart.area, said("the core's polygon as drawn"))
+    inside = np.zeros(len(kept), bool)
+    inside[kept] = found.inside
+    return Split(found.core, inside, found.reason)

@@ -1,0 +1,78 @@
+"""Sections: named in the data, or found in it as straight lines of points in plan (METHOD, sec. 4)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from geofit.data.points import PointSet
+
+__all__ = ["find_sections", "section_labels"]
+
+Floats = NDArray[np.float64]
+
+#: Share of all points' nearest neighbours that must lie in one direction, within ``ALIGNED`` degrees.
+SHARE, ALIGNED = 0.25, 1.5
+#: Fewest points of a line.
+FEWEST = 5
+#: More points than these were not drawn on sections by anybody.
+MOST = 20_000
+#: How far a point may lie off its line, as a share of the median distance to the nearest neighbour.
+STRAY = 0.1
+
+
+def section_labels(points: PointSet) -> NDArray[np.str_]:
+    """Return (n,) the section of each point: as named, or as found where none is named; empty for the others."""
+    if not 4 * FEWEST <= len(points) <= MOST or (points.section != "").any():
+        return points.section
+    return find_sections(points.xyz[:, :2])
+
+
+def find_sections(plan: Floats) -> NDArray[np.str_]:
+    """Find parallel straight lines of points in plan.
+
+    The directions to the two nearest neighbours of every point are counted; in points drawn on sections one
+    direction stands out. Across it the points are grouped by their offset.
+
+    Parameters
+    ----------
+    plan : (n, 2) array
+        Easting and northing, metres.
+
+    Returns
+    -------
+    labels : (n,) array of str
+        "line 1", "line 2", ... from one side to the other; empty for points on no line, and for all if fewer
+        than two lines are found.
+    """
+    none = np.full(len(plan), "", dtype="<U12")
+    found_at = KDTree(plan).query(plan, k=3)
+    distance, index = np.asarray(found_at[0]), np.asarray(found_at[1])
+    apart = distance[:, 1:].ravel() > 0
+    step = (plan[index[:, 1:]] - plan[:, None]).reshape(-1, 2)[apart]
+    if len(step) == 0:
+        return none
+    angle = np.degrees(np.arctan2(step[:, 1], step[:, 0])) % 180
+    peak = max(range(180), key=lambda degree: _near(angle, degree).sum())
+    aligned = _near(angle, peak)
+    if aligned.mean() < SHARE:
+        return none
+    doubled = np.exp(2j * np.radians(angle[aligned])).mean()
+    direction = np.angle(doubled) / 2
+    offset = plan @ np.array([np.sin(direction), -np.cos(direction)])
+    order = np.argsort(offset, kind="stable")
+    spacing = float(np.median(distance[:, 1]))
+    group = np.cumsum(np.concatenate([[0], np.diff(offset[order]) > STRAY * spacing]))
+    along = plan @ np.array([np.cos(direction), np.sin(direction)])
+    labels, found = none.copy(), 0
+    for k in range(int(group[-1]) + 1):
+        members = order[group == k]
+        if len(members) >= FEWEST and np.ptp(along[members]) > 3 * spacing:
+            found += 1
+            labels[members] = f"line {found}"
+    return labels if found >= 2 else none
+
+
+def _near(angle: Floats, degree: float) -> NDArray[np.bool_]:
+    return np.abs((angle - degree + 90) % 180 - 90) <= ALIGNED

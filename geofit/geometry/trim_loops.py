@@ -1,0 +1,318 @@
+"""Faces of a file that end at curves within their patches: distance, height and triangles end there too.
+
+The patch of a trimmed face reaches beyond the face. A point whose foot on the patch lies outside the loops is
+measured again, to the loops themselves and to the feet that lie inside them, whichever is nearest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
+
+from geofit.geometry.cells import Cells, Place, descend, tabulate
+from geofit.geometry.clip import clip
+from geofit.geometry.elevation import plan_map
+from geofit.geometry.mesh import WELD, Mesh
+from geofit.geometry.mesh_projection import ASIDE, Nearest
+from geofit.geometry.projection import project
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["Loops", "TrimmedSurface", "inside", "loops_of", "nearest", "trim"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+#: Loops of each patch in its parameters, (k, 2) each, not closed; none where the patch is whole.
+Loops = tuple[tuple[Floats, ...], ...]
+
+#: A place within this share of the patch beyond a loop is on it.
+ON = 1e-9
+#: Places in a patch that searches start from, along each side, and about so many along all loops of a patch.
+LATTICE, AROUND = 60, 2000
+#: Starts of each point on the loops and inside them, and steps of the golden section along a loop.
+STARTS, STEPS = 4, 60
+
+
+@dataclass(frozen=True, eq=False)
+class TrimmedSurface(HorizonSurface):
+    """A surface of a file some of whose patches are cut by ``loops``, so that it is smaller than its patches."""
+
+    loops: Loops = ()
+
+    def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
+        """Return the height at map coordinates in metres, nan outside and where a loop leaves a hole."""
+        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
+        plan = np.stack([x.ravel(), y.ravel()], axis=1)
+        bare = HorizonSurface((), self.origin, self.points, outline=self.outline)
+        heights = np.stack([bare.with_(patches=(patch,)).elevation(*plan.T) for patch in self.patches])
+        uncut = _highest(heights)
+        asked = np.isfinite(heights)
+        if self.outline is not None:  # one loop around all faces: only where patches overlap is more to be asked
+            asked &= asked.sum(axis=0) > 1
+        for k in [k for k, loops in enumerate(self.loops) if loops and asked[k].any()]:
+            some = np.flatnonzero(asked[k])
+            place = np.column_stack([plan[some], heights[k, some]]) - self.origin
+            gone = np.abs(nearest(self.patches[k : k + 1], place, self.loops[k : k + 1]).distance) > ASIDE
+            heights[k, some[gone]] = np.nan
+        height = _highest(heights)
+        if self.outline is not None:  # between two faces whose common curve each follows by its own polygon
+            height = np.where(np.isnan(height), uncut, height)
+        return height.reshape(x.shape)
+
+    def distance(self, xyz: ArrayLike) -> Floats:
+        """Return the signed distance of (n, 3) map coordinates to the trimmed patches, metres, positive above."""
+        local = np.atleast_2d(np.asarray(xyz, float)) - self.origin
+        return nearest(self.patches, local, self.loops).distance
+
+
+def loops_of(surface: HorizonSurface) -> Loops:
+    """Return the loops of each patch of any surface."""
+    return surface.loops if isinstance(surface, TrimmedSurface) else ((),) * len(surface.patches)
+
+
+def _highest(heights: Floats) -> Floats:
+    """Return the highest of each column, nan where there is none."""
+    found = np.where(np.isfinite(heights), heights, -np.inf).max(axis=0)
+    return np.asarray(np.where(np.isneginf(found), np.nan, found))
+
+
+def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Nearest:
+    """Find the nearest place of trimmed patches to each point.
+
+    Parameters
+    ----------
+    patches : sequence of Patch
+        The surface.
+    xyz : (n, 3) array_like
+        Points in the patches' coordinates, metres.
+    loops : Loops
+        Loops of each patch; what they enclose (even-odd) is the face.
+
+    Returns
+    -------
+    Nearest
+        ``part`` is the patch; ``beyond`` marks points beside the surface, whose foot is its outer edge.
+        A loop that is curved in the parameters is the polygon that was sampled along it.
+    """
+    target = np.asarray(xyz, float).reshape(-1, 3)
+    found = project(patches, target)
+    distance, foot, part = found.distance.copy(), found.foot.copy(), found.patch.copy()
+    uv = np.stack([found.u, found.v], axis=1)
+    beyond = _beside(patches, target, foot, part, uv)
+    if any(loops):
+        held = np.ones(len(target), bool)
+        for k in range(len(patches)):
+            own = part == k
+            held[own] = inside(patches[k], loops[k], found.u[own], found.v[own])
+        again = np.flatnonzero(~held)
+        if again.size:
+            rim = _rim_feet(patches, loops, target[again])
+            face = _inner_feet(patches, loops, target[again])
+            on_rim = rim.distance <= face.distance
+            assert rim.uv is not None
+            assert face.uv is not None
+            uv[again] = np.where(on_rim[:, None], rim.uv, face.uv)
+            foot[again] = np.where(on_rim[:, None], rim.foot, face.foot)
+            part[again] = np.where(on_rim, rim.part, face.part)
+            distance[again] = np.copysign(np.minimum(rim.distance, face.distance), distance[again])
+            beyond[again] = on_rim
+    return Nearest(distance, foot, part, beyond, uv)
+
+
+def _beside(patches: Sequence[Patch], target: Floats, foot: Floats, part: Ints, uv: Floats) -> Bools:
+    """Mark points whose foot is on an outer edge of the patches, and not straight below them."""
+    result = np.zeros(len(target), bool)
+    for k, patch in enumerate(patches):
+        own = np.flatnonzero(part == k)
+        low, high = np.array(patch.domain).reshape(2, 2).T
+        at = uv[own]
+        own = own[((at - low <= ON * (high - low)) | (high - at <= ON * (high - low))).any(axis=1)]
+        if not own.size:
+            continue
+        u, v = uv[own].T
+        cross = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1))
+        normal = cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-300)[:, None]
+        away = target[own] - foot[own]
+        aside = away - np.einsum("nk,nk->n", away, normal)[:, None] * normal
+        own = own[np.linalg.norm(aside, axis=1) > ASIDE]
+        others = [other for j, other in enumerate(patches) if j != k]
+        if own.size and others:
+            own = own[np.abs(project(others, foot[own]).distance) > ASIDE]
+        result[own] = True
+    return result
+
+
+def _region(patch: Patch, loops: tuple[Floats, ...]) -> Any:
+    """Return what the loops enclose, in the patch's parameters stretched to a unit square."""
+    import shapely
+
+    low, high = np.array(patch.domain).reshape(2, 2).T
+    region: Any = shapely.Polygon()
+    for loop in loops:
+        region = region.symmetric_difference(shapely.make_valid(shapely.Polygon((loop - low) / (high - low))))
+    return region.buffer(ON, join_style="mitre")
+
+
+def inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Bools:
+    """Whether parameters of a patch, arrays of one shape, lie inside its loops; all do where it has none."""
+    import shapely
+
+    if not loops:
+        return np.ones(np.shape(u), bool)
+    region = _region(patch, loops)
+    shapely.prepare(region)
+    u0, u1, v0, v1 = patch.domain
+    return np.asarray(shapely.intersects_xy(region, (u - u0) / (u1 - u0), (v - v0) / (v1 - v0)))
+
+
+def _rim_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Nearest:
+    """Return the nearest places on the loops: a golden section along the pieces beside the nearest samples."""
+    starts, ways, places, owner = [], [], [], []
+    for k, patch in enumerate(patches):
+        for loop in loops[k]:
+            ends = np.roll(loop, -1, axis=0)
+            count = max(2, -(-AROUND // sum(map(len, loops[k]))))
+            share = np.arange(count) / count
+            start = (loop[:, None] + share[:, None] * (ends - loop)[:, None]).reshape(-1, 2)
+            starts.append(start)
+            ways.append(np.repeat((ends - loop) / count, count, axis=0))
+            places.append(patch.evaluate(*(start + ways[-1] / 2).T))
+            owner.append(np.full(len(start), k))
+    start, way, part = np.concatenate(starts), np.concatenate(ways), np.concatenate(owner)
+    count = min(2 * STARTS, len(start))
+    piece = np.asarray(cKDTree(np.concatenate(places)).query(target, k=np.arange(1, count + 1))[1]).ravel()
+    point = np.repeat(np.arange(len(target)), count)
+
+    def at(t: Floats) -> Floats:
+        result = np.empty((len(t), 3))
+        for k in np.unique(part[piece]):
+            own = part[piece] == k
+            result[own] = patches[k].evaluate(*(start[piece[own]] + t[own, None] * way[piece[own]]).T)
+        return result
+
+    def far(t: Floats) -> Floats:
+        return np.asarray(np.linalg.norm(at(t) - target[point], axis=1))
+
+    t = _golden(far, len(piece))
+    distance = far(t)
+    best = np.lexsort((distance, point))[::count]
+    uv = (start[piece] + t[:, None] * way[piece])[best]
+    return Nearest(distance[best], at(t)[best], part[piece[best]], np.ones(len(target), bool), uv)
+
+
+def _golden(value: Any, count: int) -> Floats:
+    """Return where each of ``count`` functions of one variable is least in 0 to 1 (golden section)."""
+    ratio = (np.sqrt(5) - 1) / 2
+    low, high = np.zeros(count), np.ones(count)
+    a, b = 1 - ratio * np.ones(count), ratio * np.ones(count)
+    at_a, at_b = value(a), value(b)
+    for _ in range(STEPS):
+        left = at_a <= at_b
+        low, high = np.where(left, low, a), np.where(left, b, high)
+        a, b = high - ratio * (high - low), low + ratio * (high - low)
+        at_a, at_b = value(a), value(b)
+    middle = (low + high) / 2
+    ends = np.stack([np.zeros(count), middle, np.ones(count)])
+    values = np.stack([value(t) for t in ends])
+    return np.asarray(np.take_along_axis(ends, values.argmin(axis=0)[None], axis=0)[0])
+
+
+def _inner_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Nearest:
+    """Return the nearest feet inside the loops, infinitely far where there is none."""
+    cells, tree, place = _lattice(patches, loops)
+    count = min(STARTS, tree.n)
+    start = np.asarray(tree.query(target, k=np.arange(1, count + 1))[1]).ravel()
+    point = np.repeat(np.arange(len(target)), count)
+    end = descend(cells, place[start], np.ascontiguousarray(target[point].T))
+    (u, v), part = cells.parameters(end), cells.patch[end.cell]
+    foot = np.ascontiguousarray(cells.points(end).T)
+    distance = np.linalg.norm(foot - target[point], axis=1)
+    for k, patch in enumerate(patches):
+        own = np.flatnonzero(part == k)
+        distance[own[~inside(patch, loops[k], u[own], v[own])]] = np.inf
+    best = np.lexsort((distance, point))[::count]
+    uv = np.stack([u, v], axis=1)[best]
+    return Nearest(distance[best], foot[best], part[best], np.zeros(len(target), bool), uv)
+
+
+def _lattice(patches: Sequence[Patch], loops: Loops) -> tuple[Cells, cKDTree, Place]:
+    """Return places inside the loops with a tree of them; one at least of each patch."""
+    cells = tabulate(patches)
+    parts = []
+    for k, patch in enumerate(patches):
+        u0, u1, v0, v1 = patch.domain
+        u, v = (a.ravel() for a in np.meshgrid(np.linspace(u0, u1, LATTICE), np.linspace(v0, v1, LATTICE)))
+        held = inside(patch, loops[k], u, v)
+        if not held.any():  # a sliver between the lattice's places
+            some = _region(patch, loops[k]).representative_point()
+            u, v, held = np.array([u0 + some.x * (u1 - u0)]), np.array([v0 + some.y * (v1 - v0)]), np.ones(1, bool)
+        parts.append(cells.locate(k, u[held], v[held]))
+    place = Place(np.concatenate([p.cell for p in parts]), np.concatenate([p.local for p in parts], axis=1))
+    return cells, cKDTree(cells.points(place).T), place
+
+
+def trim(mesh: Mesh, patches: Sequence[Patch], loops: Loops) -> Mesh:
+    """Return the part of the patches' triangles that the loops enclose; new vertices lie on the patches.
+
+    The triangles are cut in the parameters, where the loops are. New vertices of two patches at one place are one.
+    Where parameters run so unevenly that a sliver would turn over, its vertices stay on the triangle that was cut.
+    """
+    points, triangles, uvs, owner = [mesh.points], [], [], []
+    count = len(mesh.points)
+    for k, patch in enumerate(patches):
+        own = mesh.patch == k
+        numbers, uv = mesh.triangles[own], mesh.uv[own]
+        if loops[k]:
+            stretch = _lengths(patch)
+            # A patch that closes on itself has two parameters at each vertex of the line where it does.
+            corners = np.column_stack([numbers.ravel(), uv.reshape(-1, 2)])
+            corners, local = np.unique(corners, axis=0, return_inverse=True)
+            known = corners[:, 0].astype(np.int64)
+            flat = np.column_stack([corners[:, 1:] * stretch, mesh.points[known]])
+            flat, cut, _, uv = clip(flat, local.reshape(-1, 3), uv, *(loop * stretch for loop in loops[k]))
+            made = (flat[len(known) :, :2] / stretch).clip(patch.domain[::2], patch.domain[1::2])
+            curved = np.concatenate([flat[: len(known), 2:], patch.evaluate(*made.T)])
+            if plan_map(patch) is None:
+                curved = _unturned(curved, flat[:, 2:], cut)
+            points.append(curved[len(known) :])
+            numbers = np.concatenate([known, count + np.arange(len(made))])[cut]
+            count += len(made)
+        triangles.append(numbers)
+        uvs.append(uv)
+        owner.append(np.full(len(numbers), k))
+    every = np.concatenate(points)
+    one = np.arange(count)
+    first = len(mesh.points)
+    for a, b in sorted(cKDTree(every[first:]).query_pairs(WELD)) if count > first else ():
+        one[first + b] = one[first + a]
+    t = one[np.concatenate(triangles)]
+    whole = Mesh(every, t, np.concatenate(owner), np.concatenate(uvs), mesh.origin, mesh.names)
+    return whole.only((t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0]))
+
+
+def _unturned(curved: Floats, flat: Floats, triangles: Ints) -> Floats:
+    """Return the curved places (n, 3) of vertices, but the flat ones where a triangle's normal would turn round."""
+
+    def normals(at: Floats) -> Floats:
+        a, b, c = np.moveaxis(at[triangles], 1, 0)
+        return np.cross(b - a, c - a)
+
+    facing, place = normals(flat), curved.copy()
+    while True:
+        turned = np.unique(triangles[(normals(place) * facing).sum(axis=1) <= 0])
+        if np.array_equal(place[turned], flat[turned]):
+            return place
+        place[turned] = flat[turned]
+
+
+def _lengths(patch: Patch) -> Floats:
+    """Metres for one of each parameter: mean lengths of the control net's rows."""
+    u0, u1, v0, v1 = patch.domain
+    along, across = (np.linalg.norm(np.diff(patch.control, axis=k), axis=2).sum(axis=k).mean() for k in (0, 1))
+    return np.array([along / (u1 - u0), across / (v1 - v0)])

@@ -1,0 +1,218 @@
+"""The standard deviation of a surface, at any place, on a grid, and as an upper and a lower surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import NearestNDInterpolator
+from scipy.spatial import Delaunay
+from scipy.special import ndtri
+from threadpoolctl import threadpool_limits
+
+from geofit.data.errors import FitError, SettingsError
+from geofit.data.messages import said
+from geofit.data.prediction import OffData, Uncertainty
+from geofit.fitting.model import Model
+from geofit.fitting.posterior import Posterior, posterior
+from geofit.geometry.clip import inside
+from geofit.prediction.calibration import Calibration, uncalibrated
+from geofit.splines import bspline
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["Grid", "Spread", "band", "grid_over", "sd_at", "uncertainty_on"]
+
+Floats = NDArray[np.float64]
+
+#: Nodes along the longer side of the grid.
+NODES = 100
+
+
+@dataclass(frozen=True, eq=False)
+class Spread:
+    """Mean square error of a surface about the rock.
+
+    The surface meets points that the field takes for noisy, and departs from the field by t to do so. Given the data,
+    its expected square error is the field's posterior variance plus t^2, times the square of the local factor.
+    """
+
+    model: Model
+    posterior: Posterior
+    calibration: Calibration
+
+    def variance(self, plane: Floats) -> Floats:
+        """Return the (n,) mean square errors at (n, 2) places in units, before calibration, m^2."""
+        net = self.model.net
+        departure = net.space.matrix(plane) @ net.coefficients - self.posterior.height(plane)
+        return np.asarray(self.posterior.variance(plane) + departure**2)
+
+    def sd(self, plane: Floats) -> Floats:
+        """Return the (n,) standard deviations at (n, 2) places in units, metres."""
+        return np.asarray(self.calibration.at(plane) * np.sqrt(self.variance(plane)))
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Nodes over a surface: ``x`` (nx,) and ``y`` (ny,); ``plane`` (k, 2) in units where ``within`` (ny, nx)."""
+
+    x: Floats
+    y: Floats
+    within: NDArray[np.bool_]
+    plane: Floats
+
+    def spread_out(self, values: Floats) -> Floats:
+        """Return (k,) values at the nodes of the surface as (ny, nx), nan elsewhere."""
+        full = np.full(self.within.shape, np.nan)
+        full[self.within] = values
+        return full
+
+    def places(self, model: Model) -> Floats:
+        """Return the map coordinates (k, 3) of the surface at the nodes on it."""
+        net, frame = model.net, model.problem.chart.frame
+        local = np.column_stack([self.plane * net.unit, net.space.matrix(self.plane) @ net.coefficients])
+        return frame.turn_back(local) + frame.origin
+
+
+def grid_over(surface: HorizonSurface) -> Grid:
+    """Lay a grid over the study area; over the hull of its points, where a steep surface lies over its best plane."""
+    model = _model(surface)
+    chart, unit = model.problem.chart, model.net.unit
+    u0, u1, v0, v1 = chart.area
+    if chart.frame.kind == "map":
+        local = np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]])
+        corners = (chart.frame.turn_back(local) + chart.frame.origin)[:, :2]
+        if surface.outline is not None:
+            corners = surface.outline
+    else:
+        corners = np.array([[u0, v0], [u1, v1]])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    step = float((high - low).max()) / (NODES - 1)
+    x, y = (np.linspace(low[k], high[k], max(round((high[k] - low[k]) / step) + 1, 2)) for k in (0, 1))
+    nodes = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
+    plane = chart.frame.plan(nodes) if chart.frame.kind == "map" else nodes
+    edge = 1e-9 * max(u1 - u0, v1 - v0)
+    within = (plane >= (u0 - edge, v0 - edge)).all(axis=1) & (plane <= (u1 + edge, v1 + edge)).all(axis=1)
+    plane = np.clip(plane, (u0, v0), (u1, v1))
+    if chart.frame.kind != "map":
+        within &= Delaunay(chart.plane).find_simplex(plane) >= 0
+    if surface.outline is not None:
+        # The outline itself counts as inside.
+        middle = (low + high) / 2
+        within &= inside(surface.outline, middle + (nodes - middle) * (1 - 1e-9))
+    return Grid(x, y, within.reshape(len(y), len(x)), plane[within] / unit)
+
+
+def uncertainty_on(grid: Grid, spread: Spread) -> Uncertainty:
+    """Return the standard deviation on the nodes of a grid."""
+    factors = spread.calibration.at(grid.plane)
+    sd = factors * np.sqrt(spread.variance(grid.plane))
+    frame: Literal["map", "best-plane"] = "map" if spread.model.problem.chart.frame.kind == "map" else "best-plane"
+    return Uncertainty(
+        grid.x, grid.y, grid.spread_out(sd), float(np.median(factors)), float(sd.mean()), float(sd.max()),
+        grid.spread_out(factors), frame,
+    )  # fmt: skip
+
+
+def sd_at(surface: HorizonSurface, uncertainty: Uncertainty, xyz: ArrayLike) -> Floats:
+    """Return the standard deviation of a surface at (n, 3) map coordinates on it (or (n, 2) of a map frame), metres.
+
+    The posterior is evaluated at each place; the local factor is that of the nearest node of the grid.
+
+    Raises
+    ------
+    FitError
+        If nothing is known about how the surface was fitted.
+    """
+    model = _model(surface)
+    frame = model.problem.chart.frame
+    places = np.atleast_2d(np.asarray(xyz, float))
+    if places.shape[1] == 2:
+        if frame.kind != "map":
+            raise FitError("A surface over its best plane needs (n, 3) coordinates; (n, 2) were given.")
+        plane = frame.plan(places)
+    else:
+        plane = frame.to_local(places)[:, :2]
+    with threadpool_limits(limits=1):
+        return _sd(model, uncertainty, plane / model.net.unit)
+
+
+def band(
+    surface: HorizonSurface, found: OffData | Uncertainty, share: float = 0.9
+) -> tuple[HorizonSurface, HorizonSurface]:
+    """Return the upper and the lower surface between which the rock lies with the given probability.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        A fitted height field.
+    found : OffData or Uncertainty
+        What :func:`geofit.prediction.examine.examine` found.
+    share : float
+        Probability, above 0 and below 1.
+
+    Returns
+    -------
+    upper, lower : HorizonSurface
+        The same net, each control point moved by plus or minus z * sd at its Greville abscissa: Schoenberg's
+        variation-diminishing spline, which never swings below zero. Patches meet as those of the surface do.
+
+    Raises
+    ------
+    SettingsError
+        If ``share`` is no probability.
+    FitError
+        If nothing is known about how the surface was fitted.
+    """
+    if not 0 < share < 1:
+        raise SettingsError(
+            said("share is {share!r}; a probability above 0 and below 1 is needed, for instance 0.9.", share=share)
+        )
+    uncertainty = found.uncertainty if isinstance(found, OffData) else found
+    if uncertainty is None:
+        raise FitError(
+            said("No standard deviation is known of '{name}'; see the notes of its examination.", name=surface.name)
+        )
+    model = _model(surface)
+    space = model.net.space
+    u, v = bspline.greville(space.knots_u, space.degree), bspline.greville(space.knots_v, space.degree)
+    abscissae = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    with threadpool_limits(limits=1):
+        offset = float(ndtri((1 + share) / 2)) * _sd(model, uncertainty, abscissae)
+    sides = []
+    for sign, word in ((1, "upper"), (-1, "lower")):
+        moved = model.with_net(replace(model.net, coefficients=model.net.coefficients + sign * offset))
+        sides.append(
+            surface.with_(
+                patches=moved.patches(),
+                name=f"{surface.name} {word} {100 * share:g}%",
+                core=np.zeros(len(surface.points), bool),
+                accuracy=None,
+                model=None,
+            )
+        )
+    return sides[0], sides[1]
+
+
+def _sd(model: Model, uncertainty: Uncertainty, plane: Floats) -> Floats:
+    """Return the standard deviation at places in units, with the factors of a grid."""
+    frame = model.problem.chart.frame
+    x, y = np.meshgrid(uncertainty.x, uncertainty.y)
+    known = np.isfinite(uncertainty.factors)
+    nodes = np.column_stack([x[known], y[known]])
+    metres = plane * model.net.unit
+    if uncertainty.frame == "map":
+        metres = (frame.turn_back(np.column_stack([metres, np.zeros(len(metres))])) + frame.origin)[:, :2]
+    factor = NearestNDInterpolator(nodes - nodes[0], uncertainty.factors[known])(metres - nodes[0])
+    return np.asarray(factor * Spread(model, posterior(model), uncalibrated()).sd(plane))
+
+
+def _model(surface: HorizonSurface) -> Model:
+    if surface.model is None:
+        raise FitError(
+            said(
+                "'{name}' was not fitted here: nothing is known about what lies between its points.", name=surface.name
+            )
+        )
+    return surface.model

@@ -1,0 +1,309 @@
+"""The document: a site, the work on it, and the surfaces at hand. Plain Python; windows listen to its signals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.prediction import OffData
+from geofit.data.settings import FitSettings
+from geofit.data.site import Site
+from geofit.project.building import Given
+from geofit.project.fault_blocks import Blocks, parted_site
+from geofit.project.provenance import DocumentError, Recipe, Row, fingerprint, without_rows
+from geofit.project.shelf import Shelf
+from geofit.project.signal import Signal
+from geofit.project.state import State
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["Document", "Selection"]
+
+_EMPTY = Site("", {})
+
+
+@dataclass(frozen=True)
+class Selection:
+    """What is chosen in all windows: a horizon, and a row of its data or none."""
+
+    horizon: str | None = None
+    row: Row | None = None
+
+
+class Document:
+    """A site with the work on it.
+
+    The state is changed by commands alone (:mod:`geofit.project.commands`). Surfaces belong to recipes: the
+    state says which are wanted, the shelf has those that were made.
+
+    Signals
+    -------
+    site_changed()
+        Another site was opened, or a horizon was parted into blocks: look at everything anew.
+    settings_changed(horizon), points_changed(horizon), result_changed(horizon)
+        Settings; rows that take part; the surface, its check or what is known off the data.
+    order_changed(), name_changed()
+        The order of the horizons; the site's title.
+    selection_changed(selection)
+        Another horizon or row was chosen.
+    saved_changed()
+        The project file, or whether it holds the present state.
+    """
+
+    def __init__(self) -> None:
+        self._read = self._site = _EMPTY
+        self.site_file: Path | None = None
+        self.project_file: Path | None = None
+        self.selection = Selection()
+        self.shelf = Shelf()
+        self._state = self._saved = State()
+        self._points: dict[tuple[str, frozenset[Row]], PointSet] = {}
+        self._fingerprints: dict[str, str] = {}
+        self._used = _EMPTY
+        self.site_changed: Signal[[]] = Signal()
+        self.settings_changed: Signal[[str]] = Signal()
+        self.points_changed: Signal[[str]] = Signal()
+        self.result_changed: Signal[[str]] = Signal()
+        self.order_changed: Signal[[]] = Signal()
+        self.name_changed: Signal[[]] = Signal()
+        self.selection_changed: Signal[[Selection]] = Signal()
+        self.saved_changed: Signal[[]] = Signal()
+
+    def open(
+        self, site: Site, site_file: Path | None, state: State | None = None, project_file: Path | None = None
+    ) -> None:
+        """Begin with a site, and with the work that a project or a journal holds."""
+        self.site_file, self.project_file = site_file, project_file
+        self.shelf.clear()
+        self._state = self._saved = state or State.of_site(site)
+        self._read = site
+        self._take_parts()
+        worked_on = [name for name in self._state.order if name in self._state.recipes]
+        self.selection = Selection(next(iter((*worked_on, *self._state.order)), None))
+        self.site_changed.emit()
+        self.saved_changed.emit()
+
+    @property
+    def site(self) -> Site:
+        """The site, blocks in the place of horizons that were parted at their faults."""
+        return self._site
+
+    @property
+    def state(self) -> State:
+        """What commands change."""
+        return self._state
+
+    @property
+    def dirty(self) -> bool:
+        """Whether there is something to save."""
+        return self._state is not self._saved and self._state != self._saved
+
+    @property
+    def horizons(self) -> tuple[str, ...]:
+        """Names of the horizons, the highest first."""
+        return self._state.order
+
+    def become(self, state: State) -> None:
+        """Take another state, and tell what is different. For commands only."""
+        former, was_dirty = self._state, self.dirty
+        self._state = state
+        if former.parts != state.parts:
+            self._take_parts()
+            if self.selection.horizon not in state.order:
+                self.selection = Selection(self._nearest(self.selection.horizon))
+            self.site_changed.emit()
+        for name in state.settings:
+            if former.settings.get(name) != state.settings[name]:
+                self.settings_changed.emit(name)
+            if former.excluded.get(name, frozenset()) != state.excluded.get(name, frozenset()):
+                self.points_changed.emit(name)
+            if former.recipes.get(name) != state.recipes.get(name):
+                self.result_changed.emit(name)
+        if former.order != state.order:
+            self.order_changed.emit()
+        if former.name != state.name:
+            self.name_changed.emit()
+        if was_dirty != self.dirty:
+            self.saved_changed.emit()
+
+    def saved(self, project_file: Path, state: State) -> None:
+        """Hear that ``state`` was written to a project file."""
+        self.project_file, self._saved = project_file, state
+        self.saved_changed.emit()
+
+    def points(self, name: str) -> PointSet:
+        """Return the points of a horizon but those of excluded rows."""
+        key = (name, self._state.excluded.get(name, frozenset()))
+        if key not in self._points:
+            self._points = {old: points for old, points in self._points.items() if old[0] != name}
+            self._points[key] = without_rows(self._given(name), key[1])
+        return self._points[key]
+
+    def site_in_use(self) -> Site:
+        """Return the site under its present name, with the points that take part, in the present order.
+
+        It is one object until one of these changes.
+        """
+        horizons = {name: self.points(name) for name in self.horizons}
+        used = self._used
+        same = used.name == self._state.name and list(used.horizons) == list(horizons)
+        if not same or any(used.horizons[name] is not points for name, points in horizons.items()):
+            self._used = replace(self.site, name=self._state.name, horizons=horizons)
+        return self._used
+
+    def settings(self, name: str) -> FitSettings:
+        """Return the settings that the next fit of a horizon will have."""
+        self._given(name)
+        return self._state.settings[name]
+
+    def recipe(self, name: str) -> Recipe:
+        """Return from what the next fit of a horizon will be made."""
+        excluded = tuple(sorted(self._state.excluded.get(name, ())))
+        return Recipe(name, self.settings(name), self.given(name), excluded, part=self._state.parts.get(name))
+
+    def given(self, name: str) -> str:
+        """Return the fingerprint of the site for a horizon, or for the whole of one that was parted."""
+        if name not in self._fingerprints:
+            points = self._given(name) if name in self._site.horizons else self._read.horizons.get(name)
+            self._fingerprints[name] = "" if points is None else fingerprint(points, self._read)
+        return self._fingerprints[name]
+
+    def whole(self, name: str) -> str:
+        """Return the horizon that a block is a part of; a horizon that was not parted is its own whole."""
+        part = self._state.parts.get(name)
+        return name if part is None else part.horizon
+
+    def faults(self, name: str) -> tuple[Recipe, ...]:
+        """Return from what the faults are made that cut a horizon or the whole of a block, as they are now."""
+        whole = self.whole(name)
+        cutting = [fault for fault, cut in self._read.faults.items() if whole in cut and fault in self._state.settings]
+        known = self._state.recipes
+        return tuple(known[f] if f in known and not self.stale(f) else self.recipe(f) for f in cutting)
+
+    def unparted(self, name: str) -> bool:
+        """Whether faults cut a horizon that was not parted at them, or not as they are now."""
+        faults, part = self.faults(name), self._state.parts.get(name)
+        if part is None:
+            return bool(faults)
+        return part.faults != faults or part.given != self.given(part.horizon)
+
+    def surface(self, name: str) -> HorizonSurface | None:
+        """Return the surface of a horizon; None if there is none, or if it is wanted but not made yet."""
+        return self.shelf.surface(self._state.recipes.get(name))
+
+    def surfaces(self) -> Mapping[str, HorizonSurface]:
+        """Return the surfaces at hand, the highest first."""
+        found = {name: self.surface(name) for name in self.horizons}
+        return {name: surface for name, surface in found.items() if surface is not None}
+
+    def offdata(self, name: str) -> OffData | None:
+        """Return what is known about a surface off its data."""
+        return self.shelf.offdata(self._state.recipes.get(name))
+
+    def put(self, recipe: Recipe, surface: HorizonSurface) -> None:
+        """Lay a surface on the shelf; it is shown as soon as the state has its recipe."""
+        self.shelf.put(recipe, surface, set(self._state.recipes.values()))
+        self._tell_of(recipe)
+
+    def put_offdata(self, recipe: Recipe, offdata: OffData) -> None:
+        """Keep what was found out about a surface off its data."""
+        self.shelf.examined(recipe, offdata)
+        self._tell_of(recipe)
+
+    def stale(self, name: str) -> bool:
+        """Whether the surface was made from other settings, rows or files than the horizon has now."""
+        recipe = self._state.recipes.get(name)
+        if recipe is None:
+            return False
+        parted = recipe.part is not None
+        return replace(recipe, edits=()) != self.recipe(name) or (parted and self.unparted(name))
+
+    def missing(self) -> tuple[Recipe, ...]:
+        """Return recipes whose surfaces are wanted, not at hand, and can be made from the site as it is."""
+        return tuple(
+            recipe
+            for recipe in self._state.recipes.values()
+            if self.shelf.surface(recipe) is None and self.holds(recipe)
+        )
+
+    def lost(self) -> tuple[str, ...]:
+        """Return horizons whose surfaces are not at hand and cannot be made: the files have changed since."""
+        return tuple(
+            name
+            for name, recipe in self._state.recipes.items()
+            if self.shelf.surface(recipe) is None and not self.holds(recipe)
+        )
+
+    def holds(self, recipe: Recipe) -> bool:
+        """Whether a surface can be made again as it was: the site has the data that the recipe was for."""
+        return all(one.given == self.given(one.horizon) for one in recipe.ingredients())
+
+    def given_for(self, *recipes: Recipe) -> Given:
+        """Return all that surfaces are made from: of the site what the recipes name, and faults at hand."""
+        named = [one for recipe in recipes for one in recipe.ingredients()]
+        faults = [fault for one in named if one.part is not None for fault in one.part.faults]
+        return self._give({one.horizon: self._given(one.horizon) for one in named}, faults)
+
+    def given_for_parting(self, whole: str) -> tuple[Given, tuple[int, ...]]:
+        """Return what a horizon is parted from, and the numbers of its points whose rows were excluded."""
+        points, faults = self._read.horizons[whole], self.faults(whole)
+        named = {one.horizon for fault in faults for one in fault.ingredients()}
+        out = {
+            index
+            for name, rows in self._state.excluded.items()
+            if self.whole(name) == whole
+            for row in rows
+            if (index := row.find(points)) is not None
+        }
+        return self._give({whole: points, **{name: self._given(name) for name in named}}, faults), tuple(sorted(out))
+
+    def blocks(self, whole: str | None = None) -> Blocks:
+        """Return the blocks whose surfaces are at hand: those of a horizon, or all."""
+        surfaces = self.surfaces()
+        found = {
+            name: (part, surfaces[name].with_(model=None))
+            for name, part in self._state.parts.items()
+            if name in surfaces and whole in (None, part.horizon)
+        }
+        return Blocks(found, self.given_for(*(self._state.recipes[name] for name in found)))
+
+    def select(self, horizon: str | None, row: Row | None = None) -> None:
+        """Choose a horizon, and a row of its data."""
+        chosen = Selection(horizon, row)
+        if chosen != self.selection:
+            self.selection = chosen
+            self.selection_changed.emit(chosen)
+
+    def _given(self, name: str) -> PointSet:
+        horizons = self._site.horizons
+        if name not in horizons:
+            names = ", ".join(horizons) or said("none")
+            raise DocumentError(said("The site has no horizon '{name}'. It has {names}.", name=name, names=names))
+        return horizons[name]
+
+    def _give(self, horizons: Mapping[str, PointSet], faults: Iterable[Recipe]) -> Given:
+        site = self._site
+        reduced = Site(site.name, horizons, boundary=site.boundary, ground=site.ground, orientations=site.orientations)
+        # One that was read from a file has lost its last digits; what stands behind the patches need not travel.
+        made = {fault: one.with_(model=None) for fault in faults if (one := self.shelf.surface(fault)) and one.model}
+        return Given(reduced, made)
+
+    def _take_parts(self) -> None:
+        self._site = self._used = parted_site(self._read, self._state.parts)
+        self._points.clear()
+        self._fingerprints.clear()
+
+    def _nearest(self, former: str | None) -> str | None:
+        """Return a block of the horizon that was chosen, or the whole of the block; else the highest horizon."""
+        near = [
+            name
+            for name in self._state.order
+            if former and (self.whole(name) == former or former.startswith(f"{name} ("))
+        ]
+        return next(iter((*near, *self._state.order)), None)
+
+    def _tell_of(self, recipe: Recipe) -> None:
+        if self._state.recipes.get(recipe.horizon) == recipe:
+            self.result_changed.emit(recipe.horizon)

@@ -1,0 +1,155 @@
+"""Horizons that faults cut, parted into blocks; without Qt: the parting runs in a process of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.messages import listed, said
+from geofit.data.progress import Progress
+from geofit.data.site import Site
+from geofit.project.building import Given, fault_surfaces
+from geofit.project.provenance import Part, Recipe, runs
+from geofit.site.fit_site import SiteFit
+from geofit.site.throw import FaultCut
+from geofit.surfaces.surface import HorizonSurface
+
+if TYPE_CHECKING:
+    from geofit.site.fault_blocks import Parting
+
+__all__ = ["Blocks", "Parted", "measured", "part_at_faults", "parted_site", "same_side", "site_fit"]
+
+
+@dataclass(frozen=True, eq=False)
+class Parted:
+    """A horizon's blocks by name, the faults' surfaces by recipe, and what there is to tell."""
+
+    horizon: str
+    blocks: Mapping[str, Part]
+    faults: Mapping[Recipe, HorizonSurface]
+    notes: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Blocks:
+    """Blocks with their surfaces, by name, and what their faults are made from."""
+
+    surfaces: Mapping[str, tuple[Part, HorizonSurface]]
+    given: Given
+
+
+def parted_site(site: Site, parts: Mapping[str, Part]) -> Site:
+    """Return a site with blocks in the place of the horizons that were parted."""
+    if not parts:
+        return site
+    blocks: dict[str, dict[str, Part]] = {}
+    for name, part in parts.items():
+        blocks.setdefault(part.horizon, {})[name] = part
+    horizons = {
+        name: points if part is None else part.of(points)
+        for whole, points in site.horizons.items()
+        for name, part in blocks.get(whole, {whole: None}).items()
+    }
+    return replace(site, horizons=horizons)
+
+
+def part_at_faults(
+    horizon: str, faults: tuple[Recipe, ...], left_out: Sequence[int], given: Given, digest: str, *, progress: Progress
+) -> Parted:
+    """Part a horizon at its faults. No blocks: no fault parts it.
+
+    Points ``left_out`` make no block; they belong to the one that lies on their side, if there is one.
+
+    Raises
+    ------
+    GeofitError
+        If a fault cannot be fitted, or a block would have fewer than three points.
+    """
+    from geofit.site.fault_blocks import area_of, part
+
+    surfaces = fault_surfaces(faults, given, progress)
+    points = given.site.horizons[horizon]
+    kept = np.setdiff1d(np.arange(len(points)), np.asarray(left_out, int))
+    area = area_of(points, given.site.boundary)
+    found = part(points[kept], list(surfaces.values()), area, horizon)
+    number = {fault.name: k for k, fault in enumerate(found.faults)}
+    out = np.asarray(left_out, int)
+    block = np.full(len(points), -1)
+    block[kept], block[out] = found.block, _block_of(points.xyz[out], found)
+    notes = list(found.notes)
+    homeless = [points.describe(int(i)) for i in out if block[i] < 0]
+    if homeless:
+        notes.append(said("excluded, and in no block: {points}", points=listed(homeless)))
+    corners = tuple((float(x), float(y)) for x, y in list(area.exterior.coords)[:-1])
+    blocks = {
+        name: Part(
+            horizon,
+            digest,
+            faults,
+            tuple(sides[number[f.horizon]] if f.horizon in number else -1 for f in faults),
+            runs(np.flatnonzero(block == k)),
+            corners,
+        )
+        for k, (name, sides) in enumerate(zip(found.names, found.sides, strict=True))
+    }
+    return Parted(horizon, blocks if len(blocks) > 1 else {}, surfaces, tuple(notes))
+
+
+def _block_of(places: NDArray[np.float64], parted: Parting) -> NDArray[np.int64]:
+    """Return the number of the block on whose side places (n, 3) lie, -1 where there is none."""
+    sides = np.array([fault.side(places) for fault in parted.faults]).reshape(len(parted.faults), len(places)).T
+    number = {side: k for k, side in enumerate(parted.sides)}
+    return np.array([number.get(tuple(row), -1) for row in sides.tolist()], int)
+
+
+def same_side(parts: Mapping[str, Part], one: str, other: str) -> bool:
+    """Whether two surfaces can lie above each other: not two blocks of one horizon, nor parted by a fault of both."""
+    first, second = parts.get(one), parts.get(other)
+    if first is None or second is None:
+        return True
+    if first.horizon == second.horizon:
+        return False
+    of_first, of_second = _sides(first), _sides(second)
+    return all(of_first[fault] == of_second[fault] for fault in of_first.keys() & of_second.keys())
+
+
+def measured(blocks: Blocks, *, progress: Progress | None) -> tuple[FaultCut, ...]:
+    """Measure how far faults displace the horizons that surfaces are blocks of."""
+    import shapely
+
+    from geofit.site.fault import Fault
+    from geofit.site.throw import throws
+
+    cuts: tuple[FaultCut, ...] = ()
+    known = blocks.surfaces.values()
+    for horizon in dict.fromkeys(part.horizon for part, _ in known):
+        mine = [(part, surface) for part, surface in known if part.horizon == horizon]
+        first = mine[0][0]
+        area = shapely.Polygon(first.area)
+        surfaces = fault_surfaces(first.faults, blocks.given, progress)
+        cutting = [k for k, side in enumerate(first.sides) if side >= 0]
+        faults = [Fault.of(surfaces[first.faults[k]], k, area) for k in cutting]
+        by_sides = {tuple(part.sides[k] for k in cutting): surface for part, surface in mine}
+        cuts += throws(by_sides, faults, horizon, area)
+    return cuts
+
+
+def site_fit(surfaces: Mapping[str, HorizonSurface], blocks: Blocks, progress: Progress | None) -> SiteFit:
+    """Return surfaces as a fit of their whole site has them: which are blocks of what, and the throws."""
+    whole = {name: part.horizon for name, (part, _) in blocks.surfaces.items()}
+    recipes = dict.fromkeys(fault for part, _ in blocks.surfaces.values() for fault in part.faults)
+    faults = fault_surfaces(recipes, blocks.given, progress)
+    return SiteFit(
+        dict(surfaces),
+        {name: whole.get(name, name) for name in surfaces},
+        faults={recipe.horizon: surface for recipe, surface in faults.items()},
+        cuts=measured(blocks, progress=progress),
+    )
+
+
+def _sides(part: Part) -> dict[str, int]:
+    return {fault.horizon: side for fault, side in zip(part.faults, part.sides, strict=True) if side >= 0}

@@ -1,0 +1,300 @@
+"""``geofit import``: files to a site file, the mapping of their columns, and the table of what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from geofit.data.errors import InputError
+from geofit.data.files import replacing
+from geofit.data.messages import Verbatim, listed, said
+from geofit.data.progress import Progress, tell
+from geofit.data.site import Ground, ImportIssue, Site, TableCount
+from geofit.io.boreholes import load_boreholes
+from geofit.io.columns import SCHEMAS
+from geofit.io.contacts import load_contacts
+from geofit.io.grid import load_ground
+from geofit.io.guess import taken_as
+from geofit.io.import_plan import Part, Plan, campaigns, look_at, settle
+from geofit.io.journal import Journal
+from geofit.io.mapping import ColumnMapping, save_mappings
+from geofit.io.site_file import load_site
+from geofit.io.toml_text import toml_value
+from geofit.report.language import EN, Language
+from geofit.report.language import tell as in_words
+
+__all__ = ["Import", "import_files"]
+
+#: Fewer contacts make no surface: the code gets no [[horizon]] unless it is asked for.
+FEWEST_CONTACTS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Import:
+    """What an import made.
+
+    ``site`` is what the site file gives when it is read; ``issues`` and ``counts`` hold also the files that could
+    not be used, all of whose rows are listed. ``read == used + listed`` for every file.
+    """
+
+    site: Site
+    site_file: Path
+    mapping_file: Path
+    issue_file: Path
+    issues: tuple[ImportIssue, ...]
+    counts: tuple[TableCount, ...]
+
+    @property
+    def exit_code(self) -> int:
+        """0 if there is a horizon to fit, 1 if the site has none yet, 2 if no row could be used."""
+        if not any(count.used for count in self.counts):
+            return 2
+        return 0 if self.site.horizons else 1
+
+
+def import_files(
+    files: Sequence[str | Path],
+    site_file: str | Path,
+    *,
+    mappings: Sequence[ColumnMapping] = (),
+    crs: str = "",
+    base: Sequence[str] = (),
+    top: Sequence[str] = (),
+    progress: Progress | None = None,
+    language: Language = EN,
+) -> Import:
+    """Recognise files, and write the site file, ``..._mapping.toml`` and ``..._issues.csv`` beside it.
+
+    Parameters
+    ----------
+    files : sequence of path
+        Tables, drawings, maps and grids of one site, in any order.
+    site_file : path
+        Where the site file is written.
+    mappings : sequence of ColumnMapping
+        How tables are read where a guess would be wrong.
+    crs : str
+        Coordinate system of the site; longitude and latitude are projected to it where it is a code.
+    base, top : sequence of str
+        Codes whose base or top are horizons; without any, the base of each code that has three contacts.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``.
+    language : Language
+        What the base of a code is called, and the reasons in ``..._issues.csv``.
+
+    Raises
+    ------
+    InputError
+        If no file is given, or none exists.
+    MissingDependencyError
+        If a format's package is not installed.
+    """
+    site_file = Path(site_file)
+    if not files:
+        raise InputError("No file is given", "Name the tables, drawings, maps and grids of the site.")
+    folder = site_file.parent
+    folder.mkdir(parents=True, exist_ok=True)
+    plan = Plan()
+    for i, file in enumerate(files):
+        tell(progress, "look at files", 0.3 * i / len(files))
+        look_at(Path(file), folder, mappings, crs, plan)
+    mapping_file = site_file.with_name(f"{site_file.stem}_mapping.toml")
+    while True:
+        settle(plan)
+        horizons = _horizons(plan, site_file, mapping_file, crs, base, top, language)
+        _write(plan, site_file, mapping_file, crs, horizons)
+        tell(progress, "read the site", 0.6)
+        try:
+            site = load_site(site_file)
+            break
+        except InputError as error:
+            if not plan.drop(error):
+                raise
+    issues = (*site.issues, *plan.issues, *_guesses(plan))
+    counts = (*site.counts, *plan.counts)
+    issue_file = site_file.with_name(f"{site_file.stem}_issues.csv")
+    from geofit.report.tables import write_issues
+
+    write_issues(issues, issue_file, language)
+    tell(progress, "imported", 1.0)
+    return Import(site, site_file, mapping_file, issue_file, issues, counts)
+
+
+def _guesses(plan: Plan) -> list[ImportIssue]:
+    """Return a note for each guess that the mapping file now states."""
+    notes = []
+    for part in (part for parts in plan.parts.values() for part in parts):
+        preview, name = part.preview, part.source.name
+        others = listed(
+            said("{kind} {merit:.2f}", kind=kind, merit=merit) for kind, merit in list(preview.kinds.items())[1:4]
+        )
+        reason = said("Taken as {kind}, confidence {confidence:.2f}", kind=preview.kind, confidence=preview.confidence)
+        if others:
+            reason = said("{text}; else {others}", text=reason, others=others)
+        notes.append(ImportIssue(name, 0, "", "", "note", reason, said("State another kind in the mapping file.")))
+        for guess in preview.roles:
+            if guess.stated:
+                continue
+            remedy = said("Name another column in the mapping file.")
+            severity: Literal["note", "warning"] = "warning" if guess.reason.startswith("by its values") else "note"
+            notes.append(ImportIssue(name, 0, guess.column, "", severity, taken_as(guess), remedy))
+    return notes
+
+
+def _horizons(
+    plan: Plan,
+    site_file: Path,
+    mapping_file: Path,
+    crs: str,
+    base: Sequence[str],
+    top: Sequence[str],
+    language: Language,
+) -> list[dict[str, Any]]:
+    """Return the [[horizon]] tables: limits of codes, and, beside them, every name in the other files."""
+    limits = _limits(plan, base, top)
+    if not limits:
+        return []
+    # Beside a [[horizon]] only listed names are read, so those of the other files are asked for first.
+    _write(plan, site_file, mapping_file, crs, [], boreholes=False)
+    try:
+        others = list(load_site(site_file).horizons)
+    except InputError:
+        others = []  # the file at fault is dropped when the whole site is read
+    named = {name.casefold() for name in others}
+    for table in limits:
+        # In the language that was asked for, unless another file uses the English name.
+        if table["name"].casefold() not in named:
+            table["name"] = in_words(table["name"], language)
+    limited = {table["name"].casefold() for table in limits}
+    return limits + [{"name": name} for name in others if name.casefold() not in limited]
+
+
+def _ground(plan: Plan) -> Ground | None:
+    for part in plan.of("ground")[:1]:
+        try:
+            return load_ground(part.mapping.fill(part.source), Journal())
+        except InputError:
+            return None  # listed when the site is read
+    return None
+
+
+def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[str, Any]]:
+    """Return the limits that are asked for, or the base of each code with enough contacts, the highest first."""
+    pairs = [*(("base", code) for code in base), *(("top", code) for code in top)]
+    asked = [{"name": _name(limit, code), limit: code} for limit, code in pairs]
+    if asked:
+        return asked
+    heights: dict[str, list[float]] = {}
+    few: dict[str, int] = {}
+    ground = _ground(plan)
+    for collar, survey, logs in campaigns(plan):
+        try:
+            found = load_boreholes(
+                collar.mapping.fill(collar.source),
+                survey.mapping.fill(survey.source) if survey else None,
+                [log.mapping.fill(log.source) for log in logs],
+                None,
+                Journal(),
+                ground=ground,
+            )
+        except InputError:
+            continue  # listed when the site is read
+        for code in dict.fromkeys(str(code) for log in found.logs for code in log.code):
+            heights.setdefault(code, []).extend(load_contacts(found, code, "base", Journal()).xyz[:, 2].tolist())
+    for code, z in list(heights.items()):
+        if len(z) < FEWEST_CONTACTS:
+            few[code] = len(heights.pop(code))
+    if few:
+        names = ", ".join(f"{code} ({count})" for code, count in sorted(few.items()))
+        issue = ImportIssue(
+            plan.of("intervals")[0].source.name,
+            0,
+            "",
+            "",
+            "note",
+            said(
+                "The base of {count} codes has fewer than {least} contacts and makes no horizon: {names}",
+                count=len(few),
+                least=FEWEST_CONTACTS,
+                names=names,
+            ),
+            "Add a [[horizon]] to the site file where one is wanted (--base, --top).",
+        )
+        if issue not in plan.issues:
+            plan.issues.append(issue)
+    ordered = sorted(heights, key=lambda code: (-float(np.mean(heights[code])), code))
+    return [{"name": _name("base", code), "base": code} for code in ordered]
+
+
+def _name(limit: str, code: str) -> str:
+    if limit == "top":
+        return said("top of {code}", code=Verbatim(code))
+    return said("base of {code}", code=Verbatim(code))
+
+
+def _write(
+    plan: Plan,
+    site_file: Path,
+    mapping_file: Path,
+    crs: str,
+    horizons: Sequence[Mapping[str, Any]],
+    *,
+    boreholes: bool = True,
+) -> None:
+    """Write the mapping and the site file that refers to it."""
+    parts = [part for parts in plan.parts.values() for part in parts if part.preview.kind in SCHEMAS]
+    remarks = {
+        (i, guess.role): guess.reason + (f", confidence {guess.confidence:.2f}" if not guess.stated else "")
+        for i, part in enumerate(parts)
+        for guess in part.preview.roles
+    }
+    save_mappings([part.mapping for part in parts], mapping_file, remarks)
+    blocks: list[tuple[str, dict[str, Any]]] = [
+        ("[site]", {"name": site_file.stem, **({"crs": crs} if crs else {}), "mapping": mapping_file.name})
+    ]
+    for key in ("boundary", "ground"):
+        blocks += [(f"[{key}]", _file(part)) for part in plan.of(key)[:1]]
+    if boreholes:
+        for collar, survey, intervals in campaigns(plan):
+            table: dict[str, Any] = {"collar": _entry(collar)}
+            if survey:
+                table["survey"] = _entry(survey)
+            if intervals:
+                table["intervals"] = [_entry(part) for part in intervals]
+            blocks.append(("[[boreholes]]", table))
+    for part in plan.of("adit path")[:1]:
+        table = {"path": _entry(part)}
+        if contacts := plan.of("adit contacts"):
+            table["contacts"] = _entry(contacts[0])
+        blocks.append(("[adits]", table))
+    blocks += [("[[section_lines]]", _file(part)) for part in plan.of("section lines")]
+    for part in (*plan.of("section"), *plan.of("drawing")):
+        blocks.append(("[[section]]", {"name": part.section, **_file(part)}))
+    blocks += [("[[sections]]", _file(part)) for part in plan.of("sections")]
+    blocks += [("[[traces]]", _file(part)) for part in plan.of("traces")]
+    for part in plan.of("picks"):
+        alone = "horizon" not in part.mapping.columns
+        blocks.append(("[[picks]]", {**_file(part), **({"horizon": part.source.path.stem} if alone else {})}))
+    blocks += [("[[horizon_columns]]", _file(part)) for part in plan.of("horizon columns")]
+    blocks += [("[[grids]]", {**_file(part), "horizon": part.source.path.stem}) for part in plan.of("grid")]
+    blocks += [("[[orientations]]", _file(part)) for part in plan.of("orientations")]
+    blocks += [("[[horizon]]", dict(table)) for table in horizons]
+    lines = []
+    for head, table in blocks:
+        lines += [head, *(f"{key} = {toml_value(value)}" for key, value in table.items()), ""]
+    with replacing(site_file) as written:
+        written.write_text("\n".join(lines), encoding="utf-8")
+
+
+def _entry(part: Part) -> str | dict[str, str]:
+    """Return a part as the value of a key."""
+    return {"file": part.name, "table": part.preview.table} if part.preview.table else part.name
+
+
+def _file(part: Part) -> dict[str, str]:
+    """Return a part as keys of its own table."""
+    return {"file": part.name, **({"table": part.preview.table} if part.preview.table else {})}

@@ -1,0 +1,208 @@
+"""The journal of a session: what was done, on the disk before the next thing is done.
+
+::
+
+    1f00c3a2 {"format": "geofit journal", "version": 1, "site_file": "...", "state": {...}, ...}
+    9b2e5d10 {"do": {"kind": "settings", "horizon": "T2-T1", ...}}
+    00aa81cc {"undo": true}
+    5d8f3b02 {"saved": "dam.geofit", "state": {...}}
+
+Each line carries its checksum and is on the disk (fsync) before the command counts as done. A session that ends
+removes its journal; one that is there and that no living process holds was cut off, and is told again from its
+first line up to the last whole one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import zlib
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import IO, Any
+
+from geofit.project.commands import Command, command_from
+from geofit.project.state import State
+
+__all__ = ["Journal", "Unfinished", "unfinished"]
+
+FORMAT, VERSION = "geofit journal", 1
+_SUFFIX = ".journal"
+
+
+class Journal:
+    """The journal of this session; ``folder`` is made if it is not there."""
+
+    def __init__(self, folder: Path, state: State, site_file: Path | None, project_file: Path | None) -> None:
+        folder.mkdir(parents=True, exist_ok=True)
+        self.path, self._stream = _new_file(folder)
+        _hold(self._stream)
+        self._write(
+            {
+                "format": FORMAT,
+                "version": VERSION,
+                "site_file": None if site_file is None else str(site_file),
+                "project_file": None if project_file is None else str(project_file),
+                "state": state.to_data(),
+            }
+        )
+        _sync_folder(folder)
+
+    def done(self, command: Command) -> None:
+        """Write that a command was done."""
+        self._write({"do": command.to_data()})
+
+    def undone(self) -> None:
+        """Write that the last command was undone."""
+        self._write({"undo": True})
+
+    def redone(self) -> None:
+        """Write that the command undone last was done again."""
+        self._write({"redo": True})
+
+    def saved(self, project_file: Path, state: State) -> None:
+        """Write that the project file holds a state."""
+        self._write({"saved": str(project_file), "state": state.to_data()})
+
+    def end(self) -> None:
+        """End the session: nothing is to be recovered."""
+        self._stream.close()
+        self.path.unlink(missing_ok=True)
+
+    def _write(self, record: Mapping[str, Any]) -> None:
+        text = json.dumps(record, ensure_ascii=False).encode()
+        self._stream.write(b"%08x " % zlib.crc32(text) + text + b"\n")
+        self._stream.flush()
+        os.fsync(self._stream.fileno())
+
+
+@dataclass(frozen=True)
+class Unfinished:
+    """A session that was cut off.
+
+    ``base`` is the state that it began with, ``commands`` what was done since and not undone, ``saved`` the state
+    that the files hold, and ``time`` that of the last line (seconds, as ``os.stat`` has it).
+    """
+
+    path: Path
+    site_file: Path | None
+    project_file: Path | None
+    base: State
+    commands: tuple[Command, ...]
+    saved: State
+    time: float
+
+    @property
+    def final(self) -> State:
+        """The state when it was cut off."""
+        return list(self.states())[-1]
+
+    def states(self) -> Iterator[State]:
+        """Return the states after each command, the base first."""
+        state = self.base
+        yield state
+        for command in self.commands:
+            state = command.on(state)
+            yield state
+
+    def discard(self) -> None:
+        """Remove the journal: the session is recovered, or nobody wants it."""
+        self.path.unlink(missing_ok=True)
+
+
+def unfinished(folder: Path) -> list[Unfinished]:
+    """Return the sessions that were cut off with something unsaved, the latest first; journals of others stay."""
+    found = []
+    for path in folder.glob(f"*{_SUFFIX}"):
+        try:
+            with path.open("rb+") as stream:
+                _hold(stream)
+                session = _read(path, stream.read())
+        except OSError:
+            continue  # another process has it open, or has just removed it
+        if session is not None and session.final != session.saved:
+            found.append(session)
+        else:
+            path.unlink(missing_ok=True)
+    return sorted(found, key=lambda session: -session.time)
+
+
+def _read(path: Path, data: bytes) -> Unfinished | None:
+    """Return what a journal tells; None if not even its first line is whole."""
+    records = _records(data)
+    head = next(records, None)
+    if head is None or head.get("format") != FORMAT or head.get("version") != VERSION:
+        return None
+    done: list[Command] = []
+    undone: list[Command] = []
+    project_file = head["project_file"]
+    base = saved = State.from_data(head["state"])
+    for record in records:
+        if "do" in record:
+            done.append(command_from(record["do"]))
+            undone.clear()
+        elif "undo" in record:
+            undone.append(done.pop())
+        elif "redo" in record:
+            done.append(undone.pop())
+        else:
+            saved, project_file = State.from_data(record["state"]), record["saved"]
+    return Unfinished(
+        path,
+        _path(head["site_file"]),
+        _path(project_file),
+        base,
+        tuple(done),
+        saved,
+        path.stat().st_mtime,
+    )
+
+
+def _records(data: bytes) -> Iterator[dict[str, Any]]:
+    """Return the lines up to the first that is torn."""
+    for line in data.split(b"\n")[:-1]:
+        checksum, _, text = line.partition(b" ")
+        if checksum != b"%08x" % zlib.crc32(text):
+            return
+        yield json.loads(text)
+
+
+def _path(text: str | None) -> Path | None:
+    return None if text is None else Path(text)
+
+
+def _new_file(folder: Path) -> tuple[Path, IO[bytes]]:
+    for turn in range(10_000):
+        path = folder / f"session-{os.getpid()}-{turn}{_SUFFIX}"
+        with suppress(FileExistsError):
+            return path, path.open("xb")
+    raise FileExistsError(f"{folder} is full of journals; remove the old ones.")
+
+
+def _sync_folder(folder: Path) -> None:
+    """Make the file's name as lasting as its contents; Windows does that by itself."""
+    if sys.platform != "win32":
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def _hold(stream: IO[bytes]) -> None:
+    """Mark a journal as that of a living process: OSError if another holds it. Any end of the process frees it."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        place = stream.tell()
+        # Far beyond the end: on Windows a locked range cannot be read by others.
+        stream.seek(1 << 30)
+        msvcrt.locking(stream.fileno(), msvcrt.LK_NBLCK, 1)
+        stream.seek(place)
+    else:
+        import fcntl
+
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)

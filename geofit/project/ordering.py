@@ -1,0 +1,59 @@
+"""Comparing all horizons, and pushing them apart, as tasks; without Qt: they run in a process of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+
+from threadpoolctl import threadpool_limits
+
+from geofit.data.progress import Progress, tell
+from geofit.data.site import Ground, Site
+from geofit.geometry.elevation import plan_map
+from geofit.project.fault_blocks import same_side
+from geofit.project.provenance import Part
+from geofit.site.order import Order, order_of
+from geofit.site.separate import Repair, repair
+from geofit.site.site_checks import check_surroundings
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["all_orders", "comparable", "over_map", "pushed_apart"]
+
+
+def over_map(surfaces: Mapping[str, HorizonSurface]) -> dict[str, HorizonSurface]:
+    """Return those that lie over the map: of a fault nothing lies above or below."""
+    return {
+        name: surface
+        for name, surface in surfaces.items()
+        if surface.patches and all(plan_map(patch) is not None for patch in surface.patches)
+    }
+
+
+def comparable(names: Sequence[str], parts: Mapping[str, Part]) -> tuple[tuple[str, str], ...]:
+    """Return every two surfaces, given the highest first, that no fault parts."""
+    return tuple((one, other) for one, other in combinations(names, 2) if same_side(parts, one, other))
+
+
+def all_orders(
+    surfaces: Mapping[str, HorizonSurface],
+    pairs: Sequence[tuple[str, str]],
+    ground: Ground | None,
+    *,
+    progress: Progress,
+) -> tuple[Order, ...]:
+    """Compare pairs of horizons, the upper one first."""
+    found = []
+    with threadpool_limits(limits=1):
+        for k, (upper, lower) in enumerate(pairs):
+            tell(progress, "order", k / len(pairs))
+            found.append(order_of(surfaces[upper], surfaces[lower], ground))
+    return tuple(found)
+
+
+def pushed_apart(surfaces: Mapping[str, HorizonSurface], minimum: float, site: Site, *, progress: Progress) -> Repair:
+    """Push horizons apart, given the highest first; those that moved are asked again what the ``site`` says of them."""
+    tell(progress, "push apart", 0.1)
+    found = repair(surfaces, tuple(surfaces), minimum)
+    moved = {name: check_surroundings(found.surfaces[name], site) for name in found.moved}
+    return replace(found, surfaces={**found.surfaces, **moved})

@@ -1,0 +1,290 @@
+"""From what a surface is made: plain values that name it, so that it can be made again to the last bit."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.errors import GeofitError
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.data.site import Site
+
+__all__ = [
+    "Apart",
+    "DocumentError",
+    "HandEdit",
+    "Move",
+    "Part",
+    "Pull",
+    "Recipe",
+    "Row",
+    "Weigh",
+    "fingerprint",
+    "settings_from",
+    "without_rows",
+]
+
+
+class DocumentError(GeofitError):
+    """The document cannot do what was asked for: it has no such horizon, row or surface."""
+
+
+@dataclass(frozen=True, order=True)
+class Row:
+    """One point by its place in the files: file, line, and which of the points that this line gave (from 0)."""
+
+    file: str
+    row: int
+    turn: int = 0
+
+    @classmethod
+    def of(cls, points: PointSet, index: int) -> Row:
+        """Return the row of a point."""
+        file, row = str(points.file[index]), int(points.row[index])
+        return cls(file, row, int(np.searchsorted(_same(points, file, row), index)))
+
+    def find(self, points: PointSet) -> int | None:
+        """Return the index of the point of this row, None where ``points`` does not have it."""
+        same = _same(points, self.file, self.row)
+        return int(same[self.turn]) if self.turn < len(same) else None
+
+
+@dataclass(frozen=True)
+class Move:
+    """A control point of a patch, raised by ``dz`` metres."""
+
+    patch: str
+    i: int
+    j: int
+    dz: float
+
+
+@dataclass(frozen=True)
+class Pull:
+    """The surface pulled to the point ``index`` of those that were fitted, by ``share`` of its residual."""
+
+    index: int
+    share: float
+
+
+@dataclass(frozen=True)
+class Weigh:
+    """A control point of the periphery with another weight."""
+
+    patch: str
+    i: int
+    j: int
+    weight: float
+
+
+@dataclass(frozen=True)
+class Apart:
+    """Horizons pushed apart to ``minimum`` metres, from the top; ``others`` made all of them but this one."""
+
+    sequence: tuple[str, ...]
+    minimum: float
+    others: tuple[Recipe, ...]
+
+
+@dataclass(frozen=True)
+class Part:
+    """One block of a horizon that faults cut.
+
+    Parameters
+    ----------
+    horizon : str
+        Name of the whole.
+    given : str
+        :func:`fingerprint` of the whole.
+    faults : tuple of Recipe
+        The faults that the site states to cut it.
+    sides : tuple of int
+        On which side of each of them the block lies, 0 or 1; -1 of one that has all points on one side.
+    members : str
+        Its points among those of the whole, as :func:`runs` writes them.
+    area : tuple of (x, y)
+        Corners of the study area, map coordinates.
+    """
+
+    horizon: str
+    given: str
+    faults: tuple[Recipe, ...]
+    sides: tuple[int, ...]
+    members: str
+    area: tuple[tuple[float, float], ...]
+
+    def of(self, whole: PointSet) -> PointSet:
+        """Return its points; numbers that the whole does not have any more are passed over."""
+        index = indices(self.members)
+        return whole[index[index < len(whole)]]
+
+    def to_data(self) -> dict[str, Any]:
+        """Return numbers, words, lists and mappings only."""
+        return {
+            "horizon": self.horizon,
+            "given": self.given,
+            "faults": [fault.to_data() for fault in self.faults],
+            "sides": list(self.sides),
+            "members": self.members,
+            "area": [list(corner) for corner in self.area],
+        }
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Part:
+        """Return what :meth:`to_data` was called on."""
+        return cls(
+            data["horizon"],
+            data["given"],
+            tuple(Recipe.from_data(fault) for fault in data["faults"]),
+            tuple(data["sides"]),
+            data["members"],
+            tuple((x, y) for x, y in data["area"]),
+        )
+
+
+HandEdit = Move | Pull | Weigh
+_EDITS: dict[str, type[HandEdit]] = {"move": Move, "pull": Pull, "weigh": Weigh}
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """What a surface is made from.
+
+    Parameters
+    ----------
+    horizon : str
+        Name of the horizon.
+    settings : FitSettings
+        Settings of the fit.
+    given : str
+        :func:`fingerprint` of the site for the horizon.
+    excluded : tuple of Row
+        Rows that were left out, sorted.
+    edits : tuple of HandEdit or Apart
+        Changes after the fit, in their order.
+    part : Part or None
+        What the horizon is a block of.
+    """
+
+    horizon: str
+    settings: FitSettings
+    given: str
+    excluded: tuple[Row, ...] = ()
+    edits: tuple[HandEdit | Apart, ...] = field(default=())
+    part: Part | None = None
+
+    def to_data(self) -> dict[str, Any]:
+        """Return numbers, words, lists and mappings only."""
+        return {
+            "horizon": self.horizon,
+            "settings": asdict(self.settings),
+            "given": self.given,
+            "excluded": [asdict(row) for row in self.excluded],
+            "edits": [_edit_data(edit) for edit in self.edits],
+            "part": None if self.part is None else self.part.to_data(),
+        }
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Recipe:
+        """Return what :meth:`to_data` was called on."""
+        return cls(
+            data["horizon"],
+            settings_from(data["settings"]),
+            data["given"],
+            tuple(Row(**row) for row in data["excluded"]),
+            tuple(_edit_from(edit) for edit in data["edits"]),
+            None if data.get("part") is None else Part.from_data(data["part"]),
+        )
+
+    def ingredients(self) -> Iterator[Recipe]:
+        """Return this recipe, and all that its changes and its faults name."""
+        yield self
+        for fault in () if self.part is None else self.part.faults:
+            yield from fault.ingredients()
+        for edit in self.edits:
+            if isinstance(edit, Apart):
+                for other in edit.others:
+                    yield from other.ingredients()
+
+
+def settings_from(data: Mapping[str, Any]) -> FitSettings:
+    """Return settings from plain data: lists of corners become tuples again."""
+    return FitSettings(**data)
+
+
+def without_rows(points: PointSet, rows: Iterable[Row]) -> PointSet:
+    """Return the points but those of ``rows``; rows that are not there are passed over."""
+    found = [index for row in rows if (index := row.find(points)) is not None]
+    if not found:
+        return points
+    kept = np.ones(len(points), bool)
+    kept[found] = False
+    return points[kept]
+
+
+def runs(index: NDArray[np.intp]) -> str:
+    """Return ascending numbers in short.
+
+    Examples
+    --------
+    >>> runs(np.array([0, 1, 2, 5, 7, 8]))
+    '0-2 5 7-8'
+    """
+    parts = np.split(index, np.flatnonzero(np.diff(index) != 1) + 1) if len(index) else []
+    return " ".join(f"{one[0]}-{one[-1]}" if len(one) > 1 else f"{one[0]}" for one in parts)
+
+
+def indices(text: str) -> NDArray[np.intp]:
+    """Return the numbers that :func:`runs` wrote."""
+    ends = ([int(word) for word in run.split("-")] for run in text.split())
+    return np.concatenate([np.arange(0), *(np.arange(end[0], end[-1] + 1) for end in ends)])
+
+
+def fingerprint(points: PointSet, site: Site) -> str:
+    """Return a hash of everything that a fit of points of a site, and its check, depend on."""
+    digest = hashlib.sha256(surroundings_digest(site))
+    for array in (points.xyz, points.accuracy, points.row):
+        digest.update(np.ascontiguousarray(array).tobytes())
+    for words in (points.kind, points.hole, points.section, points.file):
+        digest.update("\n".join(words.tolist()).encode())
+    return digest.hexdigest()[:16]
+
+
+def surroundings_digest(site: Site) -> bytes:
+    """Return a hash of the study area, the ground and the measured dips."""
+    digest = hashlib.sha256()
+    arrays = [site.boundary]
+    if site.ground is not None:
+        arrays += [site.ground.x, site.ground.y, site.ground.z]
+    if site.orientations is not None:
+        arrays += [site.orientations.xyz, site.orientations.azimuth, site.orientations.dip]
+        digest.update("\n".join(site.orientations.horizon.tolist()).encode())
+    for array in arrays:
+        digest.update(b"" if array is None else np.ascontiguousarray(array, dtype=np.float64).tobytes())
+    return digest.digest()
+
+
+def _same(points: PointSet, file: str, row: int) -> NDArray[np.intp]:
+    found: NDArray[np.intp] = np.flatnonzero(points.row == row)
+    same: NDArray[np.intp] = found[points.file[found] == file]
+    return same
+
+
+def _edit_data(edit: HandEdit | Apart) -> dict[str, Any]:
+    if isinstance(edit, Apart):
+        others = [other.to_data() for other in edit.others]
+        return {"kind": "apart", "sequence": list(edit.sequence), "minimum": edit.minimum, "others": others}
+    return {"kind": next(kind for kind, made in _EDITS.items() if isinstance(edit, made)), **asdict(edit)}
+
+
+def _edit_from(data: Mapping[str, Any]) -> HandEdit | Apart:
+    if data["kind"] == "apart":
+        others = tuple(Recipe.from_data(other) for other in data["others"])
+        return Apart(tuple(data["sequence"]), data["minimum"], others)
+    return _EDITS[data["kind"]](**{name: value for name, value in data.items() if name != "kind"})

@@ -1,0 +1,57 @@
+"""The report as a task with progress; without Qt, because it runs in a process of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from geofit.data.prediction import OffData
+from geofit.data.progress import Progress, tell
+from geofit.project.fault_blocks import Blocks, site_fit
+from geofit.project.run import Form, write_reports
+from geofit.report.language import language
+from geofit.report.result import HorizonResult
+
+__all__ = ["ReportFiles", "write_report_files"]
+
+
+@dataclass(frozen=True, eq=False)
+class ReportFiles:
+    """What was written, by form, and what is to be told about it.
+
+    ``offdata`` is what was found out for it off the data, a horizon; not of surfaces with nothing behind them: of those
+    nothing can be found out yet.
+    """
+
+    files: Mapping[Form, Path]
+    warnings: tuple[str, ...]
+    offdata: Mapping[str, OffData]
+
+
+def write_report_files(
+    results: Sequence[HorizonResult],
+    blocks: Blocks,
+    folder: Path,
+    code: str,
+    forms: Sequence[Form],
+    examined: bool,
+    date: str,
+    *,
+    progress: Progress,
+) -> ReportFiles:
+    """Write the accuracy report of surfaces; errors as :func:`geofit.project.run.write_reports`.
+
+    ``code`` is the language's ("en", "zh"): its catalogue need not travel to another process.
+    """
+    tell(progress, "order", 0.0)
+    fits = site_fit({result.name: result.surface for result in results}, blocks, progress)
+    made = write_reports(
+        results, folder, progress, language=language(code), forms=forms, examined=examined, date=date, fits=fits
+    )
+    new = {
+        after.name: after.offdata
+        for before, after in zip(results, made.results, strict=True)
+        if before.offdata is None and after.offdata is not None and before.surface.model is not None
+    }
+    return ReportFiles(made.files, made.warnings, new)

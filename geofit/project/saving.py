@@ -1,0 +1,189 @@
+"""Documents and project files: what is written, what is read, what has changed since."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from geofit.checks.check import check
+from geofit.data.errors import InputError
+from geofit.data.progress import Progress, tell
+from geofit.data.site import Site
+from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
+from geofit.io.site_file import read_site
+from geofit.project.building import beside
+from geofit.project.fault_blocks import parted_site
+from geofit.project.provenance import Part, Recipe, Row, without_rows
+from geofit.project.state import State
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["Opened", "Written", "project_of", "read_project", "read_surfaces", "save_state", "state_of"]
+
+_SITE = "site"
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """A project that was read: its site, the work on it, and what is "missing" or "changed" since, by path."""
+
+    site: Site
+    site_file: Path
+    state: State
+    project: Project
+    changed: Mapping[str, str]
+
+
+def read_project(path: Path, progress: Progress | None = None) -> Opened:
+    """Read a project file and its site; the surfaces are read by :func:`saved_surfaces`.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be used, or the project names no site file.
+    """
+    tell(progress, "read the project", 0.0)
+    project = open_project(path)
+    source = next((source for source in project.sources if source.role == _SITE), None)
+    if source is None:
+        raise InputError("The project names no site file", "Open the site file (site.toml) instead.", file=str(path))
+    site_file = (path.parent / source.path).resolve()
+    if not site_file.is_file():
+        raise InputError(
+            "The project's site file is not there any more",
+            "Put it back, or open the site file where it is now.",
+            file=str(site_file),
+        )
+    site = read_site(site_file, progress)
+    return Opened(site, site_file, state_of(project, site), project, project.changed(path.parent))
+
+
+@dataclass(frozen=True, eq=False)
+class Written:
+    """What was saved, and where."""
+
+    path: Path
+    state: State
+    project: Project
+
+
+def save_state(
+    state: State,
+    site: Site,
+    site_file: Path,
+    path: Path,
+    surfaces: Mapping[Recipe, HorizonSurface],
+    same: bool,
+    *,
+    progress: Progress,
+) -> Written:
+    """Write a state as a project; ``same`` if it replaces the project that was opened, whose surfaces may stay."""
+    former = None
+    if same and path.is_file():
+        try:
+            former = open_project(path)
+        except InputError:
+            former = None  # whatever stands there is replaced
+    project = project_of(state, site, site_file, path, former)
+    tell(progress, "write", 0.3)
+    return Written(path, state, write_project(project, path, new_surfaces(project, surfaces)))
+
+
+def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Recipe, HorizonSurface]:
+    """Read and check the surfaces of a project whose horizons the site still has."""
+    tell(progress, "read STEP", 0.0)
+    found = saved_surfaces(project, folder)
+    tell(progress, "check", 0.7)
+    return {
+        recipe: beside(checked(surface, recipe, site), recipe, site)
+        for recipe, surface in found.items()
+        if len(site.horizons.get(recipe.horizon, ()))
+    }
+
+
+def saved_surfaces(project: Project, folder: Path) -> dict[Recipe, HorizonSurface]:
+    """Read the surfaces that a project names and that are there, by their recipes; nothing stands behind them."""
+    there = tuple(result for result in project.results if result.recipe and (folder / result.surface).is_file())
+    surfaces = load_surfaces(replace(project, results=there), folder)
+    return {Recipe.from_data(result.recipe): surfaces[result.horizon] for result in there}
+
+
+def checked(surface: HorizonSurface, recipe: Recipe, site: Site) -> HorizonSurface:
+    """Return a surface that was read from a file, with its points and its check."""
+    points = without_rows(site.horizons[recipe.horizon], recipe.excluded)
+    known = surface.with_(points=points, settings=recipe.settings, core=np.zeros(len(points), bool))
+    return known.with_(accuracy=check(known))
+
+
+def state_of(project: Project, site: Site) -> State:
+    """Return the work that a project holds, as far as its site still has the horizons."""
+    parts = {edit.horizon: Part.from_data(edit.values) for edit in project.edits if edit.kind == "part"}
+    parts = {name: part for name, part in parts.items() if part.horizon in site.horizons}
+    whole = State.of_site(site).settings
+    default = {**whole, **{name: whole[part.horizon] for name, part in parts.items()}}
+    excluded: dict[str, frozenset[Row]] = {}
+    order = tuple(parted_site(site, parts).horizons)
+    for edit in project.edits:
+        if edit.kind == "exclude" and edit.horizon in default:
+            excluded[edit.horizon] = excluded.get(edit.horizon, frozenset()) | {Row(**edit.values)}
+        elif edit.kind == "order":
+            named = [name for name in edit.values["horizons"] if name in order]
+            order = (*named, *(name for name in order if name not in named))
+    settings = {name: project.settings.get(name, known) for name, known in default.items()}
+    recipes = {
+        result.horizon: Recipe.from_data(result.recipe)
+        for result in project.results
+        if result.recipe and result.horizon in order
+    }
+    return State(project.name, order, settings, excluded, recipes, parts)
+
+
+def project_of(state: State, site: Site, site_file: Path, target: Path, former: Project | None) -> Project:
+    """Return what is saved: results of ``former`` whose recipes still hold need not be written again."""
+    folder = target.parent
+    sources = [ProjectSource(path=_relative(site_file, folder), role=_SITE)]
+    for name, digest in site.inputs.items():
+        file = site_file.parent / name
+        if file.is_file() and file != site_file:
+            path = _relative(file, folder)
+            sources.append(ProjectSource(path=path, role="table", sha256=digest))
+    edits = [
+        Edit(kind="exclude", horizon=name, values=asdict(row))
+        for name, rows in state.excluded.items()
+        for row in sorted(rows)
+    ]
+    edits += [Edit(kind="part", horizon=name, values=part.to_data()) for name, part in state.parts.items()]
+    edits.append(Edit(kind="order", values={"horizons": list(state.order)}))
+    kept = () if former is None else tuple(
+        result
+        for result in former.results
+        if result.recipe
+        and state.recipes.get(result.horizon) == Recipe.from_data(result.recipe)
+        and (folder / result.surface).is_file()
+    )  # fmt: skip
+    return Project(
+        name=state.name, crs=site.crs, sources=tuple(sources), settings=state.settings, edits=tuple(edits), results=kept
+    )
+
+
+def write_project(project: Project, path: Path, surfaces: Mapping[Recipe, HorizonSurface]) -> Project:
+    """Write a project file, and the surfaces that are new to it."""
+    by_horizon = {recipe.horizon: surface for recipe, surface in surfaces.items()}
+    return save_project(project, path, by_horizon, {recipe.horizon: recipe.to_data() for recipe in surfaces})
+
+
+def new_surfaces(project: Project, surfaces: Mapping[Recipe, HorizonSurface]) -> dict[Recipe, HorizonSurface]:
+    """Return the surfaces that the project does not have yet."""
+    there = {Recipe.from_data(result.recipe) for result in project.results}
+    return {recipe: surface for recipe, surface in surfaces.items() if recipe not in there}
+
+
+def _relative(file: Path, folder: Path) -> str:
+    """Return the path from the folder, with forward slashes; absolute on another drive of Windows."""
+    try:
+        return Path(os.path.relpath(file, folder)).as_posix()
+    except ValueError:
+        return file.as_posix()

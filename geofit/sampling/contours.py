@@ -1,0 +1,92 @@
+"""Contour lines of a surface."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.errors import SettingsError
+from geofit.data.messages import said
+from geofit.geometry.mesh import Mesh, triangulate
+from geofit.sampling.isolines import plane_lines
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["Contour", "contours", "interval_for"]
+
+Floats = NDArray[np.float64]
+
+#: More contours than this are a mistake in the interval.
+MOST = 5_000
+
+
+@dataclass(frozen=True, eq=False)
+class Contour:
+    """One contour line: ``line`` (k, 2) map coordinates at ``elevation``, metres; ``closed``: ends where it began."""
+
+    elevation: float
+    line: Floats
+    closed: bool
+
+
+def interval_for(low: float, high: float) -> float:
+    """Return the interval 1, 2 or 5 times a power of ten that gives about 10 to 25 contours."""
+    span = max(high - low, 1e-6)
+    power = 10.0 ** math.floor(math.log10(span / 10))
+    return next(step * power for step in (1, 2, 5, 10) if span / (step * power) <= 25)
+
+
+def contours(
+    surface: HorizonSurface,
+    interval: float | None = None,
+    *,
+    tolerance: float = 0.05,
+    mesh: Mesh | None = None,
+) -> list[Contour]:
+    """Return the contour lines of a surface, the lowest first.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        Any surface; an overturned one gives lines for each of its limbs.
+    interval : float, optional
+        Metres between contours, which stand at its multiples; by default 1, 2 or 5 times a power of ten.
+    tolerance : float
+        Largest distance in metres between a line and the surface, between its vertices; these are exact.
+    mesh : Mesh, optional
+        Triangles of the surface, if they are there already.
+
+    Raises
+    ------
+    SettingsError
+        If the interval is not above 0, or so small that it makes over 5,000 contours.
+    """
+    mesh = triangulate(surface, tolerance) if mesh is None else mesh
+    z = mesh.points[:, 2] + surface.origin[2]
+    low, high = float(z.min()), float(z.max())
+    step = interval_for(low, high) if interval is None else interval
+    if not (step > 0 and math.isfinite(step)):
+        raise SettingsError(said("The contour interval is {step}; give metres above 0.", step=step))
+    first, last = math.ceil(low / step), math.floor(high / step)
+    if last - first > MOST:
+        raise SettingsError(
+            said(
+                "An interval of {step:g} m makes {count} contours from {low:.1f} to {high:.1f} m; give one above "
+                "{least:.2g} m.",
+                step=step,
+                count=last - first,
+                low=low,
+                high=high,
+                least=(high - low) / MOST,
+            )
+        )
+    found = []
+    for k in range(first, last + 1):
+        elevation = round(k * step, 9)
+        for line in plane_lines(surface, mesh, np.array([0.0, 0.0, 1.0]), elevation - surface.origin[2]):
+            closed = bool(np.array_equal(line[0], line[-1]))
+            if np.ptp(line, axis=0).max() > 0:
+                found.append(Contour(elevation, line[:, :2] + surface.origin[:2], closed))
+    return found

@@ -1,0 +1,95 @@
+"""Surfaces on regular grids: elevation, thickness between two horizons, deviation of data points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.errors import SettingsError
+from geofit.data.messages import said
+from geofit.data.points import PointSet
+from geofit.data.site import Ground
+from geofit.geometry.mesh import triangulate
+from geofit.sampling.contours import interval_for
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["deviation_grid", "elevation_grid", "thickness_grid"]
+
+Floats = NDArray[np.float64]
+
+#: Cells along the longer side of a grid, where no cell size is given: about.
+CELLS = 200
+MOST_CELLS = 100_000_000
+#: The extent of a surface is taken from triangles of this tolerance, metres.
+COARSE = 1.0
+
+
+def elevation_grid(surface: HorizonSurface, cell: float | None = None) -> Ground:
+    """Return the elevation of a surface at nodes that stand at multiples of ``cell`` metres; nan outside.
+
+    Raises
+    ------
+    SettingsError
+        If the cell size is not above 0, or leaves no grid, or makes over 1e8 cells.
+    """
+    return _grid(_extent(surface), cell, surface.elevation)
+
+
+def thickness_grid(upper: HorizonSurface, lower: HorizonSurface, cell: float | None = None) -> Ground:
+    """Return upper minus lower elevation, metres, nan where either is absent; errors as elevation_grid.
+
+    Negative where the horizons cross.
+    """
+    boxes = [_extent(upper), _extent(lower)]
+    box = np.max([b[0] for b in boxes], axis=0), np.min([b[1] for b in boxes], axis=0)
+    return _grid(box, cell, lambda x, y: upper.elevation(x, y) - lower.elevation(x, y))
+
+
+def deviation_grid(surface: HorizonSurface, points: PointSet, cell: float | None = None) -> Ground:
+    """Return, for each cell with data points, the deviation (m, positive above) of largest size; nan elsewhere.
+
+    Nothing is interpolated between points. Errors as elevation_grid.
+    """
+    grid = _grid(_extent(surface), cell, lambda x, y: np.full_like(x, np.nan))
+    off = surface.distance(points.xyz)
+    step = grid.x[1] - grid.x[0]
+    i = np.round((points.xyz[:, 0] - grid.x[0]) / step).astype(int)
+    j = np.round((points.xyz[:, 1] - grid.y[0]) / step).astype(int)
+    inside = (i >= 0) & (i < len(grid.x)) & (j >= 0) & (j < len(grid.y))
+    order = np.argsort(np.abs(off), kind="stable")
+    order = order[inside[order]]
+    grid.z[j[order], i[order]] = off[order]
+    return grid
+
+
+def _extent(surface: HorizonSurface) -> tuple[Floats, Floats]:
+    plan = triangulate(surface, COARSE).xyz[:, :2]
+    return plan.min(axis=0), plan.max(axis=0)
+
+
+def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Floats, Floats], Floats]) -> Ground:
+    low, high = box
+    if not (high > low).all():
+        raise SettingsError("The horizons do not stand over one another; there is no thickness between them.")
+    step = interval_for(0.0, float((high - low).max()) * 20 / CELLS) if cell is None else cell
+    if not (step > 0 and math.isfinite(step)):
+        raise SettingsError(said("The cell size is {step}; give metres above 0.", step=step))
+    first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
+    count = last - first + 1
+    if count.min() < 2:
+        raise SettingsError(
+            said(
+                "A cell of {step:g} m leaves no grid; the surface is {width:.1f} m wide.",
+                step=step,
+                width=(high - low).min(),
+            )
+        )
+    if count.prod() > MOST_CELLS:
+        raise SettingsError(
+            said("A cell of {step:g} m makes {count:.3g} cells; give a larger one.", step=step, count=count.prod())
+        )
+    x, y = (step * (first[k] + np.arange(int(count[k]))) for k in (0, 1))
+    return Ground(x, y, np.stack([value(x, np.full_like(x, north)) for north in y]))

@@ -1,0 +1,136 @@
+"""Where a plane meets a surface: traced through its triangles, then moved onto the surface itself."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.geometry.mesh import Mesh
+from geofit.splines.patch import Patch
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["plane_lines"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Newton steps end when a place is nearer to the plane than this (metres).
+EXACT = 1e-10
+STEPS = 20
+
+
+def plane_lines(surface: HorizonSurface, mesh: Mesh, normal: Floats, offset: float) -> list[Floats]:
+    """Return the lines in which the plane ``normal . x = offset`` cuts a surface.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        The surface.
+    mesh : Mesh
+        Its triangles (:func:`geofit.geometry.mesh.triangulate`), which decide how many vertices a line gets.
+    normal : (3,) array
+        Unit normal of the plane.
+    offset : float
+        Where it stands, in the coordinates of the mesh (local, metres).
+
+    Returns
+    -------
+    list of (k, 3) array
+        Lines in local coordinates; a closed one ends where it began. Their vertices lie on the surface, and
+        on the plane to 1e-7 m, but for a place where the surface only touches the plane: there they stay
+        on the triangles.
+    """
+    value = mesh.points @ normal - offset
+    above = value >= 0
+    side = above[mesh.triangles]
+    crossed = np.flatnonzero(side.any(axis=1) & ~side.all(axis=1))
+    if not len(crossed):
+        return []
+    triangles, side = mesh.triangles[crossed], side[crossed]
+    # The corner that stands alone on its side: both of its edges are crossed.
+    lone = np.where(side.sum(axis=1) == 1, side.argmax(axis=1), (~side).argmax(axis=1))
+    rows = np.arange(len(crossed))
+    ends, uvs, places = [], [], []
+    for turn in (1, 2):
+        other = (lone + turn) % 3
+        a, b = triangles[rows, lone], triangles[rows, other]
+        t = (value[a] / (value[a] - value[b]))[:, None]
+        ends.append(np.sort(np.stack([a, b], axis=1), axis=1))
+        places.append(mesh.points[a] + t * (mesh.points[b] - mesh.points[a]))
+        first, second = mesh.uv[crossed, lone], mesh.uv[crossed, other]
+        uvs.append(first + t * (second - first))
+    edges, number = np.unique(np.concatenate(ends), axis=0, return_inverse=True)
+    number = number.reshape(-1)
+    # One place for an edge, whichever of its triangles it is taken from.
+    first = np.unique(number, return_index=True)[1]
+    patch = np.concatenate([mesh.patch[crossed]] * 2)[first]
+    points = np.concatenate(places)[first]
+    settled = points  # of a file's triangles, which are the surface themselves
+    if surface.patches:
+        settled = _settled(surface.patches, patch, np.concatenate(uvs)[first], points, normal, offset)
+    pairs = number.reshape(2, -1).T
+    return [settled[chain] for chain in _chains(pairs, len(edges))]
+
+
+def _chains(pairs: Ints, count: int) -> list[Ints]:
+    """Join pieces (start, end) at common ends: open lines from their loose ends first, then rings."""
+    ways: list[list[int]] = [[] for _ in range(count)]
+    for k, (a, b) in enumerate(pairs.tolist()):
+        ways[a].append(k)
+        ways[b].append(k)
+    used = np.zeros(len(pairs), bool)
+    ends = pairs.tolist()
+    chains = []
+    for start in [n for n in range(count) if len(ways[n]) == 1] + list(range(count)):
+        way = next((k for k in ways[start] if not used[k]), None)
+        if way is None:
+            continue
+        chain = [start]
+        while way is not None:
+            used[way] = True
+            a, b = ends[way]
+            chain.append(b if chain[-1] == a else a)
+            way = next((k for k in ways[chain[-1]] if not used[k]), None)
+        chains.append(np.array(chain))
+    return chains
+
+
+def _settled(
+    patches: tuple[Patch, ...], which: Ints, uv: Floats, points: Floats, normal: Floats, offset: float
+) -> Floats:
+    """Move places along the surface onto the plane by the shortest way in space (Newton)."""
+    result = points.copy()
+    for k in np.unique(which):
+        patch, rows = patches[k], np.flatnonzero(which == k)
+        u0, u1, v0, v1 = patch.domain
+        low, high = np.array([u0, v0]), np.array([u1, v1])
+        place = uv[rows].clip(low, high)
+        for _ in range(STEPS):
+            at = patch.evaluate(place[:, 0], place[:, 1])
+            off = at @ normal - offset
+            if np.abs(off).max() <= EXACT:
+                break
+            su = patch.evaluate(place[:, 0], place[:, 1], 1, 0)
+            sv = patch.evaluate(place[:, 0], place[:, 1], 0, 1)
+            place = _step(place, off, su, sv, normal, (low, high))
+        near = np.abs(off) <= 1e3 * EXACT
+        moved = np.linalg.norm(at - points[rows], axis=1)
+        size = np.linalg.norm(np.ptp(patch.control.reshape(-1, 3), axis=0))
+        result[rows[near & (moved < 0.05 * size)]] = at[near & (moved < 0.05 * size)]
+    return result
+
+
+def _step(place: Floats, off: Floats, su: Floats, sv: Floats, normal: Floats, box: tuple[Floats, Floats]) -> Floats:
+    """One Newton step; at an edge of the patch, along the edge."""
+    gradient = np.stack([su @ normal, sv @ normal], axis=1)
+    metric = np.maximum(np.stack([(su**2).sum(axis=1), (sv**2).sum(axis=1)], axis=1), 1e-300)
+    for _ in range(2):
+        way = gradient / metric
+        slope = (gradient * way).sum(axis=1)
+        step = -off[:, None] * way / np.where(slope > 0, slope, np.inf)[:, None]
+        target = (place + step).clip(*box)
+        # A direction that ends at the edge is given up, and the other one takes its share.
+        gradient = np.where(target == place + step, gradient, 0.0)
+        if np.array_equal(target, place + step):
+            break
+    return np.asarray(target)

@@ -1,0 +1,1 @@
+"""Several horizons together: fault blocks, throw, order, separation, site checks."""

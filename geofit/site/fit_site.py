@@ -1,0 +1,214 @@
+"""Fit the horizons of a site together: faulted ones block by block, crossings pushed apart if asked, order compared."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import combinations
+from typing import Any
+
+from geofit.data.errors import Cancelled, FitError, GeofitError, PointsError, SettingsError
+from geofit.data.messages import said
+from geofit.data.progress import Progress, tell
+from geofit.data.settings import FitSettings
+from geofit.data.site import Site
+from geofit.fitting.pipeline import fit_horizon
+from geofit.site.fault_blocks import fit_blocks
+from geofit.site.order import Order, order_of
+from geofit.site.separate import Contradiction, repair
+from geofit.site.site_checks import check_surroundings
+from geofit.site.throw import FaultCut
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["SiteFit", "compare", "fit_site"]
+
+
+@dataclass(eq=False)
+class SiteFit:
+    """What was fitted of a site.
+
+    ``surfaces`` by name in the order of the site; in the place of a faulted horizon its blocks. ``horizon`` names the
+    horizon of each surface, ``seconds`` the time of its fit, ``cuts`` the displacement between blocks along the
+    ``faults``. ``failures`` says by horizon why it could not be fitted. ``moved`` and ``contradictions`` are those of
+    a repair; ``warnings`` what else is to be told.
+    """
+
+    surfaces: dict[str, HorizonSurface] = field(default_factory=dict)
+    horizon: dict[str, str] = field(default_factory=dict)
+    seconds: dict[str, float] = field(default_factory=dict)
+    failures: dict[str, str] = field(default_factory=dict)
+    faults: dict[str, HorizonSurface] = field(default_factory=dict)
+    cuts: tuple[FaultCut, ...] = ()
+    moved: dict[str, float] = field(default_factory=dict)
+    contradictions: tuple[Contradiction, ...] = ()
+    warnings: tuple[str, ...] = ()
+
+
+def fit_site(
+    site: Site,
+    names: Sequence[str],
+    changes: Mapping[str, Any] | None = None,
+    progress: Progress | None = None,
+    *,
+    apart: bool = False,
+) -> SiteFit:
+    """Fit horizons of a site, and ask of each what the dips and the ground of the site say.
+
+    Parameters
+    ----------
+    site : Site
+        ``site.faults`` names the horizons that are fitted block by block.
+    names : sequence of str
+        Horizons of the site.
+    changes : mapping
+        Settings that take the place of the site's.
+    progress : callable, optional
+        Called as ``progress("horizon: stage", fraction)``.
+    apart : bool
+        Whether horizons of ``site.order`` that cross are pushed apart (:func:`geofit.site.separate.repair`).
+
+    Raises
+    ------
+    Cancelled
+        If ``progress`` returned False.
+    """
+    fits = _Fits(site, changes or {})
+    found = SiteFit()
+    for k, name in enumerate(names):
+
+        def listen(stage: str, fraction: float, /, name: str = name, k: int = k) -> None:
+            tell(
+                progress,
+                said("{name}: {stage}", name=name, stage=stage),
+                (k + min(max(fraction, 0.0), 1.0)) / len(names),
+            )
+
+        try:
+            fits.add(name, found, listen)
+        except Cancelled:
+            raise
+        except GeofitError as error:
+            found.failures[name] = error.args[0] if error.args else str(error)
+    if apart:
+        tell(progress, "repair", 1.0)
+        _push_apart(site, found)
+    found.surfaces = {
+        name: check_surroundings(surface, site, "" if found.horizon[name] == name else found.horizon[name])
+        for name, surface in found.surfaces.items()
+    }
+    return found
+
+
+class _Fits:
+    """The fits of one site; each fault is fitted once, for itself and for the horizons that it cuts."""
+
+    def __init__(self, site: Site, changes: Mapping[str, Any]) -> None:
+        self._site, self._changes = site, changes
+        self._known: dict[str, HorizonSurface] = {}
+
+    def add(self, name: str, found: SiteFit, listen: Progress) -> None:
+        """Fit a horizon and put it, or its blocks, where they belong."""
+        start = time.perf_counter()
+        faults = [fault for fault, cut in self._site.faults.items() if name in cut]
+        if faults:
+            blocks = fit_blocks(
+                self._site.horizons[name],
+                [self._fault(fault, found, listen) for fault in faults],
+                self._settings(name),
+                self._site.boundary,
+                name=name,
+                progress=listen,
+            )
+            surfaces = [_noted(block, blocks.notes) for block in blocks.blocks]
+            found.cuts += blocks.cuts
+        else:
+            surfaces = [self._whole(name, listen)]
+        taken = [surface.name for surface in surfaces if surface.name in (*found.surfaces, *self._site.horizons)]
+        if faults and any(title != name for title in taken):
+            raise SettingsError(
+                said(
+                    "A block of '{name}' is called '{block}', and so is a horizon. Rename the horizon.",
+                    name=name,
+                    block=taken[0],
+                )
+            )
+        seconds = (time.perf_counter() - start) / len(surfaces)
+        for surface in surfaces:
+            found.surfaces[surface.name] = surface
+            found.horizon[surface.name], found.seconds[surface.name] = name, seconds
+
+    def _fault(self, name: str, found: SiteFit, listen: Progress) -> HorizonSurface:
+        try:
+            found.faults[name] = self._whole(name, listen)
+        except (FitError, PointsError) as error:
+            raise FitError(
+                said("the fault {fault} cannot be laid: {reason}", fault=name, reason=error.args[0])
+            ) from None
+        return found.faults[name]
+
+    def _whole(self, name: str, listen: Progress) -> HorizonSurface:
+        if name not in self._known:
+            points = self._site.horizons[name]
+            self._known[name] = fit_horizon(points, self._settings(name), self._site.boundary, listen, name=name)
+        return self._known[name]
+
+    def _settings(self, name: str) -> FitSettings:
+        return replace(self._site.settings.get(name, FitSettings()), **self._changes)
+
+
+def _noted(block: HorizonSurface, notes: Sequence[str]) -> HorizonSurface:
+    assert block.accuracy is not None
+    return block.with_(accuracy=replace(block.accuracy, notes=(*block.accuracy.notes, *notes)))
+
+
+def _push_apart(site: Site, found: SiteFit) -> None:
+    """Repair the horizons of the order that are one surface each; say which are not."""
+    sequence = [name for name in site.order if name in found.surfaces]
+    blocked = [name for name in site.order if name in found.horizon.values() and name not in found.surfaces]
+    if blocked:
+        text = said("{names}: cut by a fault, so not pushed apart from other horizons", names=", ".join(blocked))
+        found.warnings += (text,)
+    if len(sequence) < 2:
+        if blocked:
+            return
+        found.warnings += (said("no repair: the order of the site names no two fitted horizons without a fault"),)
+        return
+    try:
+        done = repair(found.surfaces, sequence)
+    except SettingsError as error:
+        found.warnings += (said("no repair: {reason}", reason=error.args[0]),)
+        return
+    found.surfaces.update(done.surfaces)
+    found.moved, found.contradictions = dict(done.moved), done.contradictions
+
+
+def compare(site: Site, found: SiteFit) -> tuple[Order, ...]:
+    """Compare every two horizons of the site's order; of faulted ones the blocks on the same side of their faults.
+
+    Raises
+    ------
+    SettingsError
+        If one of them is no height field over the map.
+    """
+    layers = [[name for name, horizon in found.horizon.items() if horizon == layer] for layer in site.order]
+    pairs = [
+        (found.surfaces[a], found.surfaces[b])
+        for upper, lower in combinations(layers, 2)
+        for a in upper
+        for b in lower
+        if _same_side(site, found, a, b)
+    ]
+    return tuple(order_of(upper, lower, site.ground) for upper, lower in pairs)
+
+
+def _same_side(site: Site, found: SiteFit, a: str, b: str) -> bool:
+    """Whether two surfaces lie on one side of each fault that cuts the horizons of both."""
+    for fault, plane in found.faults.items():
+        if not {found.horizon[a], found.horizon[b]} <= set(site.faults[fault]):
+            continue
+        # All points of a block lie on one side of the fault.
+        sides = [float(plane.distance(found.surfaces[name].points.xyz[:1])[0]) > 0 for name in (a, b)]
+        if sides[0] != sides[1]:
+            return False
+    return True

@@ -1,0 +1,151 @@
+"""The order of strata: how thick what lies between two horizons is, and where they cross."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.data.accuracy import Check
+from geofit.data.errors import SettingsError
+from geofit.data.messages import said
+from geofit.data.site import Ground
+from geofit.site.height_field import Relief
+from geofit.site.overlap import Crossing, Overlap
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["Order", "order_of", "orders", "require_sequence", "thickness"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """Two horizons: what lies between them over their common ``area`` (m2), and where they cross.
+
+    ``min``, ``mean`` and ``max`` are thicknesses in metres, negative where the horizons cross; ``thinnest`` and
+    ``thickest`` the (x, y) of the extremes; ``crossings`` the places of crossing, the largest volume first.
+    """
+
+    upper: str
+    lower: str
+    area: float
+    min: float
+    mean: float
+    max: float
+    thinnest: tuple[float, float]
+    thickest: tuple[float, float]
+    crossings: tuple[Crossing, ...]
+
+    @property
+    def crossed_area(self) -> float:
+        """Area over which the order is turned round, m2."""
+        return sum(crossing.area for crossing in self.crossings)
+
+    @property
+    def crossed_volume(self) -> float:
+        """Volume between the horizons where the order is turned round, m3."""
+        return sum(crossing.volume for crossing in self.crossings)
+
+    def check(self) -> Check:
+        """Return the check; it does not hold where horizons cross below the ground, and is None without common area."""
+        names = {"upper": self.upper, "lower": self.lower}
+        if not self.area:
+            return Check("order", None, 0.0, 0.0, "m", said("{upper} and {lower} share no area", **names))
+        if not self.crossings:
+            text = said(
+                "{upper} lies above {lower} everywhere: {low:.2f} to {high:.2f} m, {mean:.2f} m on average",
+                low=self.min, high=self.max, mean=self.mean, **names,
+            )  # fmt: skip
+            return Check("order", True, 0.0, 0.0, "m", text)
+        deepest = max(self.crossings, key=lambda crossing: crossing.depth)
+        figures = {
+            "count": len(self.crossings), "area": self.crossed_area, "volume": self.crossed_volume,
+            "depth": deepest.depth, "x": deepest.x, "y": deepest.y, **names,
+        }  # fmt: skip
+        below = [crossing for crossing in self.crossings if not crossing.in_air >= 1.0]
+        if not below:
+            text = said(
+                "{upper} lies below {lower} above the ground only (places: {count}): {area:.0f} m2, {volume:.0f} m3",
+                **figures,
+            )
+            return Check("order", True, 0.0, 0.0, "m", text)
+        text = said(
+            "{upper} lies below {lower} (places: {count}): {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m "
+            "at ({x:.1f}, {y:.1f})",
+            **figures,
+        )
+        return Check("order", False, max(crossing.depth for crossing in below), 0.0, "m", text)
+
+
+def thickness(upper: HorizonSurface, lower: HorizonSurface, x: ArrayLike, y: ArrayLike) -> Floats:
+    """Return upper minus lower elevation at map coordinates, metres; nan where either is absent; arrays broadcast."""
+    return np.asarray(upper.elevation(x, y) - lower.elevation(x, y))
+
+
+def orders(
+    surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str], ground: Ground | None = None
+) -> tuple[Order, ...]:
+    """Compare every two horizons of a sequence, neighbours and others.
+
+    Parameters
+    ----------
+    surfaces : mapping of str to HorizonSurface
+        Surfaces by name; height fields over the map.
+    sequence : sequence of str
+        Names from the top to the bottom.
+    ground : Ground, optional
+        Tells crossings above the ground from those in the rock.
+
+    Raises
+    ------
+    SettingsError
+        If the sequence names a horizon twice, one without a surface, or one that is no height field.
+    """
+    require_sequence(surfaces, sequence)
+    reliefs = [Relief(surfaces[name]) for name in sequence]
+    return tuple(_compare(upper, lower, ground) for upper, lower in combinations(reliefs, 2))
+
+
+def order_of(upper: HorizonSurface, lower: HorizonSurface, ground: Ground | None = None) -> Order:
+    """Compare two horizons; see :func:`orders`."""
+    return _compare(Relief(upper), Relief(lower), ground)
+
+
+def require_sequence(surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str]) -> None:
+    """Raise SettingsError unless each name of a sequence has a surface and stands once."""
+    missing = [name for name in sequence if name not in surfaces]
+    if missing:
+        text = said(
+            "The order names '{name}', which has no surface; there are {names}. Fit it, or take it out of the order.",
+            name=missing[0],
+            names=", ".join(surfaces) or said("none"),
+        )
+        raise SettingsError(text)
+    if len(set(sequence)) < len(sequence):
+        text = said(
+            "The order names a horizon twice: {names}. Name each once, top to bottom.", names=", ".join(sequence)
+        )
+        raise SettingsError(text)
+
+
+def _compare(upper: Relief, lower: Relief, ground: Ground | None) -> Order:
+    found = Overlap.between(upper, lower)
+    if found is None:
+        nan = float("nan")
+        return Order(upper.name, lower.name, 0.0, nan, nan, nan, (nan, nan), (nan, nan), ())
+    thin, thick = found.thinnest, found.thickest
+    return Order(
+        upper=upper.name,
+        lower=lower.name,
+        area=found.size,
+        min=thin[2],
+        mean=found.mean,
+        max=thick[2],
+        thinnest=thin[:2],
+        thickest=thick[:2],
+        crossings=found.crossings(ground),
+    )

@@ -1,0 +1,65 @@
+"""A horizon's surface beside the rest of its site: measured dips, and the ground."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from geofit.data.site import Ground, Orientations, Site
+from geofit.geometry.clip import inside
+from geofit.site.dips import check_dips
+from geofit.site.topography import check_ground
+from geofit.surfaces.surface import HorizonSurface
+
+__all__ = ["check_surroundings", "ground_tolerance"]
+
+#: What a grid of the ground does not show between its nodes, as a share of its cell: 2 m at cells of 20 m. So far off
+#: is a bilinear cell where the slope changes by 40 % from one cell to the next, along both axes (cell^2 / 8 times the
+#: curvature of each).
+CELL_SHARE = 0.1
+
+
+def check_surroundings(surface: HorizonSurface, site: Site, horizon: str = "") -> HorizonSurface:
+    """Return a checked surface whose checks also ask whether it agrees with dips and ground.
+
+    Parameters
+    ----------
+    surface : HorizonSurface
+        With its accuracy.
+    site : Site
+        Its ``orientations`` that name the horizon, and its ``ground``.
+    horizon : str
+        Name of the horizon where the surface is one block of it: then the dips within the block's outline count.
+    """
+    accuracy = surface.accuracy
+    if accuracy is None:
+        return surface
+    _, dips = check_dips(surface, _of_block(site.orientations, surface, horizon) if horizon else site.orientations)
+    tolerance = 0.0 if site.ground is None else ground_tolerance(site.ground, surface.settings.interior_tolerance)
+    asked = (dips, check_ground(surface, site.ground, tolerance))
+    found = [check for check in asked if check is not None]
+    kept = [check for check in accuracy.checks if check.name not in {one.name for one in found}]
+    return surface.with_(accuracy=replace(accuracy, checks=(*kept, *found)))
+
+
+def ground_tolerance(ground: Ground, least: float) -> float:
+    """Return how far a horizon may stand above a grid of the ground: a tenth of its cell, at least ``least``; metres.
+
+    Examples
+    --------
+    >>> x = np.arange(0.0, 100.0, 20.0)
+    >>> ground_tolerance(Ground(x, x, np.zeros((5, 5))), 0.1)
+    2.0
+    """
+    cell = max(float(np.diff(ground.x).max(initial=0.0)), float(np.diff(ground.y).max(initial=0.0)))
+    return max(CELL_SHARE * cell, least)
+
+
+def _of_block(orientations: Orientations | None, block: HorizonSurface, horizon: str) -> Orientations | None:
+    """Return the measurements of a horizon that stand within a block's outline, as the block's own."""
+    if orientations is None or block.outline is None:
+        return None
+    plan = orientations.xyz[:, :2] - block.origin[:2]
+    mine = (orientations.horizon == horizon) & inside(block.outline - block.origin[:2], plan)
+    return replace(orientations, horizon=np.where(mine, block.name, ""))

@@ -1,0 +1,1 @@
+"""Surfaces, whatever made them: patches, trimmed faces, triangle meshes."""

@@ -1,0 +1,320 @@
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from surfaces import ORIGIN, fold, height_field, horizon, nine, split
+
+from geofit.cad.faces import edges_with_faces, to_geom
+from geofit.cad.read_back import read_back, self_intersects
+from geofit.cad.step import read_shapes, read_step, write_step
+from geofit.cad.step_text import canonical
+from geofit.data.errors import InputError, StitchError
+from geofit.splines.patch import Patch
+
+
+def sampled(whole, n=120, off=0.05, seed=0):
+    """Points, two thirds of them exactly on the surface: the core."""
+    rng = np.random.default_rng(seed)
+    u0, u1, v0, v1 = whole.domain
+    u, v = rng.uniform(u0, u1, n), rng.uniform(v0, v1, n)
+    core = np.arange(n) < 2 * n // 3
+    d = np.where(core, 0.0, rng.normal(0, off, n))
+    return whole.evaluate(u, v) + whole.normal(u, v) * d[:, None] + ORIGIN, core, d
+
+
+def checks(found):
+    return {check.name.removeprefix("read-back "): check for check in found.checks}
+
+
+@pytest.fixture(scope="module")
+def written(tmp_path_factory):
+    whole, parts = nine()
+    points, core, d = sampled(whole)
+    surface = horizon(parts, points, core, "T1 顶板")
+    path = tmp_path_factory.mktemp("step") / "T1.step"
+    return surface, path, write_step({"T1 顶板": surface}, path)["T1 顶板"], d
+
+
+def test_core_lies_on_the_surface_in_the_file_at_three_million_metres(written):
+    _, _, found, d = written
+    assert found.core_max_abs <= 1e-8
+    assert found.sigma == pytest.approx(np.sqrt((d**2).sum() / (len(d) - 1)), rel=1e-6)
+    assert found.max_abs == pytest.approx(np.abs(d).max(), abs=1e-7)
+
+
+def test_seams_edges_and_validity_of_the_file(written):
+    _, _, found, _ = written
+    assert found.passed
+    assert len(found.seams) == 12
+    assert max(s.gap for s in found.seams) <= 1e-8
+    assert max(s.angle for s in found.seams) <= 1e-3
+    assert (found.faces, found.free_edges, found.outline_edges) == (9, 12, 12)
+    assert found.brep_valid
+    assert not found.self_intersects
+    assert found.edge_tolerance <= 1e-6
+    assert all(check.passed for name, check in checks(found).items() if name != "outline")
+
+
+def test_read_gives_back_knots_control_points_names_and_origin(written):
+    surface, path, _, _ = written
+    (back,) = read_step(path).values()
+    assert back.name == "T1 顶板"
+    np.testing.assert_array_equal(back.origin, ORIGIN)
+    assert back.outline is None
+    for ours, theirs in zip(surface.patches, back.patches, strict=True):
+        assert theirs.name == ours.name
+        assert theirs.degree == ours.degree
+        assert theirs.weights is None
+        np.testing.assert_allclose(theirs.knots_u, ours.knots_u, atol=1e-9)
+        np.testing.assert_allclose(theirs.control, ours.control, atol=1e-9)
+
+
+def test_a_file_in_millimetres_says_so_and_holds_the_same_surface(written, tmp_path):
+    surface, path, found, _ = written
+    back = write_step({"T1 顶板": surface}, tmp_path / "mm.step", unit="mm")["T1 顶板"]
+    assert back.passed
+    assert back.core_max_abs <= 1e-8
+    assert back.sigma == pytest.approx(found.sigma, rel=1e-9)
+    text = (tmp_path / "mm.step").read_text("ascii").replace("\n", "")
+    assert "SI_UNIT(.MILLI.,.METRE.)" in text
+    assert "SI_UNIT($,.METRE.)" not in text
+    (ours,), (theirs,) = (read_step(file).values() for file in (path, tmp_path / "mm.step"))
+    np.testing.assert_array_equal(theirs.origin, ORIGIN)
+    for a, b in zip(ours.patches, theirs.patches, strict=True):
+        np.testing.assert_allclose(a.control, b.control, atol=1e-9)
+    # The unit is a setting of the whole of OpenCASCADE: the next file must be in metres again.
+    assert write_step({"T1 顶板": surface}, tmp_path / "m.step")["T1 顶板"].sha256 == found.sha256
+
+
+def test_an_unknown_unit_is_refused(written, tmp_path):
+    with pytest.raises(InputError, match="m or mm"):
+        write_step({"T1": written[0]}, tmp_path / "ft.step", unit="ft")
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_file_is_ascii_and_the_same_bytes_again(written, tmp_path):
+    surface, path, found, _ = written
+    twice = write_step({"T1 顶板": surface}, tmp_path / "other name.step")["T1 顶板"]
+    assert twice.sha256 == found.sha256
+    text = path.read_bytes().decode("ascii")
+    assert "AP242" in text
+    assert "SI_UNIT($,.METRE.)" in text.replace("\n", "")
+    assert text.count("COLOUR_RGB") == 1
+    assert "'2000-01-01T00:00:00'" in text.partition("DATA;")[0]
+    assert [p.name for p in tmp_path.iterdir()] == ["other name.step"]
+
+
+def test_the_colour_is_read_by_opencascade(written):
+    from OCP.Quantity import Quantity_Color
+    from OCP.STEPCAFControl import STEPCAFControl_Reader
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDF import TDF_LabelSequence
+    from OCP.TDocStd import TDocStd_Document
+    from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
+
+    document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
+    reader = STEPCAFControl_Reader()
+    reader.SetColorMode(True)
+    reader.ReadFile(str(written[1]))
+    reader.Transfer(document)
+    shapes, colour = TDF_LabelSequence(), Quantity_Color()
+    XCAFDoc_DocumentTool.ShapeTool_s(document.Main()).GetShapes(shapes)
+    tool = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
+    assert any(tool.GetColor_s(label, XCAFDoc_ColorSurf, colour) for label in shapes)
+
+
+def test_several_horizons_in_one_assembly(tmp_path):
+    whole, parts = nine()
+    points, core, _ = sampled(whole, 30)
+    lower = replace(height_field(z=lambda x, y: 0 * x - 50), name="only")
+    both = {"upper": horizon(parts, points, core), "lower": horizon([lower])}
+    found = write_step(both, tmp_path / "both.step")
+    assert list(found) == ["upper", "lower"]
+    assert found["upper"].core_max_abs <= 1e-8
+    assert np.isnan(found["lower"].core_max_abs)
+    assert found["lower"].passed
+    back = read_step(tmp_path / "both.step")
+    assert list(back) == ["upper", "lower"]
+    assert [p.name for p in back["lower"].patches] == ["only"]
+
+
+def test_trimmed_horizon(tmp_path):
+    whole, parts = nine()
+    points, core, d = sampled(whole)
+    outline = [(100, 80), (900, 60), (950, 500), (500, 690), (80, 600)]
+    surface = horizon(parts, points, core, outline=outline)
+    found = write_step({"T1": surface}, tmp_path / "t.step")["T1"]
+    assert found.passed
+    assert checks(found)["outline"].passed
+    # Points beyond the outline are measured to the surface that the file carries under its trimmed faces.
+    assert found.core_max_abs <= 1e-8
+    assert found.max_abs == pytest.approx(np.abs(d).max(), abs=1e-7)
+    back = read_step(tmp_path / "t.step")["T1"]
+    import shapely
+
+    assert back.outline is not None
+    same = shapely.Polygon(back.outline - ORIGIN[:2]).symmetric_difference(shapely.Polygon(outline)).area
+    assert same < 1e-3
+    x, y = ORIGIN[0] + np.array([500, 30.0]), ORIGIN[1] + np.array([300, 30.0])
+    z = back.elevation(x, y)
+    assert z[0] == pytest.approx(surface.elevation(x[0], y[0]), abs=1e-8)
+    assert np.isnan(z[1])
+
+
+def test_overturned_fold(tmp_path):
+    patch = fold()
+    u = np.unique(patch.knots_u)
+    points, core, _ = sampled(patch)
+    surface = horizon(split(patch, [u[12], u[25]], []), points, core)
+    found = write_step({"fold": surface}, tmp_path / "fold.step")["fold"]
+    assert found.passed
+    assert found.core_max_abs <= 1e-8
+    assert checks(found)["normals"].passed is not False
+
+
+def test_a_gap_hidden_in_the_edge_tolerance_is_found(tmp_path):
+    """Sewing at 0.02 m closes a 0.01 m gap and BRepCheck calls it valid."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
+    from OCP.BRepCheck import BRepCheck_Analyzer
+    from OCP.TopLoc import TopLoc_Location
+
+    from geofit.cad.imported import FileShape
+
+    whole, _ = nine()
+    v = np.unique(whole.knots_v)
+    one, two = split(whole, [], [v[7]])
+    two = replace(two, control=two.control + np.array([0, 0, 0.01]))
+    sewing = BRepBuilderAPI_Sewing(0.02)
+    for patch in (one, two):
+        sewing.Add(BRepBuilderAPI_MakeFace(to_geom(patch), 1e-7).Face())
+    sewing.Perform()
+    shape = sewing.SewedShape()
+    assert BRepCheck_Analyzer(shape).IsValid()
+    assert sorted(len(faces) for _, faces in edges_with_faces(shape)) == [1] * 6 + [2]
+    surface = horizon([one, two])
+    path = tmp_path / "hidden.step"
+    path.write_text("")
+    found = checks(
+        read_back(surface, FileShape("hidden", shape, TopLoc_Location(), ("one", "two")), surface, shape, path)
+    )
+    assert found["validity"].passed
+    assert found["seam gap"].passed is False
+    assert 0.008 < found["seam gap"].value < 0.0101
+    assert found["seam tolerance"].passed is False
+
+
+def test_a_gap_is_not_written(tmp_path):
+    _, parts = nine()
+    apart = (*parts[:4], replace(parts[4], control=parts[4].control + np.array([0, 0, 0.01])), *parts[5:])
+    with pytest.raises(StitchError, match="gape"):
+        write_step({"T1": horizon(apart)}, tmp_path / "gap.step")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_break_in_slope_fails_where_tangent_was_asked(tmp_path):
+    kinked = height_field(25, 19, 3, multiplicity=3, z=lambda x, y: 0.1 * np.abs(x - 500))
+    parts = split(kinked, [500.0], [])
+    for seam, verdict in (("tangent", False), ("position", None)):
+        found = checks(write_step({"k": horizon(parts, seam=seam)}, tmp_path / "k.step")["k"])
+        assert found["seam angle"].passed is verdict
+        assert found["seam angle"].value == pytest.approx(2 * np.degrees(np.arctan(0.1)), abs=1e-3)
+        assert found["seam gap"].passed
+
+
+def crossing():
+    """A sheet rolled through itself: x goes forth and back while z crosses."""
+    t = np.array([[0, 0], [200, 0], [200, 100], [100, 150], [0, 100], [60, -100]], float)
+    knots_u = np.array([0, 0, 0, 0, 1, 2, 3, 3, 3, 3.0])
+    knots_v = np.array([0, 0, 1, 1.0])
+    control = np.stack([np.column_stack([t[:, 0], np.full(6, y), t[:, 1]]) for y in (0.0, 100.0)], axis=1)
+    return Patch("core", (3, 1), knots_u, knots_v, control)
+
+
+def test_a_self_crossing_face_is_found_where_brepcheck_passes(tmp_path):
+    found = write_step({"x": horizon([crossing()])}, tmp_path / "x.step")["x"]
+    assert found.brep_valid
+    assert found.self_intersects
+    assert checks(found)["self-intersection"].passed is False
+    assert not found.passed
+
+
+def test_two_patches_that_pierce_each_other_are_found():
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+    from OCP.TopoDS import TopoDS_Shell
+
+    shape, builder = TopoDS_Shell(), BRep_Builder()
+    builder.MakeShell(shape)
+    for patch in (height_field(z=lambda x, y: 0.1 * x - 50), height_field(z=lambda x, y: 50 - 0.1 * x)):
+        builder.Add(shape, BRepBuilderAPI_MakeFace(to_geom(patch), 1e-7).Face())
+    assert self_intersects(shape)
+
+
+@pytest.mark.parametrize("unit", ["MM", "M"])
+def test_foreign_files_in_any_unit_with_planes_cylinders_and_trimmed_faces(tmp_path, unit):
+    import cadquery
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+    from OCP.Interface import Interface_Static
+    from OCP.STEPControl import STEPControl_AsIs, STEPControl_Controller, STEPControl_Writer
+
+    metre = 1000.0
+    plane = cadquery.Workplane("XY").workplane(offset=20 * metre).rect(100 * metre, 60 * metre).extrude(metre)
+    top = plane.faces(">Z").val().wrapped
+    tube = cadquery.Workplane("YZ").circle(30 * metre).extrude(80 * metre).faces("%CYLINDER").val().wrapped
+    patch = height_field(size=(100.0, 70.0), z=lambda x, y: 0.1 * x)
+    large = to_geom(replace(patch, control=patch.control * metre))
+    part = BRepBuilderAPI_MakeFace(large, 20.0, 60.0, 10.0, 50.0, 1e-7).Face()
+    STEPControl_Controller.Init_s()
+    before = Interface_Static.CVal_s("write.step.unit")
+    Interface_Static.SetCVal_s("write.step.unit", unit)
+    for name, face in (("plane", top), ("tube", tube), ("part", part)):
+        writer = STEPControl_Writer()
+        writer.Transfer(face, STEPControl_AsIs)
+        writer.Write(str(tmp_path / f"{name}.step"))
+    Interface_Static.SetCVal_s("write.step.unit", before)
+
+    (flat,) = read_step(tmp_path / "plane.step").values()
+    assert flat.elevation(10.0, 5.0) == pytest.approx(21, abs=1e-9)
+    np.testing.assert_allclose(flat.distance([[10, 5, 23.5], [53, 0, 25]]), [2.5, 5], atol=1e-9)
+    (round_,) = read_step(tmp_path / "tube.step").values()
+    np.testing.assert_allclose(np.abs(round_.distance([[40, 0, 50], [40, 10, 0]])), [20, 20], atol=1e-6)
+    (cut,) = read_step(tmp_path / "part.step").values()
+    assert cut.patches[0].control[..., 0].min() == pytest.approx(20, abs=1e-6)
+    assert cut.elevation(40.0, 30.0) == pytest.approx(4, abs=1e-6)
+    assert np.isnan(cut.elevation(70.0, 30.0))
+
+
+def test_opencascade_settings_are_put_back(written):
+    from OCP.Interface import Interface_Static
+
+    before = [Interface_Static.CVal_s(name) for name in ("xstep.cascade.unit", "write.step.schema")]
+    read_shapes(written[1])
+    assert [Interface_Static.CVal_s(name) for name in ("xstep.cascade.unit", "write.step.schema")] == before
+
+
+def test_what_cannot_be_read_says_so(tmp_path, capfd):
+    with pytest.raises(InputError, match="no such file"):
+        read_step(tmp_path / "none.step")
+    (tmp_path / "text.step").write_text("x, y, z\n1, 2, 3\n")
+    with pytest.raises(InputError, match="cannot be read as STEP"):
+        read_step(tmp_path / "text.step")
+    (tmp_path / "empty.step").write_text("")
+    with pytest.raises(InputError, match="STEP"):
+        read_step(tmp_path / "empty.step")
+    with pytest.raises(InputError, match="cannot be written"):
+        write_step({"x": horizon([height_field()])}, tmp_path / "nowhere" / "x.step")
+    with pytest.raises(InputError, match="No surface"):
+        write_step({}, tmp_path / "x.step")
+
+
+def test_canonical_text():
+    text = (
+        "#1 = MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#2,#3),#4);\n"
+        "#5 = NEXT_ASSEMBLY_USAGE_OCCURRENCE('17','层𠀀','',#1,#2,$);\nENDSEC;\nEND-ISO-10303-21;\n"
+    )
+    out = canonical(text)
+    assert "OCCURRENCE('1','\\X4\\00005C4200020000\\X0\\'" in out
+    assert "#7 = STYLED_ITEM('color',(#8),#3);" in out
+    assert out.endswith("ENDSEC;\nEND-ISO-10303-21;\n")

@@ -1,0 +1,333 @@
+"""The command as a user runs it: files in, files, words and exit codes out."""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import hashlib
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geofit.cli import console
+from geofit.cli.main import main
+from geofit.data.errors import Cancelled
+from geofit.data.site import ImportIssue, Site
+from geofit.project import run as deliver
+
+WEST, SOUTH = 500_000.0, 3_100_000.0
+
+
+def run(monkeypatch, capsys, *arguments) -> tuple[int, str, str]:
+    """Run the command in this process; return exit code, stdout, stderr."""
+    monkeypatch.setattr(sys, "argv", ["geofit", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    captured = capsys.readouterr()
+    return int(stop.value.code or 0), captured.out, captured.err
+
+
+def write_picks(path: Path, extra: str = "", names: tuple[str, ...] = ("T3/T2",)) -> Path:
+    """A dense middle and a sparse rim on a gentle wave, for each horizon one layer."""
+    rng = np.random.default_rng(3)
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["x", "y", "z", "surface", "section", "hole"])
+        for layer, name in enumerate(names):
+            for i in range(5):
+                for y in np.linspace(20, 580, 12):
+                    x = 260 + 20 * i
+                    writer.writerow([WEST + x, SOUTH + y, f"{height(x, y) - 40 * layer:.4f}", name, f"S{i + 1}", ""])
+            for i, (x, y) in enumerate(rng.uniform((0, 0), (600, 600), (60, 2))):
+                if not 230 < x < 370:
+                    z = height(x, y) - 40 * layer + rng.normal(0, 0.03)
+                    writer.writerow([WEST + x, SOUTH + y, f"{z:.4f}", name, "", f"ZK{i}"])
+        stream.write(extra)
+    return path
+
+
+def height(x, y):
+    return 1500 + 0.05 * x + 4 * np.sin(x / 140) * np.cos(y / 170)
+
+
+@pytest.fixture
+def picks(tmp_path) -> Path:
+    return write_picks(tmp_path / "picks.csv")
+
+
+@pytest.fixture(scope="module")
+def fitted(tmp_path_factory) -> Path:
+    """One run for the tests that only look at its files."""
+    folder = tmp_path_factory.mktemp("fitted")
+    picks = write_picks(folder / "picks.csv", f"{WEST + 5},{SOUTH + 5},abc,T3/T2,,ZK99\n")
+    done = subprocess.run(
+        [sys.executable, "-m", "geofit", "fit", picks, "--out", folder / "out", "--epsilon", "0.5", "--json"],
+        capture_output=True, text=True, check=False, encoding="utf-8",
+    )  # fmt: skip
+    (folder / "stdout").write_text(done.stdout, encoding="utf-8")
+    (folder / "stderr").write_text(done.stderr, encoding="utf-8")
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_a_fit_leaves_every_file_whole(fitted):
+    names = sorted(path.name for path in (fitted / "out").iterdir())
+    assert names == [
+        "T3_T2.json", "T3_T2.png", "T3_T2.step", "T3_T2_residuals.csv",
+        "import_issues.csv", "report.html", "report.json", "site.png",
+    ]  # fmt: skip
+    assert "END-ISO-10303-21;" in (fitted / "out" / "T3_T2.step").read_text(encoding="utf-8")[-200:]
+
+
+def test_report_writes_html_pdf_and_json_of_one_run(picks, tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    code, _, err = run(monkeypatch, capsys, "report", picks, "--lang", "en", "--out", tmp_path / "o")
+    assert code == 0, err
+    data = json.loads((tmp_path / "o" / "report.json").read_text(encoding="utf-8"))
+    assert (data["date"], data["horizons"][0]["verdict"]) == ("2023-11-14", "PASS")
+    assert data["horizons"][0]["off_data"]["left_out"]
+    assert data["horizons"][0]["read_back"]["valid"] is True
+    digest = hashlib.sha256((tmp_path / "o" / "T3_T2.step").read_bytes()).hexdigest()
+    assert data["horizons"][0]["read_back"]["sha256"] == digest
+    assert (tmp_path / "o" / "report.pdf").read_bytes().startswith(b"%PDF-")
+    assert "2023-11-14" in (tmp_path / "o" / "report.html").read_text(encoding="utf-8")
+    code, _, err = run(monkeypatch, capsys, "report", picks, "--lang", "fr", "--out", tmp_path / "p")
+    assert code == 2
+    assert "zh" in err
+
+
+def test_the_json_agrees_with_the_residual_table_and_the_files(fitted):
+    data = json.loads((fitted / "out" / "T3_T2.json").read_text(encoding="utf-8"))
+    with (fitted / "out" / "T3_T2_residuals.csv").open(encoding="utf-8-sig", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    d = np.array([float(row["residual_m"]) for row in rows])
+    assert data["n_points"] == len(rows)
+    assert data["sigma"] == pytest.approx(np.sqrt((d**2).sum() / (len(d) - 1)), abs=1e-8)
+    assert data["n_core"] == sum(row["exact"] == "yes" for row in rows) > 0
+    assert data["read_back"]["core_max_abs"] <= 1e-6
+    assert data["read_back"]["valid"] is True
+    step = fitted / "out" / "T3_T2.step"
+    assert data["storage"]["step_bytes"] == step.stat().st_size
+    assert data["read_back"]["sha256"] == hashlib.sha256(step.read_bytes()).hexdigest()
+    digest = hashlib.sha256((fitted / "picks.csv").read_bytes()).hexdigest()
+    assert data["inputs"] == [{"file": "picks.csv", "sha256": digest}]
+
+
+def test_json_alone_stands_on_stdout(fitted):
+    data = json.loads((fitted / "stdout").read_text(encoding="utf-8"))
+    assert [horizon["horizon"] for horizon in data["horizons"]] == ["T3/T2"]
+    assert data["failures"] == {}
+
+
+def test_a_bad_row_is_named_counted_and_listed(fitted):
+    told = (fitted / "stderr").read_text(encoding="utf-8")
+    read, used, listed = map(int, re.search(r"(\d+) read = (\d+) used \+ (\d+) listed", told).groups())
+    assert read == used + listed
+    assert listed == 1
+    row = len((fitted / "picks.csv").read_text(encoding="utf-8").splitlines())
+    assert f"picks.csv, row {row}, column 'z', value 'abc'" in told
+    with (fitted / "out" / "import_issues.csv").open(encoding="utf-8-sig", newline="") as stream:
+        assert [r["row"] for r in csv.DictReader(stream) if r["severity"] == "error"] == [str(row)]
+
+
+def test_nothing_but_text_goes_into_a_pipe(fitted):
+    assert "\x1b" not in (fitted / "stderr").read_text(encoding="utf-8")
+
+
+def test_check_measures_any_step_surface(fitted, monkeypatch, capsys):
+    step, picks = fitted / "out" / "T3_T2.step", fitted / "picks.csv"
+    code, out, _ = run(monkeypatch, capsys, "check", step, picks, "--epsilon", "0.5", "--json")
+    data = json.loads(out)
+    known = json.loads((fitted / "out" / "T3_T2.json").read_text(encoding="utf-8"))
+    assert (code, data["verdict"]) == (0, "PASS")
+    assert data["sigma"] == pytest.approx(known["sigma"], abs=1e-6)
+    code, out, _ = run(monkeypatch, capsys, "check", step, picks, "--epsilon", "1e-9")
+    assert code == 1
+    assert "FAIL" in out
+
+
+def test_info_tells_points_and_step_apart(fitted, monkeypatch, capsys):
+    code, out, _ = run(monkeypatch, capsys, "info", fitted / "picks.csv", "--json")
+    assert code == 0
+    assert [row["horizon"] for row in json.loads(out)] == ["T3/T2"]
+    code, out, _ = run(monkeypatch, capsys, "info", fitted / "out" / "T3_T2.step", "--json")
+    known = json.loads((fitted / "out" / "T3_T2.json").read_text(encoding="utf-8"))
+    assert [int(row["patches"]) for row in json.loads(out)] == [len(known["patches"])]
+
+
+def test_a_failing_horizon_ends_with_1(picks, tmp_path, monkeypatch, capsys):
+    code, out, _ = run(
+        monkeypatch, capsys, "fit", picks, "--out", tmp_path / "o", "--epsilon", "1e-7",
+        "--max-iterations", "0", "--core", "none",
+    )  # fmt: skip
+    assert code == 1
+    assert "FAIL" in out
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        ("", ["picks.csv", "empty"]),
+        ("a,b,c\n1,2,3\n", ["picks.csv"]),
+        ("x,y,z\n1,2,abc\n", ["picks.csv", "column 'z'", "abc"]),
+        ("x,y,z\n500000,3100000,1500\n", ["1 point", "at least 3"]),
+    ],
+)
+def test_bad_input_ends_with_2_and_one_clear_line(content, words, tmp_path, monkeypatch, capsys):
+    (tmp_path / "picks.csv").write_text(content, encoding="utf-8")
+    code, out, err = run(monkeypatch, capsys, "fit", tmp_path / "picks.csv", "--out", tmp_path / "o")
+    assert code == 2
+    assert out == ""
+    assert all(word in err for word in words), err
+    assert "Traceback" not in err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--epsilon", "-1"], ["(epsilon) is -1", "above 0"]),
+        (["--smoothing", "much"], ["(smoothing) is 'much'", "auto"]),
+        (["--horizon", "T9"], ["no horizon 'T9'", "T3/T2"]),
+        (["--boundary", "nowhere.csv"], ["nowhere.csv", "no such file"]),
+        (["--seam", "loose"], ["loose", "tangent"]),
+    ],
+)
+def test_bad_usage_ends_with_2_and_the_choices(arguments, words, picks, tmp_path, monkeypatch, capsys):
+    code, _, err = run(monkeypatch, capsys, "fit", picks, "--out", tmp_path / "o", *arguments)
+    assert code == 2
+    assert all(word in err for word in words), err
+    assert not list(tmp_path.glob("o/*.step"))
+
+
+def test_one_horizon_that_cannot_be_fitted_does_not_take_the_others_along(tmp_path, monkeypatch, capsys):
+    extra = f"{WEST},{SOUTH},1400,lost,,ZK1\n"
+    picks = write_picks(tmp_path / "picks.csv", extra)
+    code, out, err = run(monkeypatch, capsys, "fit", picks, "--out", tmp_path / "o")
+    assert code == 2
+    assert "T3/T2" in out
+    assert "lost: 1 point given" in err
+    assert (tmp_path / "o" / "T3_T2.step").exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of POSIX")
+def heed_ctrl_c() -> None:
+    """Undo what a shell does to the jobs it puts in the background: they, and all they start, ignore Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no SIGINT to a single process")
+def test_ctrl_c_leaves_no_half_written_file(tmp_path):
+    picks = write_picks(tmp_path / "picks.csv", names=tuple(f"H{i}" for i in range(8)))
+    process = subprocess.Popen(
+        [sys.executable, "-m", "geofit", "fit", picks, "--out", tmp_path / "o"],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, preexec_fn=heed_ctrl_c,
+    )  # fmt: skip
+    # Interrupted when the first files are there, in the middle of the run.
+    deadline = time.monotonic() + 120
+    while not list(tmp_path.glob("o/*.step")) and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=120)
+    assert process.returncode == 130, err
+    assert "Traceback" not in err
+    left = [path.name for path in (tmp_path / "o").iterdir()]
+    assert not [name for name in left if ".part" in name or name.startswith(".")]
+    for path in (tmp_path / "o").glob("*.step"):
+        assert "END-ISO-10303-21;" in path.read_text(encoding="utf-8")[-200:]
+    for path in (tmp_path / "o").glob("*.json"):
+        json.loads(path.read_text(encoding="utf-8"))
+
+
+def test_ctrl_c_that_a_library_swallows_stops_the_run_at_its_next_stage():
+    def run() -> None:
+        with console.listening() as progress:
+            assert progress("fit", 0.1) is True
+            with contextlib.suppress(KeyboardInterrupt):
+                signal.raise_signal(signal.SIGINT)
+            assert progress("pictures", 0.5) is False
+
+    before = signal.getsignal(signal.SIGINT)
+    heed_ctrl_c()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            run()
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_a_run_in_the_background_goes_on_ignoring_ctrl_c():
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        with console.listening() as progress:
+            signal.raise_signal(signal.SIGINT)
+            assert progress("fit", 0.1) is True
+        assert signal.getsignal(signal.SIGINT) is signal.SIG_IGN
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_a_listener_that_says_stop_stops_the_run(picks, tmp_path):
+    from geofit.io.picks import read_points
+
+    found = read_points(picks)
+    site = Site(name="picks", horizons=found.horizons)
+    with pytest.raises(Cancelled):
+        deliver.deliver(site, tmp_path / "o", progress=lambda stage, fraction: False)
+    assert not list(tmp_path.glob("o/*.step"))
+
+
+def test_a_missing_system_library_names_its_package(capsys):
+    @console.guarded
+    def command() -> int:
+        raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
+
+    with pytest.raises(Exception) as stop:  # noqa: PT011 - typer's Exit has moved between its releases
+        command()
+    assert stop.value.exit_code == 2
+    assert "apt-get install libgl1" in capsys.readouterr().err
+
+
+def test_other_import_errors_are_not_hidden():
+    @console.guarded
+    def command() -> int:
+        raise ImportError("No module named 'numpy'")
+
+    with pytest.raises(ImportError, match="numpy"):
+        command()
+
+
+def test_only_the_first_findings_are_told(capsys):
+    issues = [ImportIssue("a.csv", i, "z", "?", "error", "no number", "write metres") for i in range(9)]
+    console.print_issues(issues, "out/import_issues.csv")
+    told = capsys.readouterr().err
+    assert "Import: 9 errors. All of them: out/import_issues.csv" in told
+    assert told.count("no number") == console.FIRST_ISSUES
+    assert "and 4 more" in told
+
+
+def test_version_and_help(monkeypatch, capsys):
+    import geofit
+
+    assert run(monkeypatch, capsys, "--version")[:2] == (0, f"geofit {geofit.__version__}\n")
+    code, out, _ = run(monkeypatch, capsys, "fit", "--help")
+    assert code == 0
+    for option in (
+        "--epsilon",
+        "--boundary",
+        "--across",
+        "--seam",
+        "--core",
+        "--frame",
+        "--smoothing",
+        "--json",
+    ):
+        assert option in out

@@ -1,0 +1,165 @@
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from geofit import PointSet
+from geofit.data.errors import GeofitError, PointsError
+
+XYZ = [[0.0, 0.0, 1.0], [5.0, 0.0, 2.0], [5.0, 5.0, 3.0]]
+
+
+def three(**columns):
+    return PointSet(XYZ, **columns)
+
+
+def test_only_the_coordinates_are_required():
+    points = three()
+    assert len(points) == 3
+    assert points.xyz.dtype == np.float64
+    assert points.kind.tolist() == ["point"] * 3
+    assert points.hole.tolist() == points.section.tolist() == points.file.tolist() == [""] * 3
+    assert np.isnan(points.accuracy).all()
+    assert points.row.tolist() == [0, 0, 0]
+
+
+def test_one_value_stands_for_all():
+    points = three(kind="adit", accuracy=0.2, file="a.csv")
+    assert points.kind.tolist() == ["adit"] * 3
+    assert points.accuracy.tolist() == [0.2] * 3
+    assert points.file.tolist() == ["a.csv"] * 3
+
+
+@pytest.mark.parametrize("empty", [[], np.empty((0, 3)), np.empty((0, 2))])
+def test_no_points_are_a_set_too(empty):
+    assert len(PointSet(empty)) == 0
+    assert PointSet(empty).xyz.shape == (0, 3)
+
+
+@pytest.mark.parametrize(
+    ("xyz", "words"),
+    [
+        ([[0, 0]], r"xyz has shape \(1, 2\); an \(n, 3\) array of easting, northing, elevation is needed"),
+        ([1, 2, 3], r"xyz has shape \(3,\)"),
+        (np.zeros((2, 3, 3)), r"xyz has shape \(2, 3, 3\)"),
+        ([["a", 0, 0]], r"xyz must hold numbers: .*'a'.* Give an \(n, 3\) array"),
+        ([[0, 0, 0], [0, 0]], "xyz must hold numbers"),
+        ([[0, 0, 0], [1, np.nan, 2], [np.nan] * 3], r"2 of 3 points are not finite, the first at index 1: \[1.0, nan"),
+        ([[np.inf, 0, 0]], r"1 of 1 points are not finite.*inf.*Remove or complete"),
+    ],
+)
+def test_coordinates_that_are_no_points_are_named(xyz, words):
+    with pytest.raises(PointsError, match=words):
+        PointSet(xyz)
+
+
+@pytest.mark.parametrize(
+    ("column", "words"),
+    [
+        ({"kind": ["a", "b"]}, r"kind has shape \(2,\); 3 points need shape \(3,\) or one value for all"),
+        ({"hole": [["a", "b", "c"]]}, r"hole has shape \(1, 3\)"),
+        ({"accuracy": ["fine", "", ""]}, "accuracy cannot be read as float64: .*fine"),
+        ({"accuracy": [0.1, -0.3, 0.2]}, r"accuracy\[1\] is -0.3 m; one standard deviation must be above 0.*nan"),
+        ({"accuracy": 0.0}, r"accuracy\[0\] is 0 m"),
+        ({"row": ["x", 2, 3]}, "row cannot be read as int64"),
+    ],
+)
+def test_a_column_that_does_not_fit_is_named(column, words):
+    with pytest.raises(PointsError, match=words):
+        three(**column)
+
+
+def test_errors_are_geofit_errors_and_value_errors():
+    assert issubclass(PointsError, GeofitError)
+    assert issubclass(PointsError, ValueError)
+
+
+def test_nan_stands_for_an_accuracy_that_is_not_stated():
+    points = three(accuracy=[np.nan, 0.5, np.nan])
+    assert np.isnan(points.accuracy[[0, 2]]).all()
+
+
+def test_points_cannot_be_changed():
+    points = three(kind=["borehole", "adit", "map"])
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        points.xyz = np.zeros((3, 3))
+    for name in ("xyz", "kind", "hole", "section", "accuracy", "row", "file"):
+        with pytest.raises(ValueError, match="read-only"):
+            getattr(points, name)[0] = getattr(points, name)[1]
+
+
+def test_the_callers_arrays_stay_his_own():
+    xyz, row = np.array(XYZ), np.array([1, 2, 3])
+    points = PointSet(xyz, row=row)
+    xyz[0, 0], row[0] = 99, 99
+    assert points.xyz[0, 0] == 0
+    assert points.row[0] == 1
+    assert xyz.flags.writeable
+    assert row.flags.writeable
+
+
+@pytest.mark.parametrize(
+    ("index", "rows"),
+    [
+        (np.array([True, False, True]), [2, 4]),
+        ([2, 0], [4, 2]),
+        (slice(1, None), [3, 4]),
+        (1, [3]),
+        (-1, [4]),
+        (np.zeros(3, bool), []),
+    ],
+)
+def test_a_part_keeps_all_columns(index, rows):
+    points = three(kind=["a", "b", "c"], hole=["H1", "H2", "H3"], accuracy=[0.1, np.nan, 0.3], row=[2, 3, 4])
+    part = points[index]
+    assert part.row.tolist() == rows
+    assert part.xyz.shape == (len(rows), 3)
+    assert part.hole.tolist() == [f"H{row - 1}" for row in rows]
+    np.testing.assert_array_equal(part.xyz, points.xyz[np.array(rows, int) - 2])
+
+
+def test_sets_are_joined_in_order_with_the_longest_words():
+    first, second = PointSet(XYZ[:1], hole="B1"), PointSet(XYZ[1:], hole="a longer name", accuracy=0.5)
+    joined = PointSet.concatenate([first, second])
+    assert joined.hole.tolist() == ["B1", "a longer name", "a longer name"]
+    np.testing.assert_array_equal(joined.xyz, XYZ)
+    np.testing.assert_array_equal(joined.accuracy, [np.nan, 0.5, 0.5])
+    assert len(PointSet.concatenate([])) == 0
+
+
+@settings(deadline=None, derandomize=True)
+@given(
+    hnp.arrays(np.float64, st.tuples(st.integers(0, 20), st.just(3)), elements=st.floats(-1e8, 1e8)), st.integers(0, 20)
+)
+def test_cutting_and_joining_gives_the_same_points(xyz, cut):
+    points = PointSet(xyz, row=np.arange(len(xyz)) + 1)
+    again = PointSet.concatenate([points[:cut], points[cut:]])
+    np.testing.assert_array_equal(again.xyz, points.xyz)
+    np.testing.assert_array_equal(again.row, points.row)
+
+
+def test_with_replaces_columns_and_checks_them():
+    points = three(hole="B1")
+    higher = points.with_(xyz=points.xyz + np.array([0, 0, 10]))
+    assert higher.hole.tolist() == ["B1"] * 3
+    assert higher.xyz[0, 2] == 11
+    with pytest.raises(PointsError, match="not finite"):
+        points.with_(xyz=points.xyz * np.nan)
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"kind": "borehole", "hole": "ZK12", "file": "holes.csv", "row": 7}, "borehole ZK12, holes.csv row 7"),
+        ({"kind": "section", "section": "S3", "row": 9}, "section S3, row 9"),
+        ({"kind": "adit", "hole": "PD1", "section": "S3"}, "adit PD1"),
+        ({}, "point"),
+    ],
+)
+def test_a_point_is_described_as_a_person_would_look_it_up(columns, words):
+    assert three(**columns).describe(1) == words

@@ -1,0 +1,99 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from threadpoolctl import threadpool_limits
+from truth import EASTING, NORTHING, paper_arrangement
+
+from geofit import FitSettings, PointSet, fit_horizon
+from geofit.checks.check import sigma
+from geofit.fitting.adjust import adjust
+from geofit.fitting.core import fit_with_core
+from geofit.fitting.parametrize import choose_chart
+from geofit.fitting.partition import split_auto
+
+
+def silent(stage, fraction):
+    """Hear nothing."""
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    """A fit whose given smoothing is far too stiff for its periphery."""
+    truth = paper_arrangement(4)
+    settings = FitSettings(smoothing=10.0)
+    chart = choose_chart(truth.points, settings, truth.boundary)
+    split = split_auto(chart.plane, chart.area)
+    kept = np.ones(len(truth.points), bool)
+    # As fit_horizon does: on small banded systems threads wait for each other.
+    with threadpool_limits(limits=1):
+        net = fit_with_core(truth.points, chart, split, kept, settings, silent)
+    return net, chart, split
+
+
+def residuals(net, chart):
+    return chart.values - net.space.matrix(chart.plane / net.unit) @ net.coefficients
+
+
+def test_sigma_falls_and_the_core_stays_bit_for_bit(fitted):
+    net, chart, split = fitted
+    before = residuals(net, chart)
+    better = adjust(net, chart, ~split.inside, before)
+    assert sigma(residuals(better, chart)) < 0.6 * sigma(before)
+    assert net.frozen.any()
+    np.testing.assert_array_equal(better.coefficients[net.frozen], net.coefficients[net.frozen])
+    np.testing.assert_allclose(residuals(better, chart)[split.inside], 0, atol=1e-7)
+
+
+def test_nothing_moves_outside_the_supports_near_the_worst_points(fitted):
+    net, chart, split = fitted
+    movable = np.flatnonzero(~split.inside)
+    # Two bad points and all others good: only these are pulled.
+    d = np.full(len(chart.values), 1e-6)
+    bad = movable[[0, 40]]
+    d[bad] = 5.0
+    better = adjust(net, chart, ~split.inside, d)
+    moved = better.coefficients != net.coefficients
+    acting = np.zeros(net.space.size, bool)
+    acting[net.space.rows(chart.plane[bad] / net.unit)[0].ravel()] = True
+    assert moved.any()
+    assert not (moved & ~acting).any()
+    assert not (moved & net.frozen).any()
+
+
+def test_points_that_may_not_be_pulled_are_not(fitted):
+    net, chart, split = fitted
+    nobody = np.zeros(len(chart.values), bool)
+    assert adjust(net, chart, nobody, residuals(net, chart)) is None
+    assert adjust(net, chart, ~split.inside, np.zeros(len(chart.values))) is None
+
+
+def stiff_cloud(n=120, spikes=4, seed=0):
+    rng = np.random.default_rng(seed)
+    plan = rng.uniform(0, 1000, (n, 2))
+    z = 500 + 0.1 * plan[:, 0]
+    z[:spikes] += 8.0
+    return PointSet(np.column_stack([plan + np.array((EASTING, NORTHING)), z]))
+
+
+def test_a_fit_above_epsilon_is_adjusted_until_it_passes_and_says_so():
+    surface = fit_horizon(stiff_cloud(), FitSettings(core="none", smoothing=100.0, epsilon=0.5))
+    assert surface.accuracy.passed
+    assert any("until sigma came below epsilon" in note for note in surface.accuracy.notes)
+
+
+def test_without_iterations_it_stays_above_epsilon_and_says_so():
+    settings = FitSettings(core="none", smoothing=100.0, epsilon=0.5, max_iterations=0)
+    surface = fit_horizon(stiff_cloud(), settings)
+    assert not surface.accuracy.passed
+    assert any("sigma stays above epsilon" in note for note in surface.accuracy.notes)
+
+
+def test_a_contradiction_cannot_be_adjusted_away():
+    points = stiff_cloud(spikes=0)
+    twice = PointSet.concatenate([points, points.with_(xyz=points.xyz + np.array([0, 0, 4.0]))])
+    surface = fit_horizon(twice, FitSettings(epsilon=0.5))
+    assert not surface.accuracy.passed
+    assert surface.accuracy.max_abs == pytest.approx(4.0, rel=0.05)
+    assert len(surface.accuracy.conflicts) == len(points)
+    assert any("sigma stays above epsilon" in note for note in surface.accuracy.notes)

@@ -1,0 +1,106 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from truth import EASTING, NORTHING, fold_at, folded, paper_arrangement
+
+from geofit import PointSet
+from geofit.fitting.fold import backtracking, loft
+from geofit.geometry.frame import map_frame
+
+
+def back(points):
+    return backtracking(points, map_frame(points))
+
+
+def hinge_of(points, plane, section):
+    """v of the turning points of a section: where x stops growing, and where it starts again."""
+    index = np.flatnonzero(points.section == section)
+    order = index[np.argsort(plane[index, 1])]
+    x = points.xyz[order, 0]
+    turn = np.flatnonzero(np.diff(np.sign(np.diff(x)))) + 1
+    return plane[order[turn], 1]
+
+
+def test_a_fold_runs_back_and_a_horizon_does_not():
+    assert back(folded()) > 0.1
+    assert back(paper_arrangement(0).points) == 0
+    assert back(PointSet(np.random.default_rng(0).uniform(0, 9, (30, 3)))) == 0
+
+
+def test_backtracking_does_not_mind_which_way_a_section_is_drawn():
+    assert back(folded(reverse=(1, 2, 5))) == pytest.approx(back(folded()), rel=1e-9)
+
+
+def test_each_section_is_a_line_of_constant_u_at_its_distance():
+    points = folded()
+    surface = loft(points)
+    assert surface.on_line.all()
+    np.testing.assert_allclose(np.diff(surface.u), 60, rtol=0.05)
+    for name in np.unique(points.section):
+        assert np.ptp(surface.plane[points.section == name, 0]) == 0
+    np.testing.assert_allclose(np.unique(surface.plane[:, 0]), surface.u)
+
+
+def test_v_grows_along_every_section_in_one_sense():
+    for reverse in ((), (0,), (1, 4), (0, 1, 2)):
+        points = folded(reverse=reverse)
+        plane = loft(points).plane
+        senses = []
+        for name in np.unique(points.section):
+            mine = points.section == name
+            z, v = points.xyz[mine, 2], plane[mine, 1]
+            assert (np.abs(np.diff(v)) > 0).all()
+            senses.append(np.sign(np.corrcoef(z, v)[0, 1]))
+        assert len(set(senses)) == 1, reverse
+
+
+def shifted_hinges(lines=6, n=80):
+    """A fold whose first limb grows from section to section: equal chord length would join limb to hinge."""
+    xyz, names = [], []
+    for i in range(lines):
+        t = np.linspace(0, 1, n) ** (1 + 0.15 * i)
+        line = fold_at(t, np.full(n, 60.0 * i))
+        line[:, 0] += 12 * i * np.minimum(t, 0.3)
+        xyz.append(line)
+        names += [f"S{i}"] * n
+    return PointSet(np.concatenate(xyz) + np.array((EASTING, NORTHING, 500)), section=names)
+
+
+def test_hinges_stand_at_one_v_on_all_sections():
+    points = shifted_hinges()
+    plane = loft(points).plane
+    hinges = [hinge_of(points, plane, name) for name in np.unique(points.section)]
+    assert all(len(h) == 2 for h in hinges)
+    length = np.ptp(plane[:, 1])
+    # Half a step of a section is as near as points tell.
+    assert (np.ptp(np.array(hinges), axis=0) / length).max() < 0.03
+
+
+@pytest.mark.parametrize("n", [40, 41, 80])
+def test_the_hinges_of_a_symmetric_fold_are_not_confused(n):
+    points = folded(n=n)
+    plane = loft(points).plane
+    hinges = [hinge_of(points, plane, name) for name in np.unique(points.section)]
+    assert (np.ptp(np.array(hinges), axis=0) / np.ptp(plane[:, 1])).max() < 0.03
+
+
+def test_points_off_the_sections_have_no_place_yet():
+    points = folded()
+    more = PointSet(points.xyz[:5] + np.array([1.0, 30.0, 2.0]), hole="B1")
+    surface = loft(PointSet.concatenate([points, more]))
+    assert surface.on_line.tolist() == [True] * len(points) + [False] * 5
+    assert "5 points between" in surface.notes[0]
+
+
+def test_fewer_than_two_sections_place_nothing():
+    assert not loft(folded(lines=1)).on_line.any()
+    assert not loft(folded().with_(section="")).on_line.any()
+
+
+def test_parameters_do_not_repeat_on_irregular_sections():
+    points = folded(seed=5, reverse=(2,))
+    plane = loft(points).plane
+    for name in np.unique(points.section):
+        v = plane[points.section == name, 1]
+        assert len(np.unique(v)) == len(v)

@@ -1,0 +1,178 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from truth import EASTING, NORTHING, fold_at, folded, hills, paper_arrangement, rms
+
+from geofit import FitSettings, PointSet, fit_horizon
+from geofit.data.errors import FitError
+from geofit.fitting.parametrize import choose_chart
+from geofit.geometry.frame import best_plane_frame
+
+SETTINGS = FitSettings()
+
+
+def fault(dip, azimuth=110.0, n=150, roughness=1.5, seed=0):
+    """A gently waved plane of the given dip; true distance from the plane up to ``roughness``."""
+    a, d = np.radians(azimuth), np.radians(dip)
+    down = np.array([np.sin(a) * np.cos(d), np.cos(a) * np.cos(d), -np.sin(d)])
+    strike = np.array([np.cos(a), -np.sin(a), 0.0])
+    s, t = np.random.default_rng(seed).uniform(-250, 250, (2, n))
+    off = roughness * np.sin(s / 90) * np.cos(t / 110)
+    xyz = s[:, None] * strike + t[:, None] * down + off[:, None] * np.cross(strike, down)
+    return PointSet(xyz + np.array((EASTING, NORTHING, 700)))
+
+
+def level(n=80, slope=0.1):
+    rng = np.random.default_rng(1)
+    plan = rng.uniform(0, 900, (n, 2)) + np.array((EASTING, NORTHING))
+    return PointSet(np.column_stack([plan, hills(1)(*plan.T) + slope * (plan[:, 0] - EASTING)]))
+
+
+@pytest.mark.parametrize(
+    ("points", "kind"),
+    [
+        (level(), "map"),
+        (paper_arrangement(0).points, "map"),
+        (fault(30), "map"),
+        (fault(50), "map"),
+        (fault(72), "best-plane"),
+        (fault(85, azimuth=10), "best-plane"),
+        (folded(), "sections"),
+        (folded(reverse=(1, 4)), "sections"),
+        (folded(azimuth=0.7), "sections"),
+    ],
+    ids=["gentle", "paper", "30", "50", "72", "85", "fold", "fold drawn both ways", "turned fold"],
+)
+def test_the_frame_follows_the_surface(points, kind):
+    chart = choose_chart(points, SETTINGS, None)
+    assert chart.frame.kind == kind
+    assert chart.parametric == (kind == "sections")
+    assert chart.notes[0]
+
+
+def test_a_vertical_fault_seen_by_scattered_points_is_no_height_field():
+    chart = choose_chart(fault(90, n=80), SETTINGS, None)
+    assert chart.frame.kind == "best-plane"
+
+
+def test_one_section_is_a_height_field_over_the_map():
+    t = np.linspace(0, 800, 40)
+    points = PointSet(
+        np.column_stack([EASTING + 0.6 * t, NORTHING + 0.8 * t, 500 + 20 * np.sin(t / 90)]),
+        section="S1",
+        kind="section",
+    )
+    chart = choose_chart(points, SETTINGS, None)
+    assert chart.frame.kind == "map"
+    # v runs along the line, and the area is a strip around it.
+    np.testing.assert_allclose(np.abs(chart.frame.axes[1, :2]), [0.6, 0.8], atol=1e-6)
+    u0, u1, v0, v1 = chart.area
+    assert v1 - v0 == pytest.approx(800)
+    assert 0 < u1 - u0 < 200
+
+
+@pytest.mark.parametrize("azimuth", [0, 33, 90])
+def test_collinear_points_get_a_strip_to_stand_on(azimuth):
+    a, t = np.radians(azimuth), np.linspace(0, 500, 12)
+    points = PointSet(np.column_stack([EASTING + t * np.cos(a), NORTHING + t * np.sin(a), 300 + 0.1 * t]))
+    chart = choose_chart(points, SETTINGS, None)
+    assert chart.frame.kind == "map"
+    u0, u1, v0, v1 = chart.area
+    assert u1 > u0
+    assert v1 > v0
+    assert min(u1 - u0, v1 - v0) >= 0.05 * 400
+
+
+@pytest.mark.parametrize("kind", ["map", "best-plane"])
+def test_a_frame_is_taken_as_asked(kind):
+    for points in (level(), fault(72)):
+        assert choose_chart(points, FitSettings(frame=kind), None).frame.kind == kind
+
+
+def test_sections_without_sections_are_a_fit_error():
+    with pytest.raises(FitError, match=r"frame='sections' needs at least two named sections.*0 were given"):
+        choose_chart(level(), FitSettings(frame="sections"), None)
+    with pytest.raises(FitError, match="1 were given"):
+        choose_chart(folded(lines=1), FitSettings(frame="sections"), None)
+
+
+def test_places_and_values_give_the_points_back():
+    for points in (level(), fault(72), folded()):
+        chart = choose_chart(points, SETTINGS, None)
+        local = chart.values if chart.parametric else np.column_stack([chart.plane, chart.values])
+        np.testing.assert_allclose(chart.frame.turn_back(local) + chart.frame.origin, points.xyz, atol=1e-8)
+        u0, u1, v0, v1 = chart.area
+        assert (chart.plane >= (u0 - 1e-9, v0 - 1e-9)).all()
+        assert (chart.plane <= (u1 + 1e-9, v1 + 1e-9)).all()
+
+
+def test_the_study_area_widens_the_rectangle_and_points_beyond_it_are_told():
+    points = level()
+    low, high = points.xyz[:, :2].min(axis=0), points.xyz[:, :2].max(axis=0)
+    wide = np.array([low - 100, [high[0] + 100, low[1] - 100], high + 100, [low[0] - 100, high[1] + 100]])
+    assert choose_chart(points, SETTINGS, wide).area[1] - choose_chart(points, SETTINGS, wide).area[0] == pytest.approx(
+        high[0] - low[0] + 200
+    )
+    small = np.array([low + 200, [high[0] - 200, low[1] + 200], high - 200, [low[0] + 200, high[1] - 200]])
+    chart = choose_chart(points, SETTINGS, small)
+    assert any("points beyond the study area" in note for note in chart.notes)
+    assert (chart.plane >= (chart.area[0], chart.area[2])).all()
+
+
+def test_without_sections_v_follows_a_turned_study_area():
+    a = np.radians(30)
+    turn = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
+    corners = np.array([[0, 0], [900, 0], [900, 300], [0, 300.0]]) @ turn.T + (EASTING, NORTHING)
+    plan = np.random.default_rng(0).uniform(0, (900, 300), (90, 2)) @ turn.T + (EASTING, NORTHING)
+    chart = choose_chart(PointSet(np.column_stack([plan, np.full(90, 300.0)])), SETTINGS, corners)
+    sides = sorted((chart.area[1] - chart.area[0], chart.area[3] - chart.area[2]))
+    np.testing.assert_allclose(sides, [300, 900], atol=1)
+
+
+def test_a_steep_fault_is_met_over_its_best_plane():
+    points = fault(72, n=300)
+    surface = fit_horizon(points, FitSettings(core="none", interior_tolerance=0.05))
+    assert surface.fit["frame"] == "best-plane"
+    assert surface.accuracy.max_abs < 0.06
+    # Other points of the same fault, in its middle.
+    inner = fault(72, n=900, seed=7)
+    local = best_plane_frame(points).to_local(inner.xyz)[:, :2]
+    inner = inner[(np.abs(local - local.mean(axis=0)) < 200).all(axis=1)]
+    assert rms(surface.distance(inner.xyz)) < 0.1
+
+
+@pytest.mark.parametrize("reverse", [(), (0, 3)])
+def test_an_overturned_fold_is_met(reverse):
+    surface = fit_horizon(folded(reverse=reverse))
+    assert surface.fit["frame"] == "sections"
+    assert surface.accuracy.max_abs < 1e-6
+
+
+def sharper(n=80):
+    """A fold whose first hinge lies 15 m farther out than the second, and 400 other places on it."""
+    rng = np.random.default_rng(3)
+    points = folded(n=n)
+    xyz = points.xyz.copy()
+    between = fold_at(rng.uniform(0.05, 0.95, 400), rng.uniform(10, 290, 400)) + np.array((EASTING, NORTHING, 500))
+    for places in (xyz, between):
+        z = places[:, 2] - 500 - 6 * np.sin((places[:, 1] - NORTHING) / 70)
+        places[:, 0] += 15 * np.exp(-(((z - 55) / 40) ** 2))
+    return points.with_(xyz=xyz), between
+
+
+def test_a_fold_linear_across_is_right_between_its_sections():
+    points, between = sharper()
+    surface = fit_horizon(points, FitSettings(across="linear"))
+    assert rms(surface.distance(between)) < 0.3
+
+
+def test_a_fold_cubic_across_is_right_between_its_sections():
+    points, between = sharper()
+    assert rms(fit_horizon(points).distance(between)) < 0.3
+
+
+def test_a_symmetric_fold_is_right_between_its_sections():
+    rng = np.random.default_rng(3)
+    between = fold_at(rng.uniform(0.05, 0.95, 400), rng.uniform(10, 290, 400)) + np.array((EASTING, NORTHING, 500))
+    assert rms(fit_horizon(folded()).distance(between)) < 2.0

@@ -1,0 +1,164 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from truth import paper_arrangement
+
+from geofit.fitting.partition import split_all, split_auto, split_none, split_rectangle
+
+AREA = (0.0, 2000.0, 0.0, 2000.0)
+
+
+def uniform(n, area=AREA, seed=0):
+    return np.random.default_rng(seed).uniform((area[0], area[2]), (area[1], area[3]), (n, 2))
+
+
+def box(plane):
+    (u0, v0), (u1, v1) = plane.min(axis=0), plane.max(axis=0)
+    return (u0, u1, v0, v1)
+
+
+def within(plane, core, edge=1e-6):
+    u, v = plane.T
+    return (u >= core[0] - edge) & (u <= core[1] + edge) & (v >= core[2] - edge) & (v <= core[3] + edge)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_the_papers_arrangement_is_found(seed):
+    truth = paper_arrangement(seed)
+    plane = truth.points.xyz[:, :2] - (truth.area[0], truth.area[2])
+    split = split_auto(plane, AREA)
+    # The sections' own points, and no peripheral one; from one edge of the area to the other.
+    np.testing.assert_array_equal(split.inside, truth.points.section != "")
+    np.testing.assert_allclose(split.core, (700, 1300, 0, 2000), atol=1e-6)
+    assert "440 points" in split.reason
+    assert "157" in split.reason
+
+
+@pytest.mark.parametrize("size", [(500, 900), (400, 400), (900, 300)])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_core_inside_on_all_four_sides_is_found(size, seed):
+    core = (700.0, 700.0 + size[0], 600.0, 600.0 + size[1])
+    dense = uniform(400, core, seed)
+    sparse = uniform(150, AREA, 50 + seed)
+    sparse = sparse[~within(sparse, core, 40.0)]
+    plane = np.concatenate([dense, sparse])
+    split = split_auto(plane, AREA)
+    assert split.core is not None, split.reason
+    np.testing.assert_allclose(split.core, core, atol=0.12 * min(size))
+    assert split.inside[:400].mean() > 0.9
+    assert split.inside[400:].mean() < 0.1
+
+
+@pytest.mark.parametrize("n", [40, 100, 600, 3000])
+@pytest.mark.parametrize("seed", range(5))
+def test_a_uniform_cloud_has_no_core(n, seed):
+    split = split_auto(uniform(n, seed=seed), AREA)
+    assert split.core is None
+    assert not split.inside.any()
+    assert "no dense core" in split.reason
+
+
+def test_a_regular_grid_has_no_core():
+    grid = np.stack(np.meshgrid(np.arange(20.0), np.arange(30.0)), axis=-1).reshape(-1, 2)
+    assert split_auto(grid, box(grid)).core is None
+
+
+def with_a_line(angle):
+    along, a = np.linspace(-800, 800, 260), np.radians(angle)
+    line = 1000 + np.column_stack([along * np.cos(a), along * np.sin(a)])
+    return np.concatenate([line, uniform(150)])
+
+
+@pytest.mark.parametrize("angle", [0, 90])
+def test_one_dense_line_makes_no_core_and_the_reason_says_so(angle):
+    split = split_auto(with_a_line(angle), AREA)
+    assert split.core is None
+    assert "line" in split.reason
+
+
+@pytest.mark.parametrize("angle", [10, 20, 35, 45, 80])
+def test_one_dense_line_across_the_axes_makes_no_core_either(angle):
+    assert split_auto(with_a_line(angle), AREA).core is None
+
+
+@pytest.mark.parametrize("n", [0, 1, 3, 39])
+def test_few_points_have_no_core(n):
+    split = split_auto(uniform(n), AREA)
+    assert split.core is None
+    assert "too few" in split.reason
+    assert len(split.inside) == n
+
+
+def test_more_points_than_can_be_interpolated_are_approximated_and_told():
+    dense = uniform(6000, (700, 1300, 700, 1300))
+    split = split_auto(np.concatenate([dense, uniform(400)]), AREA)
+    assert split.core is None
+    assert "approximated" in split.reason
+    assert "core" in split.reason
+
+
+def test_points_all_at_few_places_do_not_crash():
+    plane = np.repeat(uniform(4), 15, axis=0)
+    split = split_auto(plane, AREA)
+    assert len(split.inside) == 60
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_any_cloud_gives_a_split_that_tells_the_truth(seed):
+    rng = np.random.default_rng(seed)
+    parts = []
+    for _ in range(rng.integers(1, 5)):
+        centre, size = rng.uniform(0, 2000, 2), 10.0 ** rng.uniform(-1, 3.3, 2)
+        parts.append(centre + rng.uniform(-0.5, 0.5, (rng.integers(1, 200), 2)) * size)
+    plane = np.concatenate(parts)
+    if seed % 3 == 0:
+        plane = np.unique(np.round(plane, -1), axis=0)
+    area = box(plane)
+    split = split_auto(plane, area)
+    assert split.reason
+    if split.core is None:
+        assert not split.inside.any()
+        return
+    core = split.core
+    np.testing.assert_array_equal(split.inside, within(plane, core))
+    assert split.inside.any()
+    assert not split.inside.all()
+    assert area[0] <= core[0] < core[1] <= area[1]
+    assert area[2] <= core[2] < core[3] <= area[3]
+
+
+def test_a_drawn_rectangle_is_taken_as_it_is():
+    plane = uniform(400)
+    core = (600.0, 1200.0, 500.0, 1500.0)
+    split = split_rectangle(plane, core, AREA, "as drawn")
+    assert split.core == core
+    np.testing.assert_array_equal(split.inside, within(plane, core))
+    assert split.reason.startswith("as drawn")
+    assert str(split.inside.sum()) in split.reason
+
+
+def test_a_drawn_side_next_to_the_areas_edge_moves_there():
+    truth = paper_arrangement(0)
+    plane = truth.points.xyz[:, :2] - (truth.area[0], truth.area[2])
+    split = split_rectangle(plane, (690.0, 1310.0, 1.0, 1999.0), AREA, "as drawn")
+    assert split.core == (690.0, 1310.0, 0.0, 2000.0)
+    assert split.inside.sum() == 440
+
+
+def test_a_drawn_rectangle_without_points_or_with_all_of_them_degenerates():
+    plane = uniform(50, (0, 500, 0, 500))
+    empty = split_rectangle(plane, (1500.0, 1900.0, 1500.0, 1900.0), AREA, "as drawn")
+    assert empty.core is None
+    assert "no point lies inside" in empty.reason
+    full = split_rectangle(plane, (0.0, 600.0, 0.0, 600.0), AREA, "as drawn")
+    assert full.core == AREA
+    assert full.inside.all()
+
+
+def test_all_and_none_are_what_they_say():
+    plane = uniform(20)
+    assert split_all(plane, AREA, "x").inside.all()
+    assert split_all(plane, AREA, "x").core == AREA
+    assert split_none(plane, "x").core is None
+    assert not split_none(plane, "x").inside.any()

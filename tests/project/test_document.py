@@ -1,0 +1,284 @@
+"""The document without Qt: commands change it and take their change back; results go stale; the shelf has bounds."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from geofit.data.errors import GeofitError
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.data.site import Ground, Orientations, Site
+from geofit.project import shelf as shelf_module
+from geofit.project.building import make
+from geofit.project.commands import (
+    COMMANDS,
+    AdjustControlPoint,
+    ChangeWeight,
+    ExcludeRow,
+    IncludeRow,
+    PartAtFaults,
+    PullToPoint,
+    PushApart,
+    RenameSite,
+    SetCore,
+    SetOrder,
+    SetSettings,
+    SetSurface,
+    command_from,
+)
+from geofit.project.document import Document
+from geofit.project.provenance import (
+    Apart,
+    DocumentError,
+    Move,
+    Part,
+    Pull,
+    Recipe,
+    Row,
+    Weigh,
+    fingerprint,
+    indices,
+    runs,
+)
+from geofit.project.shelf import Shelf
+from geofit.project.signal import Signal
+from geofit.project.state import State
+
+
+def site():
+    x, y = np.meshgrid(np.linspace(0, 90, 6), np.linspace(0, 90, 6))
+    flat = np.column_stack([x.ravel(), y.ravel(), 0.05 * x.ravel()])
+    rows = np.arange(2, 38)
+    upper = PointSet(flat + np.array([0, 0, 20]), file="a.csv", row=rows)
+    # Two points of one row, as an interval that is met twice gives them.
+    lower = PointSet(flat, file="a.csv", row=np.where(rows == 5, 4, rows))
+    return Site("Dam", {"up": upper, "low": lower}, {"low": FitSettings(epsilon=0.2)})
+
+
+def document():
+    opened = Document()
+    opened.open(site(), None)
+    return opened
+
+
+numbers = st.floats(-1e6, 1e6)
+rows = st.builds(Row, st.text(max_size=5), st.integers(0, 99), st.integers(0, 3))
+polygon = st.lists(st.tuples(numbers, numbers), min_size=3, max_size=5).map(tuple)
+cores = st.sampled_from(["auto", "all", "none"]) | polygon
+settings_ = st.builds(FitSettings, epsilon=st.floats(1e-6, 1e3), core=cores)
+edits = (
+    st.builds(Move, st.text(max_size=4), st.integers(), st.integers(), numbers)
+    | st.builds(Pull, st.integers(), numbers)
+    | st.builds(Weigh, st.text(max_size=4), st.integers(), st.integers(), numbers)
+)
+stacked = st.builds(
+    Apart, st.just(("up", "low")), numbers, st.just((Recipe("up", FitSettings(), "x", (), (Pull(1, 0.5),)),))
+)
+recipes = st.builds(
+    Recipe,
+    st.just("low"),
+    settings_,
+    st.text(max_size=4),
+    st.lists(rows).map(tuple),
+    st.lists(edits | stacked).map(tuple),
+)
+block = st.builds(
+    Part,
+    st.just("low"),
+    st.text(max_size=4),
+    st.lists(st.builds(Recipe, st.just("up"), settings_, st.text(max_size=4)), max_size=2).map(tuple),
+    st.lists(st.integers(-1, 1), max_size=2).map(tuple),
+    st.lists(st.integers(0, 40), unique=True).map(lambda numbers: runs(np.sort(np.array(numbers, int)))),
+    polygon,
+)
+commands = st.one_of(
+    st.builds(
+        PartAtFaults, st.just("low"), st.dictionaries(st.sampled_from(["low (A)", "low (B)"]), block, min_size=1)
+    ),
+    st.builds(SetSettings, st.just("low (A)"), settings_),
+    st.builds(ExcludeRow, st.just("low (A)"), rows),
+    st.builds(SetSettings, st.just("low"), settings_),
+    st.builds(SetCore, st.just("low"), cores),
+    st.builds(ExcludeRow, st.just("low"), rows),
+    st.builds(IncludeRow, st.just("low"), rows),
+    st.builds(SetSurface, recipes),
+    st.builds(AdjustControlPoint, st.just("low"), st.text(max_size=4), st.integers(), st.integers(), numbers),
+    st.builds(ChangeWeight, st.just("low"), st.text(max_size=4), st.integers(), st.integers(), st.floats(0.01, 100)),
+    st.builds(PullToPoint, st.just("low"), st.integers(), numbers),
+    st.builds(PushApart, st.just(("low",)), st.just(("up", "low")), st.floats(0, 10)),
+    st.builds(SetOrder, st.permutations(["up", "low"]).map(tuple)),
+    st.builds(RenameSite, st.text(min_size=1)),
+)
+
+
+@settings(max_examples=200, deadline=None)
+@given(command=commands)
+def test_every_command_comes_back_from_its_data(command):
+    again = command_from(json.loads(json.dumps(command.to_data())))
+    assert again == command
+    assert type(again) is type(command)
+    assert str(command.text)
+
+
+@settings(max_examples=100, deadline=None)
+@given(done=st.lists(commands, max_size=12))
+def test_undoing_everything_leads_back_and_states_come_back_from_their_data(done):
+    opened = document()
+    first, stack = opened.state, []
+    for command in done:
+        before = opened.state
+        try:
+            command.redo(opened)
+        except DocumentError:
+            assert opened.state is before
+            continue
+        stack.append((before, command))
+        assert State.from_data(json.loads(json.dumps(opened.state.to_data()))) == opened.state
+    for before, command in reversed(stack):
+        command.undo(opened)
+        assert opened.state == before
+    assert opened.state == first
+    assert not opened.dirty
+
+
+def test_every_command_is_told_in_words_that_can_be_translated():
+    from geofit.gui.sentences import SENTENCES
+
+    recipe = document().recipe("low")
+    samples = [
+        SetSettings("low", FitSettings()), SetCore("low", "all"), ExcludeRow("low", Row("a", 1)),
+        IncludeRow("low", Row("a", 1)), SetSurface(recipe), AdjustControlPoint("low", "core", 1, 2, 0.5),
+        ChangeWeight("low", "core", 1, 2, 0.5), PushApart(("low",), ("up", "low"), 0.5),
+        PartAtFaults("low", {"low (A)": Part("low", "", (recipe,), (1,), "0-9", ())}),
+        PullToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
+    ]  # fmt: skip
+    assert {type(command) for command in samples} == set(COMMANDS.values())
+    assert {command.text.template for command in samples} <= set(SENTENCES)
+
+
+@given(numbers=st.lists(st.integers(0, 1000), unique=True))
+def test_numbers_come_back_from_their_runs(numbers):
+    ascending = np.sort(np.array(numbers, int))
+    assert np.array_equal(indices(runs(ascending)), ascending)
+
+
+def test_a_row_names_one_point():
+    points = site().horizons["low"]
+    for index in range(len(points)):
+        row = Row.of(points, index)
+        assert row.find(points) == index
+    assert Row("a.csv", 4, 1).find(points) == 3
+    assert Row("a.csv", 4, 2).find(points) is None
+    assert Row("b.csv", 4).find(points) is None
+
+
+def test_excluded_rows_take_no_part():
+    opened = document()
+    heard = []
+    opened.points_changed.connect(heard.append)
+    command = ExcludeRow("low", Row("a.csv", 4, 1))
+    command.redo(opened)
+    assert heard == ["low"]
+    assert len(opened.points("low")) == 35
+    assert opened.points("low") is opened.points("low")
+    assert opened.site_in_use().horizons["low"] is opened.points("low")
+    assert opened.site_in_use() is opened.site_in_use()
+    with pytest.raises(DocumentError, match="already"):
+        ExcludeRow("low", Row("a.csv", 4, 1)).redo(opened)
+    with pytest.raises(DocumentError, match=r"no horizon 'mid'.*up, low"):
+        ExcludeRow("mid", Row("a.csv", 4, 1)).redo(opened)
+    IncludeRow("low", Row("a.csv", 4, 1)).redo(opened)
+    assert len(opened.points("low")) == 36
+
+
+def test_results_go_stale_and_come_back():
+    opened = document()
+    recipe = opened.recipe("low")
+    surface = make(recipe, opened.given_for(recipe))
+    opened.put(recipe, surface)
+    assert opened.surface("low") is None
+    fit = SetSurface(recipe)
+    fit.redo(opened)
+    assert opened.surface("low") is surface
+    assert not opened.stale("low")
+    assert opened.dirty
+    other = SetSettings("low", FitSettings(epsilon=0.1))
+    other.redo(opened)
+    assert opened.stale("low")
+    other.undo(opened)
+    assert not opened.stale("low")
+    PullToPoint("low", 3, 1.0).redo(opened)
+    # Changed by hand: not stale, but not made yet.
+    assert not opened.stale("low")
+    assert opened.surface("low") is None
+    (missing,) = opened.missing()
+    assert missing.edits == (Pull(3, 1.0),)
+    changed = replace(opened.site, horizons={"low": opened.site.horizons["low"][1:]})
+    opened.open(changed, None, opened.state)
+    assert opened.stale("low")
+    assert opened.missing() == ()
+    assert opened.lost() == ("low",)
+
+
+def test_the_fingerprint_sees_whatever_a_fit_depends_on():
+    empty, points = Site("", {}), site().horizons["low"]
+    area = np.array([[0.0, 0], [1, 0], [1, 1]])
+    changed = [
+        points.with_(xyz=points.xyz + np.array([0, 0, 1e-9])), points.with_(accuracy=0.1), points.with_(section="S"),
+        points.with_(kind="adit"), points.with_(hole="B1"), points[1:],
+    ]  # fmt: skip
+    ground = Ground(np.arange(2.0), np.arange(2.0), np.zeros((2, 2)))
+    nothing, none = np.zeros(1), np.zeros(1, np.int64)
+    dips = Orientations(np.zeros((1, 3)), nothing, nothing, np.array(["low"]), np.array(["d.csv"]), none)
+    around = [replace(empty, boundary=area), replace(empty, ground=ground), replace(empty, orientations=dips)]
+    prints = [fingerprint(points, one) for one in (empty, *around)] + [fingerprint(one, empty) for one in changed]
+    assert len(set(prints)) == len(prints)
+    assert fingerprint(site().horizons["low"], empty) == prints[0]
+
+
+def test_the_shelf_stays_within_its_bounds(monkeypatch):
+    monkeypatch.setattr(shelf_module, "SPARE", 3)
+    opened = document()
+    surface = make(opened.recipe("low"), opened.given_for(opened.recipe("low")))
+    shelf = Shelf()
+    made = [replace(opened.recipe("low"), given=str(k)) for k in range(8)]
+    for recipe in made:
+        shelf.put(recipe, surface, {made[0]})
+    assert len(shelf) == 5  # on show, just made, and three more
+    assert shelf.surface(made[0]) is surface
+    assert shelf.surface(made[1]) is None
+    monkeypatch.setattr(shelf_module, "SPARE_POINTS", 40)
+    shelf.put(made[1], surface, {made[0]})
+    assert len(shelf) == 3
+
+
+def test_a_signal_calls_in_order_and_stops():
+    heard = []
+    signal: Signal[[int]] = Signal()
+    first = signal.connect
+    first(lambda n: heard.append(("a", n)))
+    signal.connect(heard.append)
+    signal.emit(1)
+    signal.disconnect(heard.append)
+    signal.emit(2)
+    assert heard == [("a", 1), 1, ("a", 2)]
+    with pytest.raises(ValueError, match="not in list"):
+        signal.disconnect(print)
+
+
+def test_errors_of_the_document_are_geofits():
+    assert issubclass(DocumentError, GeofitError)
+    with pytest.raises(DocumentError, match="not done yet"):
+        RenameSite("a").undo(document())
+    with pytest.raises(DocumentError, match="no surface to adjust"):
+        AdjustControlPoint("low", "core", 0, 0, 1.0).redo(document())
+    with pytest.raises(DocumentError, match="each horizon once"):
+        SetOrder(("up", "up")).redo(document())
+    with pytest.raises(DocumentError, match="empty"):
+        RenameSite(" ").redo(document())
