@@ -8,9 +8,10 @@ import numpy as np
 
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.patch_surface import PatchSurface
 
 ORIGIN = np.array([5e5, 3.1e6, 400.0])
 
@@ -73,7 +74,7 @@ def horizon(patches, points=None, core=None, name="T1", outline=None, seam="tang
     core = np.zeros(len(points), bool) if core is None else core
     outline = None if outline is None else np.asarray(outline, float) + ORIGIN[:2]
     settings = FitSettings(seam=seam)
-    return HorizonSurface(tuple(patches), ORIGIN, points, settings, name, outline=outline, core=core)
+    return HorizonFit(PatchSurface(tuple(patches), ORIGIN, name, outline), points, settings, name, core=core)
 
 
 def nine():

@@ -16,7 +16,7 @@ from geofit.cad.faces import placement
 from geofit.cad.sewing import shell
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 __all__ = ["write_brep", "write_iges"]
 
@@ -24,7 +24,7 @@ __all__ = ["write_brep", "write_iges"]
 DATE = "20000101.000000"
 
 
-def write_brep(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> None:
+def write_brep(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> None:
     """Write horizons as one compound of shells, in order; the format holds no names.
 
     The geometry stays about each horizon's origin, which is the shell's placement.
@@ -49,7 +49,7 @@ def write_brep(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]
             raise InputError("OpenCASCADE cannot write the file", "Check the folder and the disk.", file=str(path))
 
 
-def write_iges(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> None:
+def write_iges(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> None:
     """Write horizons as trimmed NURBS surfaces (entity 144), each with its horizon's name (entity 406-15).
 
     Raises
@@ -132,7 +132,7 @@ def _label(model: Any, name: str, first: int) -> None:
             entity.AddProperty(title)
 
 
-def _given(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> Mapping[str, HorizonSurface]:
+def _given(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> Mapping[str, Surface]:
     if not surfaces:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
     return surfaces

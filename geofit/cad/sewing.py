@@ -17,7 +17,7 @@ from geofit.data.messages import listed, said
 from geofit.geometry.seams import seams
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 if TYPE_CHECKING:
     from cadquery import Shell
@@ -33,7 +33,7 @@ SEWING = 1e-7
 TRIM = 1e-6
 
 
-def to_shape(surface: HorizonSurface) -> Shell:
+def to_shape(surface: Surface) -> Shell:
     """Return the patches as one sewn cadquery shell in map coordinates, trimmed to the outline.
 
     The geometry stays about the surface's local origin, which is carried as the shell's placement: the
@@ -50,7 +50,7 @@ def to_shape(surface: HorizonSurface) -> Shell:
     return cadquery.Shell(shell(surface).Located(placement(surface.origin)))
 
 
-def shell(surface: HorizonSurface) -> Any:
+def shell(surface: Surface) -> Any:
     """Return the sewn TopoDS_Shell in local coordinates; errors as :func:`to_shape`."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
     from OCP.BRepCheck import BRepCheck_Analyzer
@@ -116,8 +116,8 @@ def _shell_of(face: Any) -> Any:
     return result
 
 
-def _why_loose(surface: HorizonSurface, shells: int) -> str:
-    open_seams = [seam for seam in seams(surface) if seam.gap > SEWING]
+def _why_loose(surface: Surface, shells: int) -> str:
+    open_seams = [seam for seam in seams(surface.patches) if seam.gap > SEWING]
     if open_seams:
         places = listed(
             said("{first} and {second} gape by {gap:.3g} m", first=s.first, second=s.second, gap=s.gap)
@@ -139,7 +139,7 @@ def _why_loose(surface: HorizonSurface, shells: int) -> str:
     )
 
 
-def one_surface(surface: HorizonSurface) -> Patch:
+def one_surface(surface: Surface) -> Patch:
     """Merge patches that make a tensor grid into one B-spline surface, for tools that want a single one.
 
     The seams keep the smoothness they have: a tangent seam becomes a knot of multiplicity degree - 1 (C1), a

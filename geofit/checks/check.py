@@ -18,7 +18,7 @@ from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Seam
 from geofit.data.messages import said
 from geofit.geometry.projection import Projection, project
 from geofit.geometry.seams import seams
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["check", "sigma"]
 
@@ -44,7 +44,7 @@ def sigma(residuals: Floats) -> float:
 
 
 def check(
-    surface: HorizonSurface,
+    surface: FittedSurface,
     conflicts: Sequence[Conflict] = (),
     notes: Sequence[str] = (),
     *,
@@ -54,7 +54,7 @@ def check(
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : FittedSurface
         The fit; its ``core`` marks the points that it must meet exactly. Without patches (triangles of a file) the
         surface itself is not looked at.
     conflicts : sequence of Conflict
@@ -125,7 +125,7 @@ def _worst(magnitude: Floats) -> tuple[int, ...]:
     return tuple(some[np.argsort(-magnitude[some], kind="stable")[:WORST]].tolist())
 
 
-def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool_]) -> list[Check]:
+def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_]) -> list[Check]:
     """Ask whether the core's points are on the surface, and the other ones within the interior tolerance."""
     checks, tolerance = [], surface.settings.interior_tolerance
     if exact.any():
@@ -143,7 +143,7 @@ def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool
     return checks
 
 
-def _seam_checks(surface: HorizonSurface, found: tuple[Seam, ...]) -> list[Check]:
+def _seam_checks(surface: FittedSurface, found: tuple[Seam, ...]) -> list[Check]:
     if not found:
         return []
     gap, angle = max(seam.gap for seam in found), max(seam.angle for seam in found)
@@ -158,7 +158,7 @@ def _seam_checks(surface: HorizonSurface, found: tuple[Seam, ...]) -> list[Check
 
 
 def _residual_checks(
-    surface: HorizonSurface, d: Floats, patch: NDArray[np.str_], loose: NDArray[np.bool_]
+    surface: FittedSurface, d: Floats, patch: NDArray[np.str_], loose: NDArray[np.bool_]
 ) -> list[Check]:
     """Test the residuals of the approximated points: a core's are zero by construction."""
     if not loose.any():
@@ -168,7 +168,7 @@ def _residual_checks(
     return residual_checks(xyz, d[some], patch[some], surface.settings.interior_tolerance)
 
 
-def _surface_checks(surface: HorizonSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:
+def _surface_checks(surface: FittedSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:
     """Look at the surface itself, at and between its points."""
     if not surface.patches:
         return []

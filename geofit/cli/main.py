@@ -239,8 +239,8 @@ def check(
     as_json: _Json = False,
 ) -> int:
     """Measure points against the surface in a CAD file or GOCAD TSurf, ours or any other."""
-    from geofit.checks.imported import check_given
     from geofit.data.accuracy import plain
+    from geofit.fitting.judge import judge
     from geofit.io.surface_files import read_surface_file
     from geofit.report.result import HorizonResult
 
@@ -259,7 +259,7 @@ def check(
     print_counts(site.counts)
     name, found = _pick("horizon", site.horizons, horizon, points)
     _, shape = _pick("surface", read_surface_file(surface), name if horizon else None, surface)
-    result = HorizonResult(check_given(shape, found, settings, name), site)
+    result = HorizonResult(judge(shape, found, settings, name), site)
     if out is not None:
         from geofit.data.files import file_stems
         from geofit.report.tables import write_residuals
@@ -421,9 +421,11 @@ def gui(
     file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="site.toml or project.geofit to open.")] = None,
 ) -> int:
     """Open the desktop application. Exit code 2: it cannot start, and what is missing is said."""
-    from geofit.gui.app import start
+    from importlib.metadata import entry_points
 
-    return start(file)
+    # The windows are found by their entry point: no module of a lower floor imports them.
+    window = next(iter(entry_points(group="gui_scripts", name="geofit-gui")))
+    return int(window.load()([] if file is None else [str(file)]))
 
 
 def _span(values: Any) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Accuracy", "Check", "Conflict", "Group", "ReadBack", "Seam", "plain"]
+__all__ = ["Accuracy", "Check", "Conflict", "Group", "Partition", "ReadBack", "Seam", "plain"]
 
 Floats = NDArray[np.float64]
 
@@ -59,6 +59,20 @@ class Conflict:
     dropped: int
     difference: float
     text: str
+
+
+@dataclass(frozen=True)
+class Partition:
+    """How the points were split into core and periphery, and why (paper, sec. 3.2; fig. 3a).
+
+    ``corners`` are the core's four corners in map coordinates (None without a core), ``core`` and
+    ``periphery`` count points, ``reason`` says in words what was chosen.
+    """
+
+    corners: tuple[tuple[float, float], ...] | None
+    core: int
+    periphery: int
+    reason: str
 
 
 @dataclass(frozen=True, eq=False)

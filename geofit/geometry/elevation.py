@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.geometry.cells import Cells, Place, descend, tabulate
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -27,28 +27,32 @@ RIM = 1e-9
 PAIRED = 50_000
 
 
-def elevation(surface: HorizonSurface, x: ArrayLike, y: ArrayLike) -> Floats:
-    """Return the height of a surface at map coordinates.
+def elevation(patches: Sequence[Patch], origin: Floats, outline: Floats | None, x: ArrayLike, y: ArrayLike) -> Floats:
+    """Return the height of patches at map coordinates.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    patches : sequence of Patch
         Any patches. Height fields, whose x and y follow the parameters (control points at the Greville
         abscissae), are found from their control points and answered directly; other patches by search.
+    origin : (3,) array
+        Offset that turns the patches' coordinates into map coordinates, metres.
+    outline : (k, 2) array or None
+        Plan polygon in map coordinates that ends the surface.
     x, y : array_like
         Easting and northing, metres; they broadcast.
 
     Returns
     -------
     array
-        Elevation in metres; nan outside all patches or outside ``surface.outline``. The boundary is inside.
+        Elevation in metres; nan outside all patches or outside the outline. The boundary is inside.
         Where the surface stands over a place more than once, the highest.
     """
     x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-    plan = np.stack([x.ravel() - surface.origin[0], y.ravel() - surface.origin[1]])
+    plan = np.stack([x.ravel() - origin[0], y.ravel() - origin[1]])
     height = np.full(plan.shape[1], -np.inf)
     folded: list[Patch] = []
-    for patch in surface.patches:
+    for patch in patches:
         mapping = plan_map(patch)
         if mapping is None:
             folded.append(patch)
@@ -57,10 +61,10 @@ def elevation(surface: HorizonSurface, x: ArrayLike, y: ArrayLike) -> Floats:
     if folded:
         _over_folds(tuple(folded), plan, height)
     height[np.isneginf(height)] = np.nan
-    if surface.outline is not None:
+    if outline is not None:
         known = np.flatnonzero(np.isfinite(height))
-        height[known[~_inside(surface.outline - surface.origin[:2], plan[:, known])]] = np.nan
-    return np.asarray((height + surface.origin[2]).reshape(x.shape))
+        height[known[~_inside(outline - origin[:2], plan[:, known])]] = np.nan
+    return np.asarray((height + origin[2]).reshape(x.shape))
 
 
 class Plan:

@@ -43,7 +43,8 @@ class Projection:
     """Nearest places of a surface to n points.
 
     ``distance`` (n,) metres, signed: positive on the upper side. ``foot`` (n, 3) metres, ``patch`` (n,) index
-    of the patch, ``u``, ``v`` (n,) its parameters, ``converged`` (n,) bool.
+    of the patch, ``u``, ``v`` (n,) its parameters (nan on triangles), ``converged`` (n,) bool. ``beyond`` (n,): the
+    foot point is on the rim and the point lies beyond the edge; None where that was not looked at.
     """
 
     distance: Floats
@@ -52,6 +53,7 @@ class Projection:
     u: Floats
     v: Floats
     converged: Bools
+    beyond: Bools | None = None
 
     @classmethod
     def unknown(cls, n: int) -> Projection:
@@ -61,7 +63,8 @@ class Projection:
     def fill(self, rows: Ints, other: Projection) -> None:
         """Write what was found for some of the points."""
         for name, values in vars(other).items():
-            getattr(self, name)[rows] = values
+            if values is not None:
+                getattr(self, name)[rows] = values
 
 
 def feet_over_plan(patches: Sequence[Patch], target: Floats) -> Projection:

@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from geofit.geometry.cells import Cells, Place, descend, tabulate
-from geofit.geometry.elevation import elevation, plan_map
+from geofit.geometry.elevation import plan_map
 from geofit.geometry.foot_points import Projection, feet_over_plan
 from geofit.splines.patch import Patch
 
-__all__ = ["Projection", "elevation", "project"]
+__all__ = ["Projection", "project"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -164,7 +164,7 @@ def _horizon(result: HorizonResult) -> HorizonReport:
         grid_points=storage.grid_points if storage else None,
         equal_accuracy=storage.tolerance if storage else None,
         settings=tuple((key, _word(value)) for key, value in asdict(settings).items()),
-        fit=tuple((k, _word(v)) for k, v in surface.fit.items() if isinstance(v, bool | int | float | str)),
+        fit=tuple((k, _word(v)) for k, v in surface.diagnostics.items() if isinstance(v, bool | int | float | str)),
         pictures=tuple((what, picture_name(what, result.name)) for what in shown),
     )
 

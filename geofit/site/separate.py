@@ -20,11 +20,11 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import Said, said
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.site.height_field import Relief
 from geofit.site.order import require_sequence
 from geofit.site.overlap import Overlap
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Contradiction", "Repair", "repair"]
 
@@ -74,17 +74,17 @@ class Contradiction:
 class Repair:
     """Surfaces after a repair, by name; ``moved`` says by how many metres each was moved at most."""
 
-    surfaces: Mapping[str, HorizonSurface]
+    surfaces: Mapping[str, HorizonFit]
     moved: Mapping[str, float]
     contradictions: tuple[Contradiction, ...]
 
 
-def repair(surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str], minimum: float = 0.0) -> Repair:
+def repair(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], minimum: float = 0.0) -> Repair:
     """Push horizons of a sequence apart until each is at least ``minimum`` metres above the next.
 
     Parameters
     ----------
-    surfaces : mapping of str to HorizonSurface
+    surfaces : mapping of str to HorizonFit
         Fitted surfaces by name; those that the sequence does not name are handed on as they are.
     sequence : sequence of str
         Names from the top to the bottom.
@@ -124,7 +124,7 @@ def repair(surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str], mini
 class _Layer:
     """One horizon of the stack: its control net, its exact points, and the change so far."""
 
-    def __init__(self, surface: HorizonSurface) -> None:
+    def __init__(self, surface: HorizonFit) -> None:
         if surface.model is None or surface.model.problem.chart.frame.kind != "map":
             text = said(
                 "'{name}' has no control net over the map: it was read from a file, or is no height field. Fit it "
@@ -157,7 +157,7 @@ class _Layer:
         away = np.linalg.norm(points.xyz[self.exact, :2] - (x, y), axis=1)
         return points.describe(int(self.exact[away.argmin()]))
 
-    def as_moved(self, lift: float) -> HorizonSurface:
+    def as_moved(self, lift: float) -> HorizonFit:
         """Return the surface as moved so far and lifted, unchecked."""
         return self.surface.with_(patches=self.moved().patches(), origin=self.surface.origin + np.array([0, 0, lift]))
 
@@ -167,13 +167,13 @@ class _Layer:
         coefficients = np.where(self.change == 0, net.coefficients, net.coefficients + self.change)
         return self.model.with_net(replace(net, coefficients=coefficients))
 
-    def moved_surface(self) -> HorizonSurface:
+    def moved_surface(self) -> HorizonFit:
         """Return the checked surface of the control points moved; it says that it was."""
-        new, old = self.moved().surface(), self.surface
+        new = self.surface.refitted(self.moved())
         assert new.accuracy is not None
         note = said("moved by up to {most:.3f} m to keep the order of strata", most=float(np.abs(self.change).max()))
         accuracy = replace(new.accuracy, notes=(*new.accuracy.notes, note))
-        return new.with_(accuracy=accuracy, fit={**old.fit, **new.fit})
+        return new.with_(accuracy=accuracy)
 
 
 class _Stack:

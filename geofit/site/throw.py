@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.messages import Said, said
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.fault import BEYOND_TRACE, HALVINGS, Fault, longer, size
 from geofit.site.height_field import Relief
-from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -61,13 +61,13 @@ class FaultCut:
 
 
 def throws(
-    blocks: Mapping[Sides, HorizonSurface], faults: Sequence[Fault], horizon: str, area: Polygon
+    blocks: Mapping[Sides, HorizonFit], faults: Sequence[Fault], horizon: str, area: Polygon
 ) -> tuple[FaultCut, ...]:
     """Return what each fault displaces between every two blocks that it alone parts.
 
     Parameters
     ----------
-    blocks : mapping of tuple of int to HorizonSurface
+    blocks : mapping of tuple of int to HorizonFit
         Surfaces of one horizon by their side of each of ``faults``; they reach somewhat beyond their outlines.
     faults : sequence of Fault
         All that cut the horizon.
