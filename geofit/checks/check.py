@@ -15,6 +15,7 @@ from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
 from geofit.checks.trend import trend
 from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Seam
+from geofit.data.labels import Labels
 from geofit.data.messages import said
 from geofit.geometry.projection import Projection, project
 from geofit.geometry.seams import seams
@@ -68,8 +69,7 @@ def check(
     if projection is None:
         projection = project(surface.patches, points.xyz - surface.origin)
     d = projection.distance
-    names = np.array([patch.name for patch in surface.patches] or [surface.name])
-    patch = names[projection.patch] if len(d) else np.empty(0, dtype=names.dtype)
+    patch = Labels(projection.patch.astype(np.int32), tuple(one.name for one in surface.patches) or (surface.name,))
     found = seams(surface.patches)
     value = sigma(d)
     magnitude = np.abs(d)
@@ -96,11 +96,11 @@ def check(
         max_abs=float(magnitude.max(initial=0.0)),
         mean=float(d.mean()) if len(d) else 0.0,
         residuals=d,
-        patch=patch,
+        patch=patch.words(),
         by_patch=_groups(d, patch),
-        by_kind=_groups(d, points.kind),
-        by_hole=_groups(d, points.hole),
-        by_section=_groups(d, points.section),
+        by_kind=_groups(d, points.labels["kind"]),
+        by_hole=_groups(d, points.labels["hole"]),
+        by_section=_groups(d, points.labels["section"]),
         over=over,
         worst=_worst(magnitude),
         seams=found,
@@ -110,7 +110,7 @@ def check(
     )
 
 
-def _groups(d: Floats, labels: NDArray[np.str_]) -> dict[str, Group]:
+def _groups(d: Floats, labels: Labels) -> dict[str, Group]:
     return {
         label: Group(len(part), sigma(part), float(np.abs(part).max()), float(part.mean()))
         for label, part in by_label(d, labels).items()
@@ -157,9 +157,7 @@ def _seam_checks(surface: FittedSurface, found: tuple[Seam, ...]) -> list[Check]
     ]
 
 
-def _residual_checks(
-    surface: FittedSurface, d: Floats, patch: NDArray[np.str_], loose: NDArray[np.bool_]
-) -> list[Check]:
+def _residual_checks(surface: FittedSurface, d: Floats, patch: Labels, loose: NDArray[np.bool_]) -> list[Check]:
     """Test the residuals of the approximated points: a core's are zero by construction."""
     if not loose.any():
         return []
