@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -39,6 +40,12 @@ def fold(nu=40, nv=12):
     x = 100 * u + 120 * np.sin(2 * np.pi * u) + 0.05 * y
     z = 200 * u + 5 * np.sin(y / 60)
     return Patch("limb", (3, 3), ku, kv, np.stack([x, y, z], axis=-1))
+
+
+def lifted(patch, z, name=None):
+    """The patch with other heights of its control points."""
+    control = np.concatenate([patch.control[..., :2], np.asarray(z)[..., None]], axis=-1)
+    return replace(patch, control=control, name=patch.name if name is None else name)
 
 
 def split(patch, cuts_u, cuts_v):

@@ -11,7 +11,7 @@ from geofit.geometry.elevation import elevation
 from geofit.geometry.mesh import Mesh, triangulate, trim_to_outline
 from geofit.geometry.projection import Projection, project
 from geofit.geometry.trim_loops import Loops
-from geofit.splines.patch import Patch
+from geofit.splines.patch import Patch, Patches
 
 __all__ = ["PatchSurface"]
 
@@ -41,6 +41,9 @@ class PatchSurface:
     name: str = "surface"
     outline: Floats | None = None
     frame: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "patches", Patches.of(self.patches))
 
     @property
     def loops(self) -> Loops:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surfaces import ORIGIN, area, bored, fold, height_field, horizon, split
+from surfaces import ORIGIN, area, bored, fold, height_field, horizon, lifted, split
 
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -63,8 +63,9 @@ def failing(surface, points):
 @pytest.mark.parametrize("loops", [(WEST,), (ALL, EAST)], ids=["beside the face", "in a hole"])
 def test_a_fault_beyond_the_loops_is_none(fault, loops):
     patch = gentle()
-    broken = replace(patch, control=patch.control.copy())
-    fault(broken.control)
+    control = patch.control.copy()
+    fault(control)
+    broken = replace(patch, control=control)
     # Points that a fault would push away from the surface lie where it is whole.
     points = points_on(patch, np.array([[20, 20], [540, 680]]))
     assert failing(trimmed(patch, ALL), points) == set()
@@ -74,8 +75,9 @@ def test_a_fault_beyond_the_loops_is_none(fault, loops):
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_within_the_loops_is_found(fault):
     patch = gentle()
-    broken = replace(patch, control=patch.control.copy())
-    fault(broken.control)
+    control = patch.control.copy()
+    fault(control)
+    broken = replace(patch, control=control)
     points = points_on(patch, ALL)
     off = np.abs(trimmed(broken, ALL).distance(points.xyz)) < 1e-9
     points = points[off]
@@ -84,8 +86,8 @@ def test_a_fault_within_the_loops_is_found(fault):
 
 def test_a_surface_that_leaves_the_trend_beyond_its_loops():
     patch = gentle()
-    broken = replace(patch, control=patch.control.copy())
-    broken.control[..., 2] += np.maximum(broken.control[..., 0] - 620, 0) ** 2 / 1500
+    x, z = patch.control[..., 0], patch.control[..., 2]
+    broken = lifted(patch, z + np.maximum(x - 620, 0) ** 2 / 1500)
     points = points_on(patch, np.array([[20, 20], [540, 680]]))
     assert failing(trimmed(broken, WEST), points) == set()
     assert "trend" in failing(trimmed(broken, ALL), points)
@@ -93,9 +95,8 @@ def test_a_surface_that_leaves_the_trend_beyond_its_loops():
 
 def test_a_crossing_beyond_the_loops():
     patch = fold()
-    bent = patch.control[:, :, 2].copy()
-    crossed = replace(patch, control=patch.control.copy())
-    crossed.control[:, :, 2] = np.where(patch.control[:, :, 2] > 100, 200 - bent, bent)
+    z = patch.control[..., 2]
+    crossed = lifted(patch, np.where(z > 100, 200 - z, z))
     low = np.array([[0, 5], [0.3, 5], [0.3, 295], [0, 295]])
     points = PointSet(np.empty((0, 3)))
     assert "self-intersection" not in failing(trimmed(crossed, low), points)
@@ -105,8 +106,9 @@ def test_a_crossing_beyond_the_loops():
 
 def test_a_collapsed_edge_beyond_the_loops():
     patch = gentle()
-    broken = replace(patch, control=patch.control.copy())
-    broken.control[-1] = broken.control[-1, 0]
+    control = patch.control.copy()
+    control[-1] = control[-1, 0]
+    broken = replace(patch, control=control)
     points = points_on(patch, np.array([[20, 20], [540, 680]]))
     assert failing(trimmed(broken, WEST), points) == set()
     touching = WEST + np.where(WEST > [500, 0], [440, 0], [0, 0])
@@ -127,10 +129,9 @@ def test_a_plane_of_one_span_is_asked_inside_a_small_loop():
 def overlapping():
     """Two faces that meet at x = 500, each on a patch of its own that reaches on, 30 m too high, over the other."""
     whole = gentle()
-    left, right = (replace(whole, control=whole.control.copy(), name=name) for name in ("left", "right"))
-    x = whole.control[..., 0]
-    left.control[..., 2] += 30 * np.clip((x - 620) / 100, 0, 1)
-    right.control[..., 2] += 30 * np.clip((380 - x) / 100, 0, 1)
+    x, z = whole.control[..., 0], whole.control[..., 2]
+    left = lifted(whole, z + 30 * np.clip((x - 620) / 100, 0, 1), "left")
+    right = lifted(whole, z + 30 * np.clip((380 - x) / 100, 0, 1), "right")
     halves = [np.array([[a, 10], [b, 10], [b, 690], [a, 690]], float) for a, b in ((10, 500), (500, 990))]
     bare = horizon([left, right], outline=ALL)
     faces = TrimmedSurface(bare.patches, ORIGIN, outline=bare.outline, trim_loops=((halves[0],), (halves[1],)))

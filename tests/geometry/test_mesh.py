@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from surfaces import ORIGIN, fold, height_field, horizon, nine, wave
@@ -104,8 +106,9 @@ def test_every_limb_of_a_fold_is_trimmed():
 def test_a_vertical_surface_is_trimmed():
     """A wall over the line y = 100: the plan of its triangles has no area."""
     wall = height_field(z=lambda x, y: wave(x, y))
-    wall = type(wall)(wall.name, wall.degree, wall.knots_u, wall.knots_v, wall.control[..., [0, 2, 1]])
-    wall.control[..., 1] = 100.0
+    control = wall.control[..., [0, 2, 1]]
+    control[..., 1] = 100.0
+    wall = replace(wall, control=control)
     mesh = horizon([wall], outline=[[100, 0], [400, 0], [400, 200], [100, 200]]).triangulate(0.5)
     x, z = mesh.points[:, 0], mesh.points[:, 2]
     assert (x.min(), x.max()) == pytest.approx((100, 400), abs=1e-6)
