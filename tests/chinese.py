@@ -31,7 +31,7 @@ TOLD = {
     "progress": slice(0, 1),
 }
 #: The command line speaks English, and so does what is said before a window is open.
-ENGLISH = ("cli.py", "app.py", "ready.py", "opengl.py")
+ENGLISH = ("app.py", "ready.py", "opengl.py")
 
 #: Keys, file names and code: quoted, in brackets, or with a sign that prose does not have.
 _TOKENS = re.compile(r"“[^”]*”|\[\[?\w+\]?\]|\{[^}]*\}|\S*[=_./]\S*")
@@ -53,7 +53,7 @@ def literals(folders: Iterable[str], told: Mapping[str, slice] = TOLD) -> dict[s
         tree = ast.parse(path.read_text(encoding="utf-8"))
         variables = _assigned(tree)
         for node in ast.walk(tree):
-            if not isinstance(node, ast.Call) or path.name in ENGLISH:
+            if not isinstance(node, ast.Call) or path.name in ENGLISH or path.parent.name == "cli":
                 continue
             name = node.func.attr if isinstance(node.func, ast.Attribute) else getattr(node.func, "id", "")
             given: list[ast.expr] = []

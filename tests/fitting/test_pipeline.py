@@ -15,7 +15,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.sample import horizon_truth
 from geofit.sample.truth import HORIZONS
 
-SITE = Path(__file__).parent.parent / "sample_data" / "site.toml"
+SITE = Path(__file__).parents[2] / "sample_data" / "site.toml"
 SEEDS = range(12)
 
 
