@@ -241,7 +241,7 @@ def check(
     """Measure points against the surface in a CAD file or GOCAD TSurf, ours or any other."""
     from geofit.data.accuracy import plain
     from geofit.fitting.judge import judge
-    from geofit.io.surface_files import read_surface_file
+    from geofit.io.surface_files import read_surfaces
     from geofit.report.result import HorizonResult
 
     settings = _settings({"epsilon": epsilon})
@@ -258,7 +258,7 @@ def check(
     print_issues(site.issues)
     print_counts(site.counts)
     name, found = _pick("horizon", site.horizons, horizon, points)
-    _, shape = _pick("surface", read_surface_file(surface), name if horizon else None, surface)
+    _, shape = _pick("surface", read_surfaces(surface), name if horizon else None, surface)
     result = HorizonResult(judge(shape, found, settings, name), site)
     if out is not None:
         from geofit.data.files import file_stems
@@ -362,13 +362,19 @@ def export(
     as_json: _Json = False,
 ) -> int:
     """Write horizons in other formats."""
-    from geofit.project.export import Request, read_surfaces, uncut
-    from geofit.project.export import export as write
+    from geofit.io.export.write import untrimmed, write_surface
+    from geofit.io.surface_files import read_surfaces
 
     site = None if points is None else _read(points, {}, None)
     if site is not None:
         print_issues(site.issues)
-    request = Request(
+    given = read_surfaces(surfaces)
+    for sentence in untrimmed(given, to):
+        say(sentence)
+    files = write_surface(
+        given,
+        out,
+        format=to,
         tolerance=tolerance,
         interval=interval,
         cell=cell,
@@ -378,10 +384,6 @@ def export(
         site=site.name if site else surfaces[0].stem,
         crs=crs if crs is not None else site.crs if site else "",
     )
-    given = read_surfaces(surfaces)
-    for sentence in uncut(given, to):
-        say(sentence)
-    files = write(given, to, out, request)
     if as_json:
         print_json({"files": [str(file) for file in files]})
     else:
@@ -399,8 +401,9 @@ def section(
     as_json: _Json = False,
 ) -> int:
     """Cut every horizon along a line: drawing (DXF), table (CSV) and picture (PNG)."""
-    from geofit.project.export import read_line, read_surfaces
-    from geofit.project.export import section as cut
+    from geofit.io.surface_files import read_surfaces
+    from geofit.project.section import read_line
+    from geofit.project.section import section as cut
 
     given = read_surfaces(surfaces)
     cuts, files = cut(given, read_line(line), out, tolerance)

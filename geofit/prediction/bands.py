@@ -22,7 +22,7 @@ from geofit.fitting.posterior import Posterior, posterior
 from geofit.geometry.clip import inside
 from geofit.splines import bspline
 
-__all__ = ["Grid", "Spread", "band", "grid_over", "sd_at", "uncertainty_on"]
+__all__ = ["Grid", "Spread", "band", "grid_over", "prediction_sd", "uncertainty_on"]
 
 Floats = NDArray[np.float64]
 
@@ -115,7 +115,7 @@ def uncertainty_on(grid: Grid, spread: Spread) -> Uncertainty:
     )  # fmt: skip
 
 
-def sd_at(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike) -> Floats:
+def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike) -> Floats:
     """Return the standard deviation of a surface at (n, 3) map coordinates on it (or (n, 2) of a map frame), metres.
 
     The posterior is evaluated at each place; the local factor is that of the nearest node of the grid.

@@ -16,8 +16,8 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
 from geofit.site.fault_blocks import fit_blocks
-from geofit.site.order import Order, order_of
-from geofit.site.separate import Contradiction, repair
+from geofit.site.order import Order, compare_horizons
+from geofit.site.separate import Contradiction, separate_horizons
 from geofit.site.site_checks import check_surroundings
 from geofit.site.throw import FaultCut
 
@@ -66,7 +66,7 @@ def fit_site(
     progress : callable, optional
         Called as ``progress("horizon: stage", fraction)``.
     apart : bool
-        Whether horizons of ``site.order`` that cross are pushed apart (:func:`geofit.site.separate.repair`).
+        Whether horizons of ``site.order`` that cross are pushed apart (:func:`geofit.site.separate.separate_horizons`).
 
     Raises
     ------
@@ -175,7 +175,7 @@ def _push_apart(site: Site, found: SiteFit) -> None:
         found.warnings += (said("no repair: the order of the site names no two fitted horizons without a fault"),)
         return
     try:
-        done = repair(found.surfaces, sequence)
+        done = separate_horizons(found.surfaces, sequence)
     except SettingsError as error:
         found.warnings += (said("no repair: {reason}", reason=error.args[0]),)
         return
@@ -199,7 +199,7 @@ def compare(site: Site, found: SiteFit) -> tuple[Order, ...]:
         for b in lower
         if _same_side(site, found, a, b)
     ]
-    return tuple(order_of(upper, lower, site.ground) for upper, lower in pairs)
+    return tuple(compare_horizons(upper, lower, site.ground) for upper, lower in pairs)
 
 
 def _same_side(site: Site, found: SiteFit, a: str, b: str) -> bool:

@@ -17,7 +17,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.height_field import Relief
 from geofit.site.overlap import Crossing, Overlap
 
-__all__ = ["Order", "order_of", "orders", "require_sequence", "thickness"]
+__all__ = ["Order", "compare_horizons", "orders", "require_sequence", "thickness"]
 
 Floats = NDArray[np.float64]
 
@@ -110,7 +110,7 @@ def orders(
     return tuple(_compare(upper, lower, ground) for upper, lower in combinations(reliefs, 2))
 
 
-def order_of(upper: HorizonFit, lower: HorizonFit, ground: Ground | None = None) -> Order:
+def compare_horizons(upper: HorizonFit, lower: HorizonFit, ground: Ground | None = None) -> Order:
     """Compare two horizons; see :func:`orders`."""
     return _compare(Relief(upper), Relief(lower), ground)
 
