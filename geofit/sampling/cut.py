@@ -72,6 +72,15 @@ def cut_section(
     -------
     list of CutLine
         By distance. An overturned fold gives one line that turns back.
+
+    Raises
+    ------
+    SettingsError
+        If the line has fewer than two different corners.
+
+    Notes
+    -----
+    Lines are traced through the triangles, and their vertices moved along the surface into the curtain.
     """
     corners = section_line(line) - surface.origin[:2]
     mesh = surface.triangulate(tolerance) if mesh is None else mesh

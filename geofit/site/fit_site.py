@@ -44,10 +44,14 @@ class SiteFit:
     contradictions: tuple[Contradiction, ...] = ()
     warnings: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        parts = [f"{name} {fit.accuracy.verdict}" for name, fit in self.surfaces.items() if fit.accuracy is not None]
+        return f"<SiteFit: {', '.join([*parts, *(f'{name} not fitted' for name in self.failures)])}>"
+
 
 def fit_site(
     site: Site,
-    names: Sequence[str],
+    names: Sequence[str] = (),
     changes: Mapping[str, Any] | None = None,
     progress: Progress | None = None,
     *,
@@ -60,7 +64,7 @@ def fit_site(
     site : Site
         ``site.faults`` names the horizons that are fitted block by block.
     names : sequence of str
-        Horizons of the site.
+        Horizons of the site; empty: all.
     changes : mapping
         Settings that take the place of the site's.
     progress : callable, optional
@@ -68,11 +72,21 @@ def fit_site(
     apart : bool
         Whether horizons of ``site.order`` that cross are pushed apart (:func:`geofit.site.separate.separate_horizons`).
 
+    Returns
+    -------
+    SiteFit
+        Surfaces by name, and by horizon why one could not be fitted: a failure of one does not stop the others.
+
     Raises
     ------
     Cancelled
         If ``progress`` returned False.
+
+    Notes
+    -----
+    Each horizon as :func:`geofit.fit_horizon` does it; each block of a faulted one as :func:`geofit.fit_blocks`.
     """
+    names = tuple(names) or tuple(site.horizons)
     fits = _Fits(site, changes or {})
     found = SiteFit()
     for k, name in enumerate(names):

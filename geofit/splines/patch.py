@@ -39,6 +39,11 @@ class Patch:
     control: Floats
     weights: Floats | None = None
 
+    def __repr__(self) -> str:
+        (nu, nv), (p, q) = self.control.shape[:2], self.degree
+        rational = "" if self.weights is None else ", rational"
+        return f"<Patch {self.name}: {nu} x {nv} control points, degree {p} x {q}{rational}>"
+
     @property
     def domain(self) -> tuple[float, float, float, float]:
         """Parameter range (u0, u1, v0, v1)."""

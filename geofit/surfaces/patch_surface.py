@@ -42,6 +42,10 @@ class PatchSurface:
     outline: Floats | None = None
     frame: str = ""
 
+    def __repr__(self) -> str:
+        n = len(self.patches)
+        return f"<{type(self).__name__} {self.name}: {n} patch{'' if n == 1 else 'es'}>"
+
     @property
     def loops(self) -> Loops:
         """Trim loops of each patch: none."""
