@@ -37,9 +37,9 @@ bench: .venv/.installed-test
 docs: .venv/.installed-docs
 	rm -rf build/docs
 	$(PIP) install --quiet --no-deps --no-build-isolation --target build/docs/package .
-	$(BIN)/python tools/docs.py pages
+	$(BIN)/python tools/build_docs.py pages
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
-	$(BIN)/python tools/docs.py links
+	$(BIN)/python tools/build_docs.py links
 
 screenshots: .venv/.installed-test
 	$(BIN)/python tools/screenshots.py

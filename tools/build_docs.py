@@ -1,6 +1,6 @@
 """The pages of ``make docs``: the written ones, the gallery and the API reference; and a check of the built site.
 
-``python tools/docs.py pages`` fills ``build/docs/pages``; ``python tools/docs.py links`` checks ``build/docs/site``.
+``python tools/build_docs.py pages`` fills ``build/docs/pages``; ``... links`` checks ``build/docs/site``.
 """
 
 from __future__ import annotations
