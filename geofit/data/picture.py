@@ -70,11 +70,11 @@ def plan_svg(
         parts.append(f'<polygon points="{path}" fill="none" stroke="#5d6b7a"/>')
     for xy, colour in dots:
         some = np.unique(np.linspace(0, len(xy) - 1, min(len(xy), MOST)).round().astype(int))
-        colours = [colour] * len(xy) if isinstance(colour, str) else list(colour)
-        parts += [
-            f'<circle cx="{x:.1f}" cy="{y:.1f}" r="1.8" fill="{colours[k]}"/>'
-            for k, (x, y) in zip(some.tolist(), pixels(xy[some]), strict=True)
-        ]
+        place, colours = pixels(xy[some]), np.broadcast_to(np.asarray(colour), len(xy))[some]
+        for one in np.unique(colours):
+            # Dots as very short lines with round ends: a tenth of the text of as many circles.
+            path = "".join(f"M{x:.1f} {y:.1f}h.01" for x, y in place[colours == one])
+            parts.append(f'<path d="{path}" stroke="{one}" stroke-width="3.6" stroke-linecap="round"/>')
     return "".join([*parts, "</svg>"])
 
 

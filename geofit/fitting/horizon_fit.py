@@ -84,7 +84,7 @@ class HorizonFit:
                 "largest deviation": f"{a.max_abs:.3g} m",
                 "failed checks": failed or "none",
             }
-            colours = deviation_colours(a.residuals, self.settings.interior_tolerance, a.epsilon)
+            colours = deviation_colours(a.residuals, self.settings.boundary_tolerance, self.settings.interior_tolerance)
         outlines = [] if self.outline is None else [self.outline]
         return card(self.name, rows, plan_svg([(self.points.xyz[:, :2], colours)], outlines))
 
