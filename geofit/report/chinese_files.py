@@ -59,6 +59,7 @@ _TABLES = {
     "No format has the ending '{ending}'": "没有以“{ending}”结尾的格式",
     "Name the format, or give a file that ends in {names}.": "请指定格式，或给出以 {names} 结尾的文件。",
     "unit is '{unit}'; {format} files are in metres. Use STEP, or leave it out.": "unit 为“{unit}”；{format} 文件以米为单位。请用 STEP，或不指定单位。",
+    "{name}: its faces end at holes or curves that {format} does not represent: the file has whole patches": "{name}：其面止于孔洞或曲线，{format} 不能表示；文件包含完整曲面片",
     "There is no fit to report": "没有可报告的拟合",
     "Name one of them with table = ...": "请以 table = ... 指定其一。",
     "Name one of them.": "请指定其一。",

@@ -90,7 +90,7 @@ def write_surface(
     crs: str = "",
     interval: float | None = None,
     cell: float | None = None,
-    value: Literal["elevation", "deviation", "thickness"] = "elevation",
+    value: str = "elevation",
     points: Mapping[str, PointSet] | None = None,
     holes: Sequence[Hole] = (),
     site: str = "site",
@@ -236,7 +236,11 @@ def untrimmed(surfaces: Surfaces, format: str) -> list[str]:
     if _format(format).takes not in ("surfaces", "site"):
         return []
     return [
-        f"{name}: its faces end at holes or curves that {format} does not follow here; it holds the patches whole"
+        said(
+            "{name}: its faces end at holes or curves that {format} does not represent: the file has whole patches",
+            name=name,
+            format=format,
+        )
         for name, surface in surfaces.items()
         if any(surface.loops) and surface.outline is None
     ]
