@@ -22,9 +22,9 @@ plotter = pv.Plotter(off_screen=True, window_size=(1400, 900))
 colours = ("#5a91cf", "#b08a20", "#27784f", "#cf8275", "#9a4aa0")
 for (name, fit), colour in zip(fits.surfaces.items(), colours, strict=True):
     print(fit)
-    mesh = fit.triangulate(tolerance=1.0)
+    mesh, opacity = fit.triangulate(tolerance=1.0), 1.0 if name in ("F1", "M1") else 0.5
     drawn = pv.PolyData.from_regular_faces(mesh.xyz - origin, mesh.triangles)
-    plotter.add_mesh(drawn, color=colour, opacity=0.3 if name == "W" else 1.0, label=name, smooth_shading=True)
+    plotter.add_mesh(drawn, color=colour, opacity=opacity, label=name, smooth_shading=True)
 for hole in site.holes:
     plotter.add_mesh(pv.lines_from_points(hole.xyz - origin).tube(radius=4), color="black")
 plotter.add_legend(bcolor=None, face="rectangle", loc="lower right", size=(0.12, 0.2))
