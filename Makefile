@@ -1,4 +1,4 @@
-# make demo | report-demo | test | lint | real | bench | screenshots | package | clean.
+# make demo | report-demo | test | lint | real | bench | docs | screenshots | package | clean.
 # Python 3.11 or newer; everything goes into .venv.
 SHELL := /bin/sh
 # A name may stand on the path and still not run (version managers leave such shims), so each is tried.
@@ -9,7 +9,7 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint $(LOCK)
 
-.PHONY: demo report-demo test lint real bench screenshots package clean python
+.PHONY: demo report-demo test lint real bench docs screenshots package clean python
 
 demo: .venv/.installed
 	$(BIN)/geofit demo --out demo_out
@@ -34,6 +34,13 @@ real: .venv/.installed-test
 bench: .venv/.installed-test
 	@set -e; for script in benchmarks/fit.py benchmarks/distance.py; do $(BIN)/python $$script; done
 
+docs: .venv/.installed-docs
+	rm -rf build/docs
+	$(PIP) install --quiet --no-deps --no-build-isolation --target build/docs/package .
+	$(BIN)/python tools/build_docs.py pages
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
+	$(BIN)/python tools/build_docs.py links
+
 screenshots: .venv/.installed-test
 	$(BIN)/python tools/screenshots.py
 
@@ -45,7 +52,7 @@ package: .venv/.installed-test
 	$(BIN)/python packaging/try_package.py dist/geofit
 
 clean:
-	rm -rf .venv build dist demo_out report_demo real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
+	rm -rf .venv build dist demo_out examples_out report_demo real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
 
 python:
 	@echo $(PYTHON)
@@ -64,4 +71,8 @@ python:
 
 .venv/.installed-lint: .venv/.installed-test
 	$(INSTALL) --editable '.[lint]' 'setuptools>=77'
+	@touch $@
+
+.venv/.installed-docs: .venv/.installed
+	$(INSTALL) --editable '.[docs]' 'setuptools>=77'
 	@touch $@

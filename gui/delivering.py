@@ -17,8 +17,8 @@ from geofit.gui.activity import Activity
 from geofit.gui.preferences import Preferences
 from geofit.gui.showing import Showing
 from geofit.gui.workspace import Workspace
+from geofit.io.export.write import FORMATS
 from geofit.project.document import Document
-from geofit.project.export import FORMATS, Request
 from geofit.project.export_task import export_surfaces
 from geofit.project.step_files import StepFile
 from geofit.report.result import HorizonResult
@@ -27,8 +27,6 @@ __all__ = ["Delivering"]
 
 _LOG = logging.getLogger(__name__)
 
-#: File endings of the formats that are named otherwise.
-_ENDINGS = {"step": "step", "iges": "igs", "dxf-mesh": "dxf", "landxml": "xml", "tsurf": "ts", "tif": "tif"}
 #: Times the view's own size: an A4 page at 300 dots an inch from half a screen.
 PRINT_SCALE = 3
 
@@ -74,7 +72,7 @@ class Delivering(QObject):
         surfaces = self._surfaces()
         if not surfaces:
             return
-        filters = {f"{name} (*.{_ENDINGS.get(name, name)})": name for name in FORMATS if name != "step"}
+        filters = {f"{name} (*{FORMATS[name].endings[0]})": name for name in FORMATS if name != "step"}
         path, chosen = QFileDialog.getSaveFileName(
             self._window,
             self.tr("Export"),
@@ -85,17 +83,17 @@ class Delivering(QObject):
             to = filters[chosen]
             target = Path(path)
             if not target.suffix:
-                target = target.with_suffix(f".{_ENDINGS.get(to, to)}")
+                target = target.with_suffix(FORMATS[to].endings[0])
             self.write(to, target, surfaces)
 
     def write(self, to: str, target: Path, surfaces: Mapping[str, HorizonFit]) -> None:
         """Write surfaces in a format, with the points and holes that the format can hold."""
         site = self._document.site_in_use()
-        request = Request(points=dict(site.horizons), holes=site.holes, site=site.name, crs=site.crs)
+        options = {"points": dict(site.horizons), "holes": site.holes, "site": site.name, "crs": site.crs}
         # The patches are enough for every format; what stands behind them need not travel.
         bare = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         title = self.tr("Export {name}").format(name=target.name)
-        self._activity.do(title, export_surfaces, bare, to, target, request, on_done=self._written, apart=True)
+        self._activity.do(title, export_surfaces, bare, to, target, options, on_done=self._written, apart=True)
 
     def report(self) -> None:
         """Ask for language and format, and write the accuracy report."""

@@ -103,6 +103,11 @@ def read_boreholes(
     ------
     InputError
         If a file cannot be used at all; single rows that cannot are listed in ``issues``.
+
+    Notes
+    -----
+    Formats and headers that are recognized: ``docs/formats_in.md``. Minimum curvature: Sawaryn and Thorogood (2005),
+    SPE 84246.
     """
     journal = Journal()
     found = load_boreholes(

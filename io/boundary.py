@@ -25,17 +25,26 @@ Floats = NDArray[np.float64]
 
 
 def read_boundary(path: str | Path | Source) -> Floats:
-    """Return the corners (k, 2) of the study area, not closed.
+    """Read the corners of the study area.
 
     Parameters
     ----------
     path : path or Source
         A table with the columns x and y, corners in order; or a GeoJSON polygon (``.json``, ``.geojson``).
 
+    Returns
+    -------
+    (k, 2) array
+        Corners in map coordinates, metres, in order, the first not repeated.
+
     Raises
     ------
     InputError
         If a corner cannot be read, there are fewer than three, or the boundary crosses itself.
+
+    Notes
+    -----
+    Formats: ``docs/formats_in.md``.
     """
     return load_boundary(as_source(path), Journal())
 

@@ -43,10 +43,19 @@ def take_contacts(boreholes: Boreholes, *, top: str | None = None, base: str | N
     top, base : str
         The code; give one of the two.
 
+    Returns
+    -------
+    Contacts
+        Points with their holes and rows, and what was listed.
+
     Raises
     ------
     InputError
         If neither or both are given, or no interval has the code.
+
+    Notes
+    -----
+    Rules: ``docs/site_file.md``, "Boreholes".
     """
     if (top is None) == (base is None):
         raise InputError("Both or neither of top and base are given", "Give the code of one of them.")

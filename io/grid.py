@@ -35,8 +35,15 @@ _KEYS = {
 def read_ground(path: str | Path | Source) -> Ground:
     """Read a grid of elevations; cells without data are nan.
 
-    The file's first bytes tell ESRI ASCII, Surfer 6 (ASCII and binary), Surfer 7 and GeoTIFF (extra ``gis``)
-    apart.
+    Parameters
+    ----------
+    path : path or Source
+        ESRI ASCII, Surfer 6 (ASCII and binary), Surfer 7 or GeoTIFF (extra ``gis``), recognized by its first bytes.
+
+    Returns
+    -------
+    Ground
+        Nodes in map coordinates and elevations, metres.
 
     Raises
     ------
@@ -44,6 +51,10 @@ def read_ground(path: str | Path | Source) -> Ground:
         If the head is incomplete, a cell is no number, or the cells are not columns x rows.
     MissingDependencyError
         If rasterio is not installed.
+
+    Notes
+    -----
+    Formats: ``docs/formats_in.md``.
     """
     return load_ground(as_source(path), Journal())
 

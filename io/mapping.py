@@ -99,7 +99,26 @@ class ColumnMapping:
 def save_mappings(
     mappings: Sequence[ColumnMapping], path: str | Path, remarks: Mapping[tuple[int, str], str] | None = None
 ) -> None:
-    """Write mappings as TOML; ``remarks`` holds a comment by mapping index and role."""
+    """Write column mappings as TOML.
+
+    Parameters
+    ----------
+    mappings : sequence of ColumnMapping
+        The mappings.
+    path : path
+        The file, usually ``*.toml``.
+    remarks : mapping of (int, str) to str, optional
+        Comments, by the index of the mapping and the role of the column.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+
+    Notes
+    -----
+    Keys: ``docs/site_file.md``.
+    """
     lines = [f"version = {VERSION}", ""]
     for i, mapping in enumerate(mappings):
         lines += ["[[table]]", f"file = {toml_value(mapping.file)}", f"kind = {toml_value(mapping.kind)}"]
@@ -123,12 +142,26 @@ def _printable(text: str) -> str:
 
 
 def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
-    """Read mappings.
+    """Read column mappings: which column of which table has which role.
+
+    Parameters
+    ----------
+    path : path
+        A TOML file that :func:`save_mappings` wrote.
+
+    Returns
+    -------
+    tuple of ColumnMapping
+        In the order of the file.
 
     Raises
     ------
     InputError
-        If the file is no TOML, is of a later version, or has an unknown key or kind.
+        If the file is not valid TOML, is of a later version, or has an unknown key or kind.
+
+    Notes
+    -----
+    Keys: ``docs/site_file.md``.
     """
     source = Source(path=Path(path))
     try:

@@ -71,6 +71,10 @@ def read_points(
     ------
     InputError
         If the file is missing or empty, a column is missing, or no row can be used.
+
+    Notes
+    -----
+    Formats and headers that are recognized: ``docs/formats_in.md``.
     """
     given = {"x": x, "y": y, "z": z, "horizon": surface, "section": section}
     source = Source(

@@ -112,12 +112,21 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
     mappings : sequence of ColumnMapping
         What the user has said already: it is taken instead of a guess.
 
+    Returns
+    -------
+    tuple of TablePreview
+        Header, first rows, guessed role of each column and what is missing.
+
     Raises
     ------
     InputError
         If the file is missing, empty or damaged.
     MissingDependencyError
         If the package for its format is not installed.
+
+    Notes
+    -----
+    Formats: ``docs/formats_in.md``.
     """
     source = as_source(path)
     said = [mapping for mapping in mappings if mapping.suits(source.name)]
@@ -149,7 +158,29 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
 
 
 def preview_table(source: Source, kind: str | None = None) -> TablePreview:
-    """Return the preview of one table, as ``kind`` if it is given, else as the likeliest kind."""
+    """Preview one table.
+
+    Parameters
+    ----------
+    source : Source
+        The table.
+    kind : str, optional
+        What it is read as, for instance "collar" or "picks"; the likeliest kind if not given.
+
+    Returns
+    -------
+    TablePreview
+        Header, first rows, guessed role of each column and what is missing.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, empty or damaged.
+
+    Notes
+    -----
+    Headers that are recognized: ``docs/formats_in.md``.
+    """
     if kind == "skip":
         return _fixed(source, "skip")
     journal = Journal()

@@ -144,6 +144,10 @@ def save_project(
         If a file cannot be written.
     StitchError
         If patches do not make one valid shell; the project file on the disk stays as it was.
+
+    Notes
+    -----
+    Layout of the file: ``docs/formats_out.md``, "The project file".
     """
     target = Path(path)
     former = {result.surface for result in (*project.results, *_written(target))}
@@ -180,10 +184,24 @@ def save_project(
 def open_project(path: str | PathLike[str]) -> Project:
     """Read a project file of this or any older version.
 
+    Parameters
+    ----------
+    path : path
+        A ``*.geofit`` file.
+
+    Returns
+    -------
+    Project
+        Sources, settings, edits and results; :mod:`geofit.io.project` loads the surfaces.
+
     Raises
     ------
     InputError
         If there is no such file, it is no project file, or a newer geofit wrote it.
+
+    Notes
+    -----
+    Layout of the file: ``docs/formats_out.md``, "The project file".
     """
     source = Path(path)
     try:

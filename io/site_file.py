@@ -76,6 +76,10 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
     ------
     InputError
         If the site file has an unknown key, a file cannot be used at all, or a horizon has no point.
+
+    Notes
+    -----
+    Keys of the site file: ``docs/site_file.md``; formats of the tables: ``docs/formats_in.md``.
     """
     site = load_site(path, progress)
     if not site.horizons:

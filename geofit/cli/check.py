@@ -37,7 +37,7 @@ def check(
     from geofit.data.accuracy import plain
     from geofit.data.settings import FitSettings
     from geofit.fitting.judge import judge
-    from geofit.io.surface_files import read_surface_file
+    from geofit.io.surface_files import read_surfaces
     from geofit.report.result import HorizonResult
 
     settings = FitSettings(epsilon=epsilon)
@@ -54,7 +54,7 @@ def check(
     print_issues(site.issues)
     print_counts(site.counts)
     name, found = pick("horizon", site.horizons, horizon, points)
-    _, shape = pick("surface", read_surface_file(surface), name if horizon else None, surface)
+    _, shape = pick("surface", read_surfaces(surface), name if horizon else None, surface)
     result = HorizonResult(judge(shape, found, settings, name), site)
     if out is not None:
         from geofit.data.files import file_stems

@@ -33,13 +33,19 @@ def export(
     as_json: Json = False,
 ) -> int:
     """Write horizons in other formats."""
-    from geofit.project.export import Request, read_surfaces, uncut
-    from geofit.project.export import export as write
+    from geofit.io.export.write import untrimmed, write_surface
+    from geofit.io.surface_files import read_surfaces
 
     site = None if points is None else read_source(points, {}, None)
     if site is not None:
         print_issues(site.issues)
-    request = Request(
+    given = read_surfaces(surfaces)
+    for sentence in untrimmed(given, to):
+        say(sentence)
+    files = write_surface(
+        given,
+        out,
+        format=to,
         tolerance=tolerance,
         interval=interval,
         cell=cell,
@@ -49,10 +55,6 @@ def export(
         site=site.name if site else surfaces[0].stem,
         crs=crs if crs is not None else site.crs if site else "",
     )
-    given = read_surfaces(surfaces)
-    for sentence in uncut(given, to):
-        say(sentence)
-    files = write(given, to, out, request)
     if as_json:
         print_json({"files": [str(file) for file in files]})
     else:

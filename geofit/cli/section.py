@@ -24,8 +24,9 @@ def section(
     as_json: Json = False,
 ) -> int:
     """Cut every horizon along a line: drawing (DXF), table (CSV) and picture (PNG)."""
-    from geofit.project.export import read_line, read_surfaces
-    from geofit.project.export import section as cut
+    from geofit.io.surface_files import read_surfaces
+    from geofit.project.section import read_line
+    from geofit.project.section import section as cut
 
     given = read_surfaces(surfaces)
     cuts, files = cut(given, read_line(line), out, tolerance)

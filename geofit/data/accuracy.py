@@ -50,6 +50,11 @@ class Check:
     text: str
     places: tuple[tuple[float, float, float], ...] = ()
 
+    def __repr__(self) -> str:
+        verdict = {True: "PASS", False: "FAIL", None: "no limit"}[self.passed]
+        limit = "" if self.passed is None else f", limit {self.limit:.3g}"
+        return f"<Check {self.name}: {verdict}, {self.value:.3g}{limit} {self.unit}".rstrip() + ">"
+
 
 @dataclass(frozen=True)
 class Conflict:
@@ -103,6 +108,15 @@ class Accuracy:
     checks: tuple[Check, ...] = ()
     conflicts: tuple[Conflict, ...] = ()
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        sign = "<" if self.passed else ">="
+        failed = [check.name for check in self.checks if check.passed is False]
+        return (
+            f"<Accuracy {self.verdict}: sigma {self.sigma:.3g} m {sign} {self.epsilon:g} m, {self.n} points, "
+            f"largest {self.max_abs:.3g} m, {len(self.checks)} checks"
+            f"{', failed: ' + ', '.join(failed) if failed else ''}>"
+        )
 
     @property
     def verdict(self) -> str:

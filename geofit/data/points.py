@@ -152,6 +152,14 @@ class PointSet:
     def _columns(self) -> dict[str, Any]:
         return {"xyz": self.xyz, "accuracy": self.accuracy, "row": self.row, **self.labels}
 
+    def __repr__(self) -> str:
+        kinds, counts = np.unique(self.kind, return_counts=True)
+        parts = [f"{len(self)} points", *(f"{n} {kind}" for kind, n in zip(kinds, counts, strict=True))]
+        if len(self):
+            low, high = self.xyz[:, 2].min(), self.xyz[:, 2].max()
+            parts.append(f"z {low:.1f} to {high:.1f} m")
+        return f"<PointSet: {', '.join(parts)}>"
+
     def __getitem__(self, index: Any) -> PointSet:
         """Return the points at an index array, a mask or a slice."""
         index = np.atleast_1d(index) if np.ndim(index) == 0 and not isinstance(index, slice) else index

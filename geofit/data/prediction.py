@@ -39,6 +39,13 @@ class LeftOut:
     inside_raw: float
     peers: Mapping[str, float]
 
+    def __repr__(self) -> str:
+        others = "".join(f", {name} {rms:.3g} m" for name, rms in self.peers.items())
+        return (
+            f"<LeftOut by {self.scheme}: {self.groups} groups, rms {self.rms:.3g} m{others}, "
+            f"{self.inside:.0%} in the 90 % band>"
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
@@ -58,6 +65,10 @@ class Uncertainty:
     max: float
     factors: Floats
     frame: Literal["map", "best-plane"] = "map"
+
+    def __repr__(self) -> str:
+        grid = f"{len(self.x)} x {len(self.y)} nodes"
+        return f"<Uncertainty: mean {self.mean:.3g} m, largest {self.max:.3g} m, factor {self.factor:.3g}, {grid}>"
 
 
 @dataclass(frozen=True)
@@ -95,3 +106,10 @@ class OffData:
     suggestions: tuple[Suggestion, ...]
     outliers: tuple[Outlier, ...]
     notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        parts = [f"rms {one.rms:.3g} m by {one.scheme}" for one in self.left_out]
+        if self.uncertainty is not None:
+            parts.append(f"mean standard deviation {self.uncertainty.mean:.3g} m")
+        parts += [f"{len(self.suggestions)} suggested boreholes", f"{len(self.outliers)} outliers"]
+        return f"<OffData: {', '.join(parts)}>"

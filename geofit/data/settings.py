@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Literal
 
 import numpy as np
@@ -95,6 +95,10 @@ class FitSettings:
     max_iterations: int = 20
     max_control_points: int | None = None
     conflict_distance: float = 0.01
+
+    def __repr__(self) -> str:
+        changed = [f for f in fields(self) if getattr(self, f.name) != f.default]
+        return f"FitSettings({', '.join(f'{f.name}={getattr(self, f.name)!r}' for f in changed)})"
 
     def __post_init__(self) -> None:
         for name in ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance"):

@@ -9,12 +9,16 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.picture import card, plan_svg
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 
 __all__ = ["Ground", "Hole", "ImportIssue", "Orientations", "Section", "Site", "TableCount"]
 
 Floats = NDArray[np.float64]
+
+#: Colours of the horizons of a site in its plan, in turn.
+COLOURS = ("#5a91cf", "#b08a20", "#27784f", "#cf8275", "#9a4aa0", "#a4532a", "#3f9a9a", "#76716a")
 
 
 @dataclass(frozen=True)
@@ -151,3 +155,23 @@ class Site:
     orientations: Orientations | None = None
     order: tuple[str, ...] = ()
     faults: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<Site {self.name}: {', '.join(f'{key} {value}' for key, value in self._counted().items())}>"
+
+    def _repr_html_(self) -> str:
+        """Return the counts, and a plan of the points by horizon and of the study area, for notebooks."""
+        groups = [(points.xyz[:, :2], COLOURS[k % len(COLOURS)]) for k, points in enumerate(self.horizons.values())]
+        outlines = [] if self.boundary is None else [self.boundary]
+        return card(self.name, self._counted() | {"crs": self.crs or "not stated"}, plan_svg(groups, outlines))
+
+    def _counted(self) -> dict[str, object]:
+        """Return what the site consists of, by name."""
+        errors = sum(issue.severity == "error" for issue in self.issues)
+        return {
+            "horizons": len(self.horizons),
+            "points": sum(map(len, self.horizons.values())),
+            "holes": len(self.holes),
+            "sections": len(self.sections),
+            "rows not used": errors,
+        }

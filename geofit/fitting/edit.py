@@ -59,6 +59,10 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
         If there is no such control point, or the surface is no fit of this session.
     ExactnessError
         If the control point acts on points that the surface must meet exactly.
+
+    Notes
+    -----
+    Li, Miao, Liu, Wang (2011), sec. 3.3. Only the control point's own knot spans change.
     """
     model = _model(surface)
     _finite(dz, "dz")
@@ -98,7 +102,7 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     point : int or (3,) array_like
         Index of one of its points, or a place in map coordinates, metres.
     share : float
-        How much of the distance to take away: 1 lets the surface pass through the point.
+        Share of the distance to take away: 1 lets the surface pass through the point.
 
     Returns
     -------
@@ -111,6 +115,11 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
         If there is no such point, it lies outside the surface, or weights other than 1 act there.
     ExactnessError
         If the points that are met exactly leave no freedom at this place.
+
+    Notes
+    -----
+    The minimum-norm change of the control points that act at the point, subject to the exact points (Li, Miao, Liu,
+    Wang, 2011, sec. 3.3).
     """
     model = _model(surface)
     _finite(share, "share")
@@ -150,14 +159,35 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
 
 
 def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> HorizonFit:
-    """Give a control point of the periphery another weight: above 1 draws the surface to it (paper, eq. 1).
+    """Change the weight of a control point of the periphery: above 1 draws the surface towards it.
 
-    Parameters as those of :func:`adjust`; errors too. Control points that hold the tangent plane of a seam keep 1.
+    Parameters
+    ----------
+    surface : HorizonFit
+        A fit.
+    patch : str
+        Name of the patch.
+    i, j : int
+        Row (in u) and column (in v) of the control point in the patch.
+    weight : float
+        The weight, 0.01 to 100.
+
+    Returns
+    -------
+    HorizonFit
+        The changed surface with its own check.
 
     Raises
     ------
     FitError
-        If the weight is not between 0.01 and 100, or the control point holds a seam.
+        If there is no such control point, the weight is out of its range, the control point fixes the tangent plane of
+        a seam, or the surface is no fit of this session.
+    ExactnessError
+        If the control point acts on points that the surface must meet exactly.
+
+    Notes
+    -----
+    Li, Miao, Liu, Wang (2011), eq. 1.
     """
     model = _model(surface)
     if not 0.01 <= weight <= 100:

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.checks.check import check
 from geofit.data.accuracy import Accuracy, Conflict, Partition, ReadBack
+from geofit.data.picture import LEVELS, card, deviation_colours, plan_svg
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting import edit
@@ -66,10 +67,26 @@ class HorizonFit:
     model: Model | None = None
 
     def __repr__(self) -> str:
-        parts = [f"{len(self.patches)} patches" if self.patches else "triangles", f"{len(self.points)} points"]
+        patches = f"{n} patch{'' if n == 1 else 'es'}" if (n := len(self.patches)) else "triangles"
+        parts = [patches, f"{len(self.points)} points"]
         if (a := self.accuracy) is not None:
             parts.append(f"sigma {a.sigma:.3g} m {'<' if a.passed else '>='} {a.epsilon:g} m {a.verdict}")
         return f"<HorizonFit {self.name}: {', '.join(parts)}>"
+
+    def _repr_html_(self) -> str:
+        """Return the verdict, and a plan of the points by their deviation and of the surface's end, for notebooks."""
+        rows: dict[str, object] = {"patches": len(self.patches), "points": len(self.points)}
+        colours = np.full(len(self.points), LEVELS[0])
+        if (a := self.accuracy) is not None:
+            failed = ", ".join(check.name for check in a.checks if check.passed is False)
+            rows |= {
+                a.verdict: f"sigma {a.sigma:.3g} m {'<' if a.passed else '>='} {a.epsilon:g} m",
+                "largest deviation": f"{a.max_abs:.3g} m",
+                "failed checks": failed or "none",
+            }
+            colours = deviation_colours(a.residuals, self.settings.boundary_tolerance, self.settings.interior_tolerance)
+        outlines = [] if self.outline is None else [self.outline]
+        return card(self.name, rows, plan_svg([(self.points.xyz[:, :2], colours)], outlines))
 
     def with_(self, **changes: Any) -> HorizonFit:
         """Return a copy with some fields of the fit, or of its surface, replaced."""

@@ -25,13 +25,33 @@ __all__ = ["judge"]
 NAMED = 20
 
 
-def judge(surface: PatchSurface | MeshSurface, points: PointSet, settings: FitSettings, name: str) -> HorizonFit:
-    """Return a surface of a file with points, settings and check, by the rules of a fit.
+def judge(
+    surface: PatchSurface | MeshSurface, points: PointSet, settings: FitSettings | None = None, name: str = ""
+) -> HorizonFit:
+    """Check a surface against points, by the rules of a fit.
 
-    A point beyond the surface is measured to the surface's edge, counts in sigma with that distance, and is
-    listed: the surface says nothing about it.
+    Parameters
+    ----------
+    surface : PatchSurface or MeshSurface
+        For instance one that :func:`geofit.read_surface` read.
+    points : PointSet
+        The points to measure, map coordinates in metres.
+    settings : FitSettings, optional
+        Tolerances; above all ``epsilon``, the limit of sigma.
+    name : str
+        Name of the horizon; empty: that of the surface.
+
+    Returns
+    -------
+    HorizonFit
+        Surface, points and ``accuracy``. It can be reported and exported, but not edited: it has no control net.
+
+    Notes
+    -----
+    sigma is that of Li, Miao, Liu and Wang (2011), eq. 3. A point beyond the edge of the surface is measured to the
+    edge, counts in sigma with this distance, and is listed in ``accuracy.notes``.
     """
-    judged = HorizonFit(surface, points, settings, name)
+    judged = HorizonFit(surface, points, settings or FitSettings(), name or surface.name)
     found = surface.project(points.xyz)
     if found.beyond is None:
         found = replace(found, beyond=beyond_edge(surface.patches, points.xyz - surface.origin, found))

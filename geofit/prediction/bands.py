@@ -22,7 +22,7 @@ from geofit.fitting.posterior import Posterior, posterior
 from geofit.geometry.clip import inside
 from geofit.splines import bspline
 
-__all__ = ["Grid", "Spread", "band", "grid_over", "sd_at", "uncertainty_on"]
+__all__ = ["Grid", "Spread", "band", "grid_over", "prediction_sd", "uncertainty_on"]
 
 Floats = NDArray[np.float64]
 
@@ -115,15 +115,32 @@ def uncertainty_on(grid: Grid, spread: Spread) -> Uncertainty:
     )  # fmt: skip
 
 
-def sd_at(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike) -> Floats:
-    """Return the standard deviation of a surface at (n, 3) map coordinates on it (or (n, 2) of a map frame), metres.
+def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike) -> Floats:
+    """Return the prediction standard deviation of a surface at any place.
 
-    The posterior is evaluated at each place; the local factor is that of the nearest node of the grid.
+    Parameters
+    ----------
+    surface : HorizonFit
+        A fitted height field.
+    uncertainty : Uncertainty
+        ``examine(surface).uncertainty``.
+    xyz : (n, 3) array_like
+        Map coordinates on the surface, metres; (n, 2) is enough for a height field over the map.
+
+    Returns
+    -------
+    (n,) array
+        Standard deviations, metres.
 
     Raises
     ------
     FitError
         If nothing is known about how the surface was fitted.
+
+    Notes
+    -----
+    The posterior of the field is evaluated at each place and multiplied by the calibration factor of the nearest node
+    of the grid.
     """
     model = _model(surface)
     frame = model.problem.chart.frame
@@ -162,6 +179,11 @@ def band(surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9) 
         If ``share`` is no probability.
     FitError
         If nothing is known about how the surface was fitted.
+
+    Notes
+    -----
+    The deviation is taken as normal, with the calibrated standard deviation of :func:`prediction_sd`. Control points
+    at Greville abscissae: Farin, Curves and Surfaces for CAGD, 5th ed., sec. 8.3.
     """
     if not 0 < share < 1:
         raise SettingsError(

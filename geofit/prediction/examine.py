@@ -53,6 +53,11 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
     ------
     Cancelled
         If ``progress`` returned False.
+
+    Notes
+    -----
+    Leave-out errors without refits follow from the smoothing matrix: Wahba, Spline Models for Observational Data
+    (1990), sec. 4.2. Suggested boreholes are chosen one by one so that each reduces the mean variance most.
     """
     model = surface.model
     if model is None:

@@ -56,6 +56,8 @@ def fit_variogram(plane: Floats, z: Floats) -> Variogram:
     near = cell < CLASSES
     count = np.bincount(cell[near], minlength=CLASSES)
     full = count > 0
+    if not full.any():  # a few points, all farther apart than half the extent: nothing supports another model
+        return Variogram(0.0, 0.0, np.inf, 1.0)
     distance = np.bincount(cell[near], h[near], minlength=CLASSES)[full] / count[full]
     gamma = np.bincount(cell[near], half_square[near], minlength=CLASSES)[full] / count[full]
     root = np.sqrt(count[full]) / np.maximum(gamma, 1e-6 * max(float(gamma.max()), 1e-12))

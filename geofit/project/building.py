@@ -84,10 +84,10 @@ def _block(recipe: Recipe, part: Part, points: PointSet, given: Given, progress:
 
 def _pushed(surface: HorizonFit, edit: Apart, given: Given, progress: Progress | None) -> HorizonFit:
     """Make the neighbours as they were, and push all apart once more."""
-    from geofit.site.separate import repair
+    from geofit.site.separate import separate_horizons
 
     stack = {surface.name: surface, **{other.horizon: make(other, given, progress) for other in edit.others}}
-    return repair(stack, edit.sequence, edit.minimum).surfaces[surface.name]
+    return separate_horizons(stack, edit.sequence, edit.minimum).surfaces[surface.name]
 
 
 def edited(surface: HorizonFit, edit: HandEdit, progress: Progress | None = None) -> HorizonFit:

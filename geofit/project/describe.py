@@ -17,10 +17,10 @@ Floats = NDArray[np.float64]
 
 def describe_surfaces(file: Path) -> list[tuple[str, ...]]:
     """Return a row for each surface of a file: name, patches, control points, ranges of x, y and z."""
-    from geofit.io.surface_files import read_surface_file
+    from geofit.io.surface_files import read_surfaces
 
     rows: list[tuple[str, ...]] = []
-    for name, surface in read_surface_file(file).items():
+    for name, surface in read_surfaces(file).items():
         if surface.patches:
             poles = sum(patch.control.shape[0] * patch.control.shape[1] for patch in surface.patches)
             size = (str(len(surface.patches)), str(poles))

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 from geofit.data.progress import Progress, tell
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.project.export import Request, export
+from geofit.io.export.write import write_surface
 
 __all__ = ["export_surfaces"]
 
 
 def export_surfaces(
-    surfaces: Mapping[str, HorizonFit], to: str, target: Path, request: Request, *, progress: Progress
+    surfaces: Mapping[str, HorizonFit], to: str, target: Path, options: Mapping[str, Any], *, progress: Progress
 ) -> list[Path]:
-    """Write surfaces in a format of :data:`geofit.project.export.FORMATS`; return the files."""
+    """Write surfaces in a format of :data:`geofit.io.FORMATS`; return the files."""
     tell(progress, "write", 0.1)
-    return export(surfaces, to, target, request)
+    return write_surface(surfaces, target, format=to, **options)

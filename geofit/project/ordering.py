@@ -14,8 +14,8 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.elevation import plan_map
 from geofit.project.fault_blocks import same_side
 from geofit.project.provenance import Part
-from geofit.site.order import Order, order_of
-from geofit.site.separate import Repair, repair
+from geofit.site.order import Order, compare_horizons
+from geofit.site.separate import Repair, separate_horizons
 from geofit.site.site_checks import check_surroundings
 
 __all__ = ["all_orders", "comparable", "over_map", "pushed_apart"]
@@ -47,13 +47,13 @@ def all_orders(
     with threadpool_limits(limits=1):
         for k, (upper, lower) in enumerate(pairs):
             tell(progress, "order", k / len(pairs))
-            found.append(order_of(surfaces[upper], surfaces[lower], ground))
+            found.append(compare_horizons(surfaces[upper], surfaces[lower], ground))
     return tuple(found)
 
 
 def pushed_apart(surfaces: Mapping[str, HorizonFit], minimum: float, site: Site, *, progress: Progress) -> Repair:
     """Push horizons apart, given the highest first; those that moved are asked again what the ``site`` says of them."""
     tell(progress, "push apart", 0.1)
-    found = repair(surfaces, tuple(surfaces), minimum)
+    found = separate_horizons(surfaces, tuple(surfaces), minimum)
     moved = {name: check_surroundings(found.surfaces[name], site) for name in found.moved}
     return replace(found, surfaces={**found.surfaces, **moved})

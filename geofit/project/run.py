@@ -95,7 +95,7 @@ def deliver(
     pdf : bool
         Whether the report is written as PDF, too: about a second a horizon.
     apart : bool
-        Whether horizons of the site's order that cross are pushed apart (:func:`geofit.site.separate.repair`).
+        Whether horizons of the site's order that cross are separated (:func:`geofit.separate_horizons`).
     bands : bool
         Whether ``_upper90.step`` and ``_lower90.step`` are written: the rock lies between them with 90 %.
 

@@ -87,7 +87,7 @@ def accuracy_report(
     cuts : sequence of FaultCut
         What faults displace, by :func:`geofit.site.throw.throws`.
     contradictions : sequence of Contradiction
-        What :func:`geofit.site.separate.repair` could not mend.
+        What :func:`geofit.site.separate.separate_horizons` could not mend.
     failures : mapping of str to str, optional
         Horizons that could not be fitted, and why.
     date : str

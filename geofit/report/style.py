@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.settings import FitSettings
+from geofit.data.site import COLOURS
 from geofit.report.fonts import families
 
 if TYPE_CHECKING:
@@ -40,7 +41,7 @@ _OTHER = ("P", "#6b6b6b")
 
 #: Colours of the horizons in turn. All stand out from white paper and from a dark window alike, so that a horizon has
 #: the very same colour in both; the first five are told apart by colour-blind eyes too.
-HORIZONS = ("#5a91cf", "#b08a20", "#27784f", "#cf8275", "#9a4aa0", "#a4532a", "#3f9a9a", "#76716a")
+HORIZONS = COLOURS
 
 #: Deviations: near zero, then three steps below and three above the surface. What is farther off stands out more: on
 #: white it is darker, on a dark ground brighter.

@@ -58,10 +58,19 @@ def contours(
     mesh : Mesh, optional
         Triangles of the surface, if they are there already.
 
+    Returns
+    -------
+    list of Contour
+        Each in plan, map coordinates in metres, with its elevation.
+
     Raises
     ------
     SettingsError
         If the interval is not above 0, or so small that it makes over 5,000 contours.
+
+    Notes
+    -----
+    Lines are traced through the triangles, and their vertices moved along the surface until they lie on the level.
     """
     mesh = surface.triangulate(tolerance) if mesh is None else mesh
     z = mesh.points[:, 2] + surface.origin[2]

@@ -15,7 +15,7 @@ from geofit.geometry.projection import project
 from geofit.sampling.isolines import plane_lines
 from geofit.surfaces.protocol import Surface
 
-__all__ = ["CutLine", "cut", "section_line"]
+__all__ = ["CutLine", "cut_section", "section_line"]
 
 Floats = NDArray[np.float64]
 
@@ -52,7 +52,9 @@ def section_line(line: ArrayLike) -> Floats:
     return np.asarray(corners[apart])
 
 
-def cut(surface: Surface, line: ArrayLike, *, tolerance: float = 0.05, mesh: Mesh | None = None) -> list[CutLine]:
+def cut_section(
+    surface: Surface, line: ArrayLike, *, tolerance: float = 0.05, mesh: Mesh | None = None
+) -> list[CutLine]:
     """Return the lines in which a section cuts a surface.
 
     Parameters
@@ -70,6 +72,15 @@ def cut(surface: Surface, line: ArrayLike, *, tolerance: float = 0.05, mesh: Mes
     -------
     list of CutLine
         By distance. An overturned fold gives one line that turns back.
+
+    Raises
+    ------
+    SettingsError
+        If the line has fewer than two different corners.
+
+    Notes
+    -----
+    Lines are traced through the triangles, and their vertices moved along the surface into the curtain.
     """
     corners = section_line(line) - surface.origin[:2]
     mesh = surface.triangulate(tolerance) if mesh is None else mesh

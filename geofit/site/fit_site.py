@@ -16,8 +16,8 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
 from geofit.site.fault_blocks import fit_blocks
-from geofit.site.order import Order, order_of
-from geofit.site.separate import Contradiction, repair
+from geofit.site.order import Order, compare_horizons
+from geofit.site.separate import Contradiction, separate_horizons
 from geofit.site.site_checks import check_surroundings
 from geofit.site.throw import FaultCut
 
@@ -44,10 +44,14 @@ class SiteFit:
     contradictions: tuple[Contradiction, ...] = ()
     warnings: tuple[str, ...] = ()
 
+    def __repr__(self) -> str:
+        parts = [f"{name} {fit.accuracy.verdict}" for name, fit in self.surfaces.items() if fit.accuracy is not None]
+        return f"<SiteFit: {', '.join([*parts, *(f'{name} not fitted' for name in self.failures)])}>"
+
 
 def fit_site(
     site: Site,
-    names: Sequence[str],
+    names: Sequence[str] = (),
     changes: Mapping[str, Any] | None = None,
     progress: Progress | None = None,
     *,
@@ -60,19 +64,29 @@ def fit_site(
     site : Site
         ``site.faults`` names the horizons that are fitted block by block.
     names : sequence of str
-        Horizons of the site.
+        Horizons of the site; empty: all.
     changes : mapping
         Settings that take the place of the site's.
     progress : callable, optional
         Called as ``progress("horizon: stage", fraction)``.
     apart : bool
-        Whether horizons of ``site.order`` that cross are pushed apart (:func:`geofit.site.separate.repair`).
+        Whether horizons of ``site.order`` that cross are pushed apart (:func:`geofit.site.separate.separate_horizons`).
+
+    Returns
+    -------
+    SiteFit
+        Surfaces by name, and by horizon why one could not be fitted: a failure of one does not stop the others.
 
     Raises
     ------
     Cancelled
         If ``progress`` returned False.
+
+    Notes
+    -----
+    Each horizon as :func:`geofit.fit_horizon` does it; each block of a faulted one as :func:`geofit.fit_blocks`.
     """
+    names = tuple(names) or tuple(site.horizons)
     fits = _Fits(site, changes or {})
     found = SiteFit()
     for k, name in enumerate(names):
@@ -175,7 +189,7 @@ def _push_apart(site: Site, found: SiteFit) -> None:
         found.warnings += (said("no repair: the order of the site names no two fitted horizons without a fault"),)
         return
     try:
-        done = repair(found.surfaces, sequence)
+        done = separate_horizons(found.surfaces, sequence)
     except SettingsError as error:
         found.warnings += (said("no repair: {reason}", reason=error.args[0]),)
         return
@@ -199,7 +213,7 @@ def compare(site: Site, found: SiteFit) -> tuple[Order, ...]:
         for b in lower
         if _same_side(site, found, a, b)
     ]
-    return tuple(order_of(upper, lower, site.ground) for upper, lower in pairs)
+    return tuple(compare_horizons(upper, lower, site.ground) for upper, lower in pairs)
 
 
 def _same_side(site: Site, found: SiteFit, a: str, b: str) -> bool:

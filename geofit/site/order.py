@@ -17,7 +17,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.height_field import Relief
 from geofit.site.overlap import Crossing, Overlap
 
-__all__ = ["Order", "order_of", "orders", "require_sequence", "thickness"]
+__all__ = ["Order", "compare_horizons", "orders", "require_sequence", "thickness"]
 
 Floats = NDArray[np.float64]
 
@@ -82,7 +82,24 @@ class Order:
 
 
 def thickness(upper: HorizonFit, lower: HorizonFit, x: ArrayLike, y: ArrayLike) -> Floats:
-    """Return upper minus lower elevation at map coordinates, metres; nan where either is absent; arrays broadcast."""
+    """Return the vertical thickness between two horizons.
+
+    Parameters
+    ----------
+    upper, lower : HorizonFit
+        The horizons.
+    x, y : (n,) array_like
+        Map coordinates, metres; any shapes that broadcast.
+
+    Returns
+    -------
+    (n,) array
+        Upper minus lower elevation, metres: negative where they cross, nan where either is absent.
+
+    Notes
+    -----
+    Of an overturned surface the highest limb counts, as in ``elevation``.
+    """
     return np.asarray(upper.elevation(x, y) - lower.elevation(x, y))
 
 
@@ -110,8 +127,30 @@ def orders(
     return tuple(_compare(upper, lower, ground) for upper, lower in combinations(reliefs, 2))
 
 
-def order_of(upper: HorizonFit, lower: HorizonFit, ground: Ground | None = None) -> Order:
-    """Compare two horizons; see :func:`orders`."""
+def compare_horizons(upper: HorizonFit, lower: HorizonFit, ground: Ground | None = None) -> Order:
+    """Measure the thickness between two horizons, and find where they cross.
+
+    Parameters
+    ----------
+    upper, lower : HorizonFit
+        Height fields over the map.
+    ground : Ground, optional
+        The ground surface: crossings above it are not counted as faults of the horizons.
+
+    Returns
+    -------
+    Order
+        Thicknesses (m), areas (m2), volumes (m3) and the crossings; ``check()`` is the verdict.
+
+    Raises
+    ------
+    SettingsError
+        If a surface is not a height field over the map.
+
+    Notes
+    -----
+    Thickness is measured vertically, over the area that both horizons cover.
+    """
     return _compare(Relief(upper), Relief(lower), ground)
 
 

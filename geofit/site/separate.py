@@ -26,7 +26,7 @@ from geofit.site.height_field import Relief
 from geofit.site.order import require_sequence
 from geofit.site.overlap import Overlap
 
-__all__ = ["Contradiction", "Repair", "repair"]
+__all__ = ["Contradiction", "Repair", "separate_horizons"]
 
 Floats = NDArray[np.float64]
 
@@ -79,7 +79,7 @@ class Repair:
     contradictions: tuple[Contradiction, ...]
 
 
-def repair(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], minimum: float = 0.0) -> Repair:
+def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], minimum: float = 0.0) -> Repair:
     """Push horizons of a sequence apart until each is at least ``minimum`` metres above the next.
 
     Parameters

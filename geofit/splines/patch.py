@@ -53,8 +53,9 @@ class Patch:
                 object.__setattr__(self, name, array)
 
     def __repr__(self) -> str:
-        rows, columns = self.control.shape[:2]
-        return f"<Patch {self.name}: degree {self.degree[0]} x {self.degree[1]}, {rows} x {columns} control points>"
+        (nu, nv), (p, q) = self.control.shape[:2], self.degree
+        rational = "" if self.weights is None else ", rational"
+        return f"<Patch {self.name}: {nu} x {nv} control points, degree {p} x {q}{rational}>"
 
     @property
     def domain(self) -> tuple[float, float, float, float]:

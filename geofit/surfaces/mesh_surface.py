@@ -25,6 +25,9 @@ class MeshSurface:
     mesh: Mesh
     name: str = "surface"
 
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}: {len(self.mesh.triangles)} triangles>"
+
     @property
     def patches(self) -> tuple[Patch, ...]:
         """No NURBS patches."""

@@ -45,6 +45,10 @@ class PatchSurface:
     def __post_init__(self) -> None:
         object.__setattr__(self, "patches", Patches.of(self.patches))
 
+    def __repr__(self) -> str:
+        n = len(self.patches)
+        return f"<{type(self).__name__} {self.name}: {n} patch{'' if n == 1 else 'es'}>"
+
     @property
     def loops(self) -> Loops:
         """Trim loops of each patch: none."""

@@ -13,7 +13,7 @@ from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.mesh import Mesh
-from geofit.sampling.cut import CutLine, cut, section_line
+from geofit.sampling.cut import CutLine, cut_section, section_line
 
 __all__ = ["Curtain", "Traces", "extent", "trace"]
 
@@ -127,5 +127,5 @@ def trace(surfaces: Mapping[str, HorizonFit], line: Floats, meshes: Meshes, prog
             if kept is None or kept[0] is not surface:
                 kept = (surface, surface.triangulate(TOLERANCE))
                 meshes[name] = kept
-            found[name] = cut(surface, line, tolerance=TOLERANCE, mesh=kept[1])
+            found[name] = cut_section(surface, line, tolerance=TOLERANCE, mesh=kept[1])
     return found

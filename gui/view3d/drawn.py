@@ -11,8 +11,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of
-from geofit.prediction.bands import band
-from geofit.prediction.bands import sd_at as sd_of_fit
+from geofit.prediction.bands import band, prediction_sd
 
 __all__ = ["BAND", "Drawn", "drawn_of"]
 
@@ -47,7 +46,7 @@ def drawn_of(surface: HorizonFit, uncertainty: Uncertainty | None = None, *, pro
         fine, few = (sd_at(surface, uncertainty, one.xyz) for one in (shape, coarse))
         upper, lower = (_lifted(surface, uncertainty, shape, fine, few, sign) for sign in (BAND, -BAND))
     else:
-        fine, few = (sd_of_fit(surface, uncertainty, one.xyz) for one in (shape, coarse))
+        fine, few = (prediction_sd(surface, uncertainty, one.xyz) for one in (shape, coarse))
         upper, lower = (shape_of(bound) for bound in band(surface, uncertainty))
     return Drawn(shape, (fine, few), upper, lower)
 

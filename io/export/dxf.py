@@ -48,10 +48,26 @@ def write_mesh_dxf(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Non
 
 
 def write_section_dxf(cuts: Mapping[str, Sequence[CutLine]], path: str | PathLike[str], *, drawn: bool = True) -> None:
-    """Write the lines of a section, one layer a horizon.
+    """Write a section as DXF, one layer a horizon.
 
-    ``drawn``: as a drawing, x the distance along the section and y the elevation; else as 3D polylines in map
-    coordinates.
+    Parameters
+    ----------
+    cuts : mapping of str to sequence of CutLine
+        What :func:`geofit.cut_section` returned, by horizon; metres.
+    path : path
+        The file, usually ``*.dxf``.
+    drawn : bool
+        Whether it is a drawing, x the distance along the section and y the elevation; else 3D polylines in map
+        coordinates.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+
+    Notes
+    -----
+    ``docs/formats_out.md``, "Sections".
     """
     with _drawing(path, list(cuts)) as (document, layers):
         space = document.modelspace()

@@ -15,9 +15,26 @@ HEADER = ("horizon", "line", "distance", "elevation", "x", "y")
 
 
 def write_section_csv(cuts: Mapping[str, Sequence[CutLine]], path: str | PathLike[str]) -> None:
-    """Write one row a vertex, metres to 1e-6: distance along the section, elevation, map coordinates.
+    """Write a section as a table: one row a vertex, metres to 1e-6.
 
-    ``line`` counts the lines of a horizon from 1; an overturned fold is one line that turns back.
+    Columns: horizon, line (from 1; an overturned fold is one line that turns back), distance along the section,
+    elevation, x, y.
+
+    Parameters
+    ----------
+    cuts : mapping of str to sequence of CutLine
+        What :func:`geofit.cut_section` returned, by horizon.
+    path : path
+        The file, usually ``*.csv``.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be written.
+
+    Notes
+    -----
+    ``docs/formats_out.md``, "Sections".
     """
     # The byte-order mark tells spreadsheets that the text is UTF-8.
     with replacing(path) as part, part.open("w", encoding="utf-8-sig", newline="") as stream:

@@ -12,7 +12,7 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.judge import judge
-from geofit.io.surface_files import read_surface_file
+from geofit.io.surface_files import read_surfaces
 from geofit.surfaces.trimmed import TrimmedSurface
 
 #: Rings in the parameters of a patch of 1,000 by 700 m: all of it nearly, its west, a hole in the east.
@@ -154,7 +154,7 @@ def test_two_faces_whose_patches_overlap_are_one_sheet():
 @pytest.mark.parametrize("cuts", [([], []), ([500.0], [350.0])], ids=["one patch", "four patches"])
 def test_triangles_end_at_the_holes(cuts, tmp_path):
     truth, rim = bored(tmp_path / "a.brep", split(height_field(21, 17), *cuts))
-    (surface,) = read_surface_file(tmp_path / "a.brep").values()
+    (surface,) = read_surfaces(tmp_path / "a.brep").values()
     assert isinstance(surface, TrimmedSurface)
     mesh = surface.triangulate(0.1)
     assert area(mesh.points[mesh.triangles]) == pytest.approx(truth, rel=1e-4)

@@ -9,7 +9,7 @@ from surfaces import ORIGIN, fold, height_field, horizon
 from geofit.geometry.mesh import Mesh
 from geofit.geometry.mesh_projection import elevation, nearest
 from geofit.sampling.contours import contours
-from geofit.sampling.cut import cut
+from geofit.sampling.cut import cut_section
 from geofit.sampling.grids import elevation_grid
 from geofit.surfaces.mesh_surface import MeshSurface
 
@@ -96,7 +96,7 @@ def test_a_mesh_is_cut_contoured_and_gridded_as_it_stands():
     assert [line.elevation for line in lines] == [420, 490, 560]
     for line in lines:
         assert np.abs(0.2 * (line.line[:, 0] - ORIGIN[0]) + ORIGIN[2] - line.elevation).max() < 1e-6
-    (one,) = cut(surface, np.array([[100, 50], [400, 60], [900, 600]]) + ORIGIN[:2])
+    (one,) = cut_section(surface, np.array([[100, 50], [400, 60], [900, 600]]) + ORIGIN[:2])
     assert np.abs(one.xyz[:, 2] - ORIGIN[2] - 0.2 * (one.xyz[:, 0] - ORIGIN[0])).max() < 1e-6
     assert one.distance[-1] == pytest.approx(np.hypot(300, 10) + np.hypot(500, 540))
     grid = elevation_grid(surface, 100.0)

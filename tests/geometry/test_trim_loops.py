@@ -10,7 +10,7 @@ from surfaces import ORIGIN, height_field, horizon, nine
 
 from geofit.cad.step import read_step, write_step
 from geofit.geometry.trim_loops import nearest
-from geofit.project.export import uncut
+from geofit.io.export.write import untrimmed
 from geofit.surfaces.trimmed import TrimmedSurface
 
 
@@ -60,8 +60,8 @@ def test_a_ring_is_no_square(tmp_path):
     assert np.abs(surface.distance(target)) == pytest.approx(np.abs(found.distance))
     height = surface.elevation([0.07, 0.0, 0.098], [0.0, 0.01, 0.098])
     assert np.isnan(height).tolist() == [False, True, True]
-    assert uncut({"ring": surface}, "step")[0].startswith("ring: its faces end at holes")
-    assert uncut({"ring": surface}, "obj") == []
+    assert untrimmed({"ring": surface}, "step")[0].startswith("ring: its faces end at holes")
+    assert untrimmed({"ring": surface}, "obj") == []
 
 
 def test_through_a_hole_to_the_face_below(tmp_path):
@@ -99,7 +99,7 @@ def test_a_trimmed_horizon_with_a_notch(tmp_path):
     (back,) = read_step(tmp_path / "a.step").values()
     assert isinstance(back, TrimmedSurface)
     rng = np.random.default_rng(4)
-    assert uncut({"T1": back}, "step") == []
+    assert untrimmed({"T1": back}, "step") == []
     target = rng.uniform([0, 0, -80], [1000, 700, 80], (120, 3))
     target[:30] = rng.uniform([460, 420, -5], [540, 640, 5], (30, 3))
     target[:30, 2] += horizon(nine()[1]).elevation(*(target[:30, :2] + ORIGIN[:2]).T) - ORIGIN[2]

@@ -13,7 +13,7 @@ from geofit.data.site import Site
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.project.building import make
 from geofit.project.ordering import over_map
-from geofit.site.order import order_of
+from geofit.site.order import compare_horizons
 
 
 def scattered(seed, lift):
@@ -36,7 +36,7 @@ def crossing(app):
 
 
 def crossed(app):
-    return order_of(app.document.surface("up"), app.document.surface("low")).crossed_volume
+    return compare_horizons(app.document.surface("up"), app.document.surface("low")).crossed_volume
 
 
 def test_horizons_are_pushed_apart_and_back_as_one_step_that_can_be_made_again(crossing):

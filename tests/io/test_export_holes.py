@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 from surfaces import area, bored, height_field, split
 
-from geofit.project.export import Request, export, read_surfaces, section
+from geofit.io.export.write import write_surface
+from geofit.io.surface_files import read_surfaces
+from geofit.project.section import section
 from geofit.sampling.contours import contours
 
 ROUND = ((500, 350, 120), (250, 180, 60), (700, 700, 90))
@@ -73,7 +75,7 @@ def by_xml(path):
 )
 def test_the_area_in_the_file_is_that_of_the_faces(to, read, holed, tmp_path):
     surfaces, truth = holed
-    (file, *_) = export(surfaces, to, tmp_path / f"a.{to.removesuffix('-mesh')}", Request(tolerance=0.2))
+    (file, *_) = write_surface(surfaces, tmp_path / f"a.{to.removesuffix('-mesh')}", format=to, tolerance=0.2)
     # Whole faces would be a tenth larger.
     assert area(read(file)) == pytest.approx(truth, rel=1e-3)
 
@@ -95,7 +97,7 @@ def test_contours_sections_and_grids_end_at_the_holes(holed, tmp_path):
     )
     from geofit.io.grid import read_ground
 
-    (file,) = export(surfaces, "asc", tmp_path / "a.asc", Request(cell=20.0))
+    (file,) = write_surface(surfaces, tmp_path / "a.asc", format="asc", cell=20.0)
     grid = read_ground(file)
     x, y = np.meshgrid(grid.x, grid.y)
     over = np.any([np.hypot(x - a, y - b) < radius for a, b, radius in ROUND], axis=0)

@@ -10,7 +10,7 @@ from geofit.data.errors import InputError, MissingDependencyError
 from geofit.io.export.dxf import write_contours_dxf, write_section_dxf
 from geofit.io.export.geopackage import write_contours_gpkg
 from geofit.sampling.contours import contours
-from geofit.sampling.cut import cut
+from geofit.sampling.cut import cut_section
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def test_geopackage_refusals(lines, tmp_path, monkeypatch):
 def test_section_drawing_and_section_in_space(tmp_path):
     ezdxf = pytest.importorskip("ezdxf")
     surface = horizon(nine()[1])
-    found = {"T1": cut(surface, np.array([[-50, 30], [420, 333], [990, 120]]) + ORIGIN[:2], tolerance=0.5)}
+    found = {"T1": cut_section(surface, np.array([[-50, 30], [420, 333], [990, 120]]) + ORIGIN[:2], tolerance=0.5)}
     write_section_dxf(found, tmp_path / "flat.dxf")
     write_section_dxf(found, tmp_path / "space.dxf", drawn=False)
     (line,) = found["T1"]

@@ -16,8 +16,8 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.judge import judge
 from geofit.io.export.tsurf import write_tsurf
-from geofit.io.surface_files import read_surface_file
-from geofit.project.export import Request, export, read_surfaces
+from geofit.io.export.write import write_surface
+from geofit.io.surface_files import read_surfaces
 from geofit.surfaces.mesh_surface import MeshSurface
 from geofit.surfaces.trimmed import TrimmedSurface
 
@@ -55,7 +55,7 @@ def points_near(surface, n=200, seed=0):
     [("a.igs", [LONG, "fold"], 2e-8), ("a.brep", ["a", "a 2"], 1e-9), ("a.ts", [LONG, "fold"], 0.5)],
 )
 def test_what_was_written_is_measured(file, names, within, files, surfaces):
-    found = read_surface_file(files / file)
+    found = read_surfaces(files / file)
     assert list(found) == names
     for one, known in zip(found.values(), surfaces.values(), strict=True):
         xyz, moved = points_near(known)
@@ -65,7 +65,7 @@ def test_what_was_written_is_measured(file, names, within, files, surfaces):
 
 @pytest.mark.parametrize("file", ["a.igs", "a.brep", "a.ts"])
 def test_the_surface_ends_at_its_outline(file, files, surfaces):
-    one = next(iter(read_surface_file(files / file).values()))
+    one = next(iter(read_surfaces(files / file).values()))
     x, y = ORIGIN[0] + np.array([50.0, 500, 500, 980]), ORIGIN[1] + np.array([300.0, 300, 690, 20])
     known = surfaces[LONG].elevation(x, y)
     assert np.isnan(known).tolist() == [True, False, True, True]
@@ -83,7 +83,7 @@ def test_the_surface_ends_at_its_outline(file, files, surfaces):
 
 
 def test_sigma_of_a_given_surface_is_eq_3(files, surfaces):
-    one = read_surface_file(files / "a.igs")[LONG]
+    one = read_surfaces(files / "a.igs")[LONG]
     xyz, moved = points_near(surfaces[LONG], 50)
     kinds = np.array(["borehole", "section"] * 25)
     judged = judge(one, PointSet(xyz, kind=kinds), FitSettings(epsilon=0.1), "T1")
@@ -107,7 +107,7 @@ def test_loose_faces_are_one_surface_and_units_are_converted(tmp_path):
         writer.AddShape(box.wrapped)
     writer.ComputeModel()
     assert writer.Write(str(tmp_path / "loose.igs"))
-    (one,) = read_surface_file(tmp_path / "loose.igs").values()
+    (one,) = read_surfaces(tmp_path / "loose.igs").values()
     assert one.name == "loose"
     assert len(one.patches) == 3
     # OpenCASCADE's own unit is the millimetre: 3,000 by 500 of them.
@@ -136,7 +136,7 @@ VRTX 1 0 0 0
 END
 """
     (tmp_path / "b.ts").write_text(text)
-    (one,) = read_surface_file(tmp_path / "b.ts").values()
+    (one,) = read_surfaces(tmp_path / "b.ts").values()
     assert isinstance(one, MeshSurface)
     assert one.name == "base"
     foot = 0.3048
@@ -157,29 +157,29 @@ END
 def test_a_damaged_tsurf_is_named(text, words, tmp_path):
     (tmp_path / "b.ts").write_text("GOCAD TSurf 1\n" + text)
     with pytest.raises(InputError, match=words):
-        read_surface_file(tmp_path / "b.ts")
+        read_surfaces(tmp_path / "b.ts")
 
 
 @pytest.mark.parametrize("name", ["a.igs", "a.brep", "a.ts", "a.step"])
 def test_what_is_no_surface_is_said(name, tmp_path):
     with pytest.raises(InputError, match="no such file"):
-        read_surface_file(tmp_path / name)
+        read_surfaces(tmp_path / name)
     (tmp_path / name).write_text("no surface\n")
     with pytest.raises(InputError, match=re.escape(name)):
-        read_surface_file(tmp_path / name)
+        read_surfaces(tmp_path / name)
     with pytest.raises(InputError, match=r"'\.dwg'.*\.brep"):
-        read_surface_file(tmp_path / "a.dwg")
+        read_surfaces(tmp_path / "a.dwg")
 
 
 def test_a_mesh_goes_to_triangle_formats_and_grids_not_to_nurbs(files, tmp_path):
     found = {LONG: read_surfaces([files / "a.ts"])[LONG]}
     for to in ("obj", "landxml", "tsurf", "asc", "dxf", "ply"):
-        assert export(found, to, tmp_path / f"a.{to}", Request(cell=50.0))
-    again = next(iter(read_surface_file((tmp_path / "a.tsurf").rename(tmp_path / "b.ts")).values()))
+        assert write_surface(found, tmp_path / f"a.{to}", format=to, cell=50.0)
+    again = next(iter(read_surfaces((tmp_path / "a.tsurf").rename(tmp_path / "b.ts")).values()))
     assert np.abs(again.mesh.xyz - found[LONG].mesh.xyz).max() < 1e-6
     for to in ("step", "iges", "brep", "ifc"):
         with pytest.raises(InputError, match=r"triangle mesh.*landxml"):
-            export(found, to, tmp_path / "x")
+            write_surface(found, tmp_path / "x", format=to)
 
 
 def run(monkeypatch, capsys, *arguments):
@@ -202,7 +202,7 @@ def test_the_commands_take_every_format(files, surfaces, tmp_path, monkeypatch, 
         assert (code, "2 surfaces" in err) == (2, True)
         code, out, _ = run(monkeypatch, capsys, "info", files / file, "--json")
         assert [row["surface"] for row in json.loads(out)] == [more, "fold"]
-    export({"T1": surfaces[LONG].with_(outline=None)}, "iges", tmp_path / "one.igs")
+    write_surface({"T1": surfaces[LONG].with_(outline=None)}, tmp_path / "one.igs", format="iges")
     code, out, _ = run(
         monkeypatch, capsys, "check", tmp_path / "one.igs", tmp_path / "p.csv", "--epsilon", "1", "--json"
     )
@@ -219,7 +219,7 @@ def test_a_foreign_step_is_a_trimmed_surface(tmp_path):
 
     cq.exporters.export(cq.Workplane(obj=cq.Face.makeFromWires(cq.Wire.makeCircle(5000, (0, 0, 0), (0, 0, 1)))),
                         str(tmp_path / "disc.step"))  # fmt: skip
-    (one,) = read_surface_file(tmp_path / "disc.step").values()
+    (one,) = read_surfaces(tmp_path / "disc.step").values()
     assert isinstance(one, TrimmedSurface)
     judged = judge(one, PointSet([[4.5, 4.5, 0], [0, 0, 0.1]]), FitSettings(), "disc")
     # The corner of the square around the disc lies 1.36 m from it: 4.5 sqrt(2) - 5.

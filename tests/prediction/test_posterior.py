@@ -15,7 +15,7 @@ from geofit.fitting.deletion import LinearFit, linear_fit
 from geofit.fitting.field import energy_band
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.posterior import posterior
-from geofit.prediction.bands import Spread, band, grid_over, sd_at, uncertainty_on
+from geofit.prediction.bands import Spread, band, grid_over, prediction_sd, uncertainty_on
 from geofit.prediction.drilling import greedy_holes, suggest_holes
 from geofit.splines import bspline
 from geofit.splines.blocks import BlockFactor
@@ -166,7 +166,7 @@ def test_standard_deviation_grows_away_from_the_points():
     distance = np.linalg.norm(nodes[:, None] - surface.points.xyz[None, :, :2], axis=2).min(axis=1)
     far, close = distance > np.quantile(distance, 0.9), distance < np.quantile(distance, 0.1)
     assert np.median(uncertainty.sd.ravel()[far]) > 5 * np.median(uncertainty.sd.ravel()[close])
-    at = sd_at(surface, uncertainty, nodes[::500])
+    at = prediction_sd(surface, uncertainty, nodes[::500])
     assert at == pytest.approx(uncertainty.sd.ravel()[::500], rel=1e-6)
 
 
@@ -176,7 +176,7 @@ def test_band_lies_z_times_sd_above_and_below_and_keeps_its_seams():
     uncertainty = uncertainty_on(grid_over(surface), spread)
     upper, lower = band(surface, uncertainty, 0.9)
     x, y = small_truth().places(400).T
-    sd = sd_at(surface, uncertainty, np.column_stack([x, y]))
+    sd = prediction_sd(surface, uncertainty, np.column_stack([x, y]))
     middle = surface.elevation(x, y)
     assert (upper.elevation(x, y) > middle).all()
     assert upper.elevation(x, y) - middle == pytest.approx(middle - lower.elevation(x, y), abs=1e-6)

@@ -16,8 +16,10 @@ from geofit.cad.step import write_step
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.points import PointSet
 from geofit.io.export.section_csv import write_section_csv
+from geofit.io.export.write import FORMATS, write_surface
 from geofit.io.grid import read_ground
-from geofit.project.export import FORMATS, Request, export, read_line, read_surfaces, section
+from geofit.io.surface_files import read_surfaces
+from geofit.project.section import read_line, section
 from geofit.sampling.cut import CutLine
 from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
 
@@ -41,7 +43,7 @@ def both(upper, lower):
 def test_every_format_writes_what_it_says(to, both, tmp_path):
     """Each file that is named exists, nothing else is left, and an empty file is none."""
     pytest.importorskip({"tif": "rasterio", "gpkg": "pyogrio", "ifc": "ifcopenshell", "geoh5": "h5py"}.get(to, "numpy"))
-    files = export(both, to, tmp_path / "new" / f"site.{to}", Request(tolerance=2.0, cell=50.0, interval=20.0))
+    files = write_surface(both, tmp_path / "new" / f"site.{to}", format=to, tolerance=2.0, cell=50.0, interval=20.0)
     assert files
     assert all(file.stat().st_size > 100 for file in files)
     left = {p for p in (tmp_path / "new").iterdir() if p.is_file()}
@@ -49,21 +51,21 @@ def test_every_format_writes_what_it_says(to, both, tmp_path):
 
 
 def test_one_horizon_a_file_where_the_format_asks_for_it(both, tmp_path):
-    files = export(both, "asc", tmp_path / "site.asc", Request(cell=50.0))
+    files = write_surface(both, tmp_path / "site.asc", format="asc", cell=50.0)
     assert [file.name for file in files] == ["site_T2_T1.asc", "site_强风化.asc"]
-    alone = export({"T2/T1": both["T2/T1"]}, "asc", tmp_path / "one.asc", Request(cell=50.0))
+    alone = write_surface({"T2/T1": both["T2/T1"]}, tmp_path / "one.asc", format="asc", cell=50.0)
     assert alone == [tmp_path / "one.asc"]
 
 
 def test_thickness_grid_is_the_difference(both, tmp_path):
-    (file,) = export(both, "asc", tmp_path / "t.asc", Request(cell=50.0, value="thickness"))
+    (file,) = write_surface(both, tmp_path / "t.asc", format="asc", cell=50.0, value="thickness")
     grid = read_ground(file)
     x, y = np.meshgrid(grid.x, grid.y)
     truth = both["T2/T1"].elevation(x, y) - both["强风化"].elevation(x, y)
     assert grid.z.shape == (15, 21)
     assert np.abs(grid.z - truth).max() < 6e-5
     with pytest.raises(InputError, match="between two horizons; given: 1"):
-        export({"T2/T1": both["T2/T1"]}, "asc", tmp_path / "t.asc", Request(value="thickness"))
+        write_surface({"T2/T1": both["T2/T1"]}, tmp_path / "t.asc", format="asc", value="thickness")
 
 
 def test_deviation_grid_holds_the_largest_of_each_cell(upper):
@@ -86,17 +88,17 @@ def test_grids_stand_at_multiples_of_the_cell(upper):
 
 
 @pytest.mark.parametrize(
-    ("request_", "match"),
+    ("options", "match"),
     [
-        (Request(cell=0.0), "above 0"),
-        (Request(cell=5000.0), "leaves no grid"),
-        (Request(cell=1e-4), "cells"),
-        (Request(value="dip"), "unknown"),
+        ({"cell": 0.0}, "above 0"),
+        ({"cell": 5000.0}, "leaves no grid"),
+        ({"cell": 1e-4}, "cells"),
+        ({"value": "dip"}, "unknown"),
     ],
 )
-def test_grid_settings_are_checked(request_, match, both, tmp_path):
+def test_grid_settings_are_checked(options, match, both, tmp_path):
     with pytest.raises(SettingsError, match=match):
-        export(both, "asc", tmp_path / "a.asc", request_)
+        write_surface(both, tmp_path / "a.asc", **options)
 
 
 def test_horizons_apart_have_no_thickness(upper, lower):
@@ -108,15 +110,15 @@ def test_points_give_deviations_to_vtp(upper, tmp_path):
     pyvista = pytest.importorskip("pyvista")
     x, y = ORIGIN[:1] + 100.0, ORIGIN[1:2] + 200.0
     points = PointSet(np.column_stack([x, y, upper.elevation(x, y) + 0.5]))
-    (file,) = export({"T1": upper}, "vtp", tmp_path / "a.vtp", Request(tolerance=2.0, points={"any": points}))
+    (file,) = write_surface({"T1": upper}, tmp_path / "a.vtp", format="vtp", tolerance=2.0, points={"any": points})
     assert pyvista.read(file)["deviation"][-1] == pytest.approx(upper.distance(points.xyz)[0])
 
 
 def test_unknown_format_and_no_surface(both, tmp_path):
     with pytest.raises(InputError, match=r"no format 'dwg'.*landxml"):
-        export(both, "dwg", tmp_path / "a.dwg")
+        write_surface(both, tmp_path / "a.dwg", format="dwg")
     with pytest.raises(InputError, match="No surface"):
-        export({}, "obj", tmp_path / "a.obj")
+        write_surface({}, tmp_path / "a.obj", format="obj")
 
 
 def test_surfaces_of_several_files_keep_apart(both, tmp_path):

@@ -8,7 +8,7 @@ from surfaces import ORIGIN, fold, height_field, horizon, lifted, nine
 
 from geofit.data.errors import SettingsError
 from geofit.sampling.contours import contours, interval_for
-from geofit.sampling.cut import cut
+from geofit.sampling.cut import cut_section
 
 TOLERANCE = 0.05
 
@@ -22,7 +22,7 @@ def between(line, count=7):
 def test_a_section_with_a_bend_through_nine_patches():
     surface = horizon(nine()[1])
     corners = np.array([[-50, 30], [420, 333.3], [990, 120]]) + ORIGIN[:2]
-    (line,) = cut(surface, corners, tolerance=TOLERANCE)
+    (line,) = cut_section(surface, corners, tolerance=TOLERANCE)
     legs = np.linalg.norm(np.diff(corners, axis=0), axis=1)
     # It enters at x = 0 and ends inside.
     assert line.distance[0] == pytest.approx(legs[0] * 50 / 470, abs=1e-6)
@@ -39,7 +39,7 @@ def test_a_section_with_a_bend_through_nine_patches():
 def test_a_section_through_an_overturned_fold_is_one_line_that_turns_back():
     surface = horizon([fold()])
     corners = np.array([[-100, 140], [400, 160]]) + ORIGIN[:2]
-    (line,) = cut(surface, corners, tolerance=TOLERANCE)
+    (line,) = cut_section(surface, corners, tolerance=TOLERANCE)
     assert (np.diff(line.distance) < 0).any()
     assert np.abs(surface.distance(line.xyz)).max() < 1e-8
     assert np.abs(surface.distance(between(line.xyz))).max() <= TOLERANCE
@@ -56,17 +56,17 @@ def test_a_section_through_an_overturned_fold_is_one_line_that_turns_back():
 
 def test_a_section_that_ends_inside_a_fold_and_one_beside_it():
     surface = horizon([fold()])
-    lines = cut(surface, np.array([[60, 150], [80, 150]]) + ORIGIN[:2], tolerance=TOLERANCE)
+    lines = cut_section(surface, np.array([[60, 150], [80, 150]]) + ORIGIN[:2], tolerance=TOLERANCE)
     assert len(lines) == 3  # three limbs over 20 m
     for line in lines:
         assert line.distance[[0, -1]] == pytest.approx((0, 20), abs=1e-6)
         assert np.abs(surface.distance(line.xyz)).max() < 1e-8
-    assert cut(surface, np.array([[0, 1000], [100, 1000]]) + ORIGIN[:2]) == []
+    assert cut_section(surface, np.array([[0, 1000], [100, 1000]]) + ORIGIN[:2]) == []
 
 
 def test_a_section_respects_the_outline():
     surface = horizon([height_field()], outline=[[100, 100], [600, 100], [600, 300], [300, 200], [100, 300]])
-    lines = cut(surface, np.array([[0, 250], [900, 250]]) + ORIGIN[:2], tolerance=TOLERANCE)
+    lines = cut_section(surface, np.array([[0, 250], [900, 250]]) + ORIGIN[:2], tolerance=TOLERANCE)
     # y = 250 leaves the notch of the outline: 100..200 and 450..600.
     ends = [tuple(line.distance[[0, -1]]) for line in lines]
     assert np.array(ends) == pytest.approx(np.array([(100, 200), (450, 600)]), abs=1e-4)
@@ -77,7 +77,7 @@ def test_a_steep_surface_is_cut():
     slope = np.tan(np.radians(85))
     steep = height_field(nu=8, nv=8, size=(20.0, 700.0), z=lambda x, y: slope * x)
     surface = horizon([steep])
-    (line,) = cut(surface, np.array([[-10, 300], [40, 350]]) + ORIGIN[:2])
+    (line,) = cut_section(surface, np.array([[-10, 300], [40, 350]]) + ORIGIN[:2])
     local = line.xyz - ORIGIN
     assert np.abs(local[:, 2] - slope * local[:, 0]).max() < 1e-6
     assert np.ptp(local[:, 0]) == pytest.approx(20, abs=1e-6)
@@ -125,9 +125,9 @@ def test_interval(span, expected):
 def test_refuses_what_makes_no_section_or_too_many_contours():
     surface = horizon([height_field()])
     with pytest.raises(SettingsError, match="one place"):
-        cut(surface, [[0, 0], [0, 0]])
+        cut_section(surface, [[0, 0], [0, 0]])
     with pytest.raises(SettingsError, match=r"\(k, 2\)"):
-        cut(surface, [0, 0, 1, 1])
+        cut_section(surface, [0, 0, 1, 1])
     with pytest.raises(SettingsError, match="above 0"):
         contours(surface, -1)
     with pytest.raises(SettingsError, match="makes"):

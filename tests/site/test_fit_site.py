@@ -224,12 +224,10 @@ def test_bands_and_order_are_delivered(tmp_path):
     data = json.loads((tmp_path / "report.json").read_text(encoding="utf-8"))
     assert data["orders"][0]["crossing_area"] > 0
 
-    from geofit.io.surface_files import read_surface_file
+    from geofit.io.surface_files import read_surfaces
 
     middle = made.results[1].surface
-    upper, lower = (
-        next(iter(read_surface_file(tmp_path / f"L_{side}90.step").values())) for side in ("upper", "lower")
-    )
+    upper, lower = (next(iter(read_surfaces(tmp_path / f"L_{side}90.step").values())) for side in ("upper", "lower"))
     x, y = EASTING + np.linspace(20, 580, 20), NORTHING + np.linspace(20, 480, 20)
     assert (lower.elevation(x, y) < middle.elevation(x, y)).all()
     assert (middle.elevation(x, y) < upper.elevation(x, y)).all()

@@ -13,7 +13,7 @@ from geofit.data.messages import Said
 from geofit.data.site import Ground
 from geofit.sample import write_site
 from geofit.site.height_field import Relief
-from geofit.site.order import order_of, orders, thickness
+from geofit.site.order import compare_horizons, orders, thickness
 from geofit.site.overlap import TOUCH
 from geofit.splines import bspline
 
@@ -51,7 +51,7 @@ def local(x, y):
 def test_a_bowl_through_a_plane_is_found_with_place_area_and_volume(turn):
     # Whatever the lower net's axes and knots are.
     lower = flat(nu=13, nv=31, turn=turn, size=(1100.0, 900.0), shift=(60.0, -150.0))
-    order = order_of(surface(bowl(500.0, 350.0), "T3-T2"), lower)
+    order = compare_horizons(surface(bowl(500.0, 350.0), "T3-T2"), lower)
     (crossing,) = order.crossings
     assert crossing.area == pytest.approx(np.pi * 60**2, rel=2e-3)
     assert crossing.volume == pytest.approx(np.pi * 1e-3 * 60**4 / 2, rel=5e-3)
@@ -63,7 +63,7 @@ def test_a_bowl_through_a_plane_is_found_with_place_area_and_volume(turn):
 
 def test_the_line_of_crossing_is_exact_and_closed():
     upper, lower = surface(bowl(500.0, 350.0)), flat(nu=13)
-    (line,) = order_of(upper, lower).crossings[0].lines
+    (line,) = compare_horizons(upper, lower).crossings[0].lines
     assert np.array_equal(line[0], line[-1])
     np.testing.assert_allclose(thickness(upper, lower, line[:, 0], line[:, 1]), -TOUCH, atol=1e-8)
     np.testing.assert_allclose(line[:, 2], ORIGIN[2], atol=2e-6)
@@ -78,7 +78,7 @@ def test_two_dips_are_two_crossings_the_larger_first():
         one = 12 * np.exp(-((x - 250) ** 2 + (y - 350) ** 2) / (2 * width**2))
         return high - one - 15 * np.exp(-((x - 750) ** 2 + (y - 350) ** 2) / (2 * width**2))
 
-    order = order_of(surface(dips, nu=80, nv=60), flat())
+    order = compare_horizons(surface(dips, nu=80, nv=60), flat())
     assert len(order.crossings) == 2
     for crossing, (x, depth) in zip(order.crossings, ((750.0, 15.0), (250.0, 12.0)), strict=True):
         # The overlap of a Gaussian dip, by hand.
@@ -90,7 +90,7 @@ def test_two_dips_are_two_crossings_the_larger_first():
 
 
 def test_planes_that_cross_share_a_wedge():
-    order = order_of(surface(lambda x, y: 0.1 * (x - 400.0)), flat(nu=11, nv=9))
+    order = compare_horizons(surface(lambda x, y: 0.1 * (x - 400.0)), flat(nu=11, nv=9))
     (crossing,) = order.crossings
     assert crossing.area == pytest.approx(400 * 700, rel=1e-5)
     assert crossing.volume == pytest.approx(700 * 0.1 * 400**2 / 2, rel=1e-5)
@@ -114,7 +114,7 @@ def test_a_crossing_within_one_cell_of_the_lattice_is_found():
     for one in (upper, lower):
         plan = Relief(one).lattice(2)
         assert thickness(upper, lower, plan[..., 0], plan[..., 1]).min() > 0
-    (crossing,) = order_of(upper, lower).crossings
+    (crossing,) = compare_horizons(upper, lower).crossings
     assert crossing.depth == pytest.approx(0.01, abs=1e-4)
     overlap = top - (top.max() - 0.01)
     cell = (x[1] - x[0]) * (y[1] - y[0])
@@ -125,7 +125,7 @@ def test_a_crossing_within_one_cell_of_the_lattice_is_found():
 
 def test_an_outline_cuts_area_and_crossing():
     outline = [(500, 100), (900, 100), (900, 600), (500, 600)]
-    order = order_of(surface(bowl(500.0, 350.0), outline=outline), flat(nu=13))
+    order = compare_horizons(surface(bowl(500.0, 350.0), outline=outline), flat(nu=13))
     assert order.area == pytest.approx(400 * 500, rel=1e-6)
     (crossing,) = order.crossings
     assert crossing.area == pytest.approx(np.pi * 60**2 / 2, rel=3e-3)
@@ -137,7 +137,7 @@ def test_an_outline_cuts_area_and_crossing():
 
 def test_the_mean_thickness_is_that_of_the_common_area():
     outline = np.array([(100.0, 100.0), (700.0, 150.0), (300.0, 600.0)])
-    order = order_of(surface(lambda x, y: 30 + 0.02 * x, outline=outline), flat(nu=15))
+    order = compare_horizons(surface(lambda x, y: 30 + 0.02 * x, outline=outline), flat(nu=15))
     assert order.mean == pytest.approx(30 + 0.02 * outline[:, 0].mean(), rel=1e-3)
     assert (order.min, order.max) == pytest.approx((32.0, 44.0), abs=1e-4)
     np.testing.assert_allclose(local(*order.thinnest), outline[0], atol=1e-3)
@@ -145,26 +145,26 @@ def test_the_mean_thickness_is_that_of_the_common_area():
 
 
 def test_horizons_that_touch_do_not_cross():
-    order = order_of(surface(bowl(500.0, 350.0, radius=0.0)), flat())
+    order = compare_horizons(surface(bowl(500.0, 350.0, radius=0.0)), flat())
     assert order.crossings == ()
     assert order.min == pytest.approx(0.0, abs=1e-9)
     same = flat(3.0)
-    assert order_of(same, flat(3.0, nu=12)).check().passed
+    assert compare_horizons(same, flat(3.0, nu=12)).check().passed
 
 
 def test_a_crossing_above_the_ground_is_told_from_one_in_the_rock():
     upper, lower = surface(bowl(500.0, 350.0)), flat()
     x, y = ORIGIN[0] + np.linspace(0, 1000, 11), ORIGIN[1] + np.linspace(0, 700, 8)
     for z, share, passed in ((-50.0, 1.0, True), (50.0, 0.0, False)):
-        order = order_of(upper, lower, Ground(x, y, np.full((8, 11), ORIGIN[2] + z)))
+        order = compare_horizons(upper, lower, Ground(x, y, np.full((8, 11), ORIGIN[2] + z)))
         assert order.crossings[0].in_air == share
         assert order.check().passed is passed
-    assert "above the ground only" in order_of(upper, lower, Ground(x, y, np.zeros((8, 11)))).check().text
-    assert order_of(upper, lower).check().passed is False
+    assert "above the ground only" in compare_horizons(upper, lower, Ground(x, y, np.zeros((8, 11)))).check().text
+    assert compare_horizons(upper, lower).check().passed is False
 
 
 def test_the_check_says_where_how_deep_and_how_much():
-    check = order_of(surface(bowl(500.0, 350.0), "T3-T2"), flat(name="T2-T1")).check()
+    check = compare_horizons(surface(bowl(500.0, 350.0), "T3-T2"), flat(name="T2-T1")).check()
     assert (check.name, check.passed, check.unit) == ("order", False, "m")
     assert check.value == pytest.approx(3.6, abs=1e-6)
     assert isinstance(check.text, Said)
@@ -173,7 +173,7 @@ def test_the_check_says_where_how_deep_and_how_much():
 
 
 def test_horizons_apart_in_plan_have_no_order():
-    order = order_of(flat(), flat(shift=(5000.0, 0.0)))
+    order = compare_horizons(flat(), flat(shift=(5000.0, 0.0)))
     assert order.area == 0
     assert order.check().passed is None
 

@@ -10,8 +10,8 @@ from geofit import PointSet, fit_horizon
 from geofit.cad.sewing import shell
 from geofit.data.errors import SettingsError
 from geofit.data.messages import Said
-from geofit.site.order import order_of, orders
-from geofit.site.separate import repair
+from geofit.site.order import compare_horizons, orders
+from geofit.site.separate import separate_horizons
 
 BOUNDARY = np.array([[0, 0], [1000, 0], [1000, 900], [0, 900]]) + np.array([EASTING, NORTHING])
 HEIGHT = hills(3, size=1000.0, shortest=300.0, relief=4.0)
@@ -46,15 +46,15 @@ def crossing():
 
 @pytest.fixture(scope="module")
 def repaired(crossing):
-    return repair(crossing, ["top", "base"])
+    return separate_horizons(crossing, ["top", "base"])
 
 
 def test_the_crossing_goes_and_exact_points_stay_exact(crossing, repaired):
-    before = order_of(crossing["top"], crossing["base"])
+    before = compare_horizons(crossing["top"], crossing["base"])
     assert before.crossed_volume > 100
     assert len(before.crossings) >= 3
     assert repaired.contradictions == ()
-    after = order_of(repaired.surfaces["top"], repaired.surfaces["base"])
+    after = compare_horizons(repaired.surfaces["top"], repaired.surfaces["base"])
     assert after.crossed_volume == 0
     assert after.check().passed
     for name, surface in repaired.surfaces.items():
@@ -74,7 +74,7 @@ def test_approximated_points_hardly_move_and_the_change_is_told(crossing, repair
 
 
 def test_nothing_moves_outside_the_supports_of_the_crossing(crossing, repaired):
-    order = order_of(crossing["top"], crossing["base"])
+    order = compare_horizons(crossing["top"], crossing["base"])
     assert order.crossed_area < 0.2 * order.area
     places = np.concatenate([line[:, :2] for one in order.crossings for line in one.lines])
     for name, surface in repaired.surfaces.items():
@@ -105,16 +105,16 @@ def test_seams_stay_closed_and_tangent(repaired):
 
 def test_a_least_thickness_is_kept(crossing):
     # Between the points only: at them the stratum is 0.8 m thick.
-    found = repair(crossing, ["top", "base"], minimum=0.1)
+    found = separate_horizons(crossing, ["top", "base"], minimum=0.1)
     assert found.contradictions == ()
-    assert order_of(found.surfaces["top"], found.surfaces["base"]).min >= 0.1 - 1e-6
+    assert compare_horizons(found.surfaces["top"], found.surfaces["base"]).min >= 0.1 - 1e-6
 
 
 def test_three_horizons_are_pushed_apart_together(crossing):
     three = {**crossing, "middle": fit(4, 0.4, "middle")}
     sequence = ["top", "middle", "base"]
     assert sum(order.crossed_volume for order in orders(three, sequence)) > 200
-    found = repair(three, sequence)
+    found = separate_horizons(three, sequence)
     left = {(one.upper, one.lower) for one in found.contradictions}
     for order in orders(found.surfaces, sequence):
         assert order.crossed_volume == 0 or (order.upper, order.lower) in left
@@ -124,7 +124,7 @@ def test_three_horizons_are_pushed_apart_together(crossing):
 
 def test_surfaces_in_order_are_handed_on_as_they_are(crossing):
     apart = {"top": crossing["top"], "base": fit(2, -60.0, "base"), "other": crossing["base"]}
-    found = repair(apart, ["top", "base"])
+    found = separate_horizons(apart, ["top", "base"])
     assert found.moved == {}
     assert all(found.surfaces[name] is apart[name] for name in apart)
 
@@ -135,7 +135,7 @@ def test_exact_points_that_contradict_are_named_with_their_rows(crossing):
     xyz = points.xyz[[row]] + np.array([0.5, 0.5, 3.0])
     more = PointSet(xyz, kind="section", section="S3", file="wrong.csv", row=77)
     wrong = fit_horizon(PointSet.concatenate([arrangement(2, 0.0), more]), boundary=BOUNDARY, name="base")
-    found = repair({"top": crossing["top"], "base": wrong}, ["top", "base"])
+    found = separate_horizons({"top": crossing["top"], "base": wrong}, ["top", "base"])
     assert found.contradictions
     worst = max(found.contradictions, key=lambda one: one.lack)
     assert np.hypot(worst.x - xyz[0, 0], worst.y - xyz[0, 1]) < 10
@@ -152,6 +152,6 @@ def test_exact_points_that_contradict_are_named_with_their_rows(crossing):
 def test_what_cannot_be_repaired_is_refused(crossing):
     imported = {**crossing, "base": replace(crossing["base"], model=None)}
     with pytest.raises(SettingsError, match="'base' has no control net"):
-        repair(imported, ["top", "base"])
+        separate_horizons(imported, ["top", "base"])
     with pytest.raises(SettingsError, match="least thickness is -1"):
-        repair(crossing, ["top", "base"], minimum=-1)
+        separate_horizons(crossing, ["top", "base"], minimum=-1)

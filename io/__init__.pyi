@@ -1,0 +1,25 @@
+# The names of `geofit.io`, one line each: types for editors, and the table of what is imported when first used.
+from geofit.io.boreholes import Boreholes as Boreholes
+from geofit.io.boreholes import read_boreholes as read_boreholes
+from geofit.io.boundary import read_boundary as read_boundary
+from geofit.io.contacts import Contacts as Contacts
+from geofit.io.contacts import take_contacts as take_contacts
+from geofit.io.export.dxf import write_section_dxf as write_section_dxf
+from geofit.io.export.section_csv import write_section_csv as write_section_csv
+from geofit.io.export.write import FORMATS as FORMATS
+from geofit.io.export.write import write_surface as write_surface
+from geofit.io.grid import read_ground as read_ground
+from geofit.io.mapping import ColumnMapping as ColumnMapping
+from geofit.io.mapping import load_mappings as load_mappings
+from geofit.io.mapping import save_mappings as save_mappings
+from geofit.io.picks import Picks as Picks
+from geofit.io.picks import read_points as read_points
+from geofit.io.preview import TablePreview as TablePreview
+from geofit.io.preview import preview_file as preview_file
+from geofit.io.preview import preview_table as preview_table
+from geofit.io.project import open_project as open_project
+from geofit.io.project import save_project as save_project
+from geofit.io.site_file import read_site as read_site
+from geofit.io.source import Source as Source
+from geofit.io.surface_files import read_surface as read_surface
+from geofit.io.surface_files import read_surfaces as read_surfaces
