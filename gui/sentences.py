@@ -58,6 +58,7 @@ _LOG = (
     QT_TRANSLATE_NOOP("Said", "changed"),
     QT_TRANSLATE_NOOP("Said", "%s and %s cross at %d places"),
     QT_TRANSLATE_NOOP("Said", "The data of %s have changed since: its surface cannot be made again as it was. Fit it."),
+    QT_TRANSLATE_NOOP("Said", "The journal of a session cannot be read (%s); it is kept as %s"),
     QT_TRANSLATE_NOOP("Said", "There is no journal, so that a crash would lose unsaved work: %s"),
     QT_TRANSLATE_NOOP("Said", "The journal cannot be written any more, so that a crash would lose unsaved work: %s"),
     QT_TRANSLATE_NOOP(

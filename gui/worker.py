@@ -13,7 +13,9 @@ import multiprocessing
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
+from multiprocessing.reduction import ForkingPickler
 from typing import Any
 
 from PySide6.QtCore import QCoreApplication, QObject, QRunnable, Qt, QThreadPool, Signal
@@ -30,6 +32,8 @@ _LOG = logging.getLogger(__name__)
 _PAUSE = 0.05
 #: Seconds between two looks at a process of its own.
 _LOOK = 0.05
+#: Seconds that a process has to end when it is asked to.
+_PATIENCE = 1.0
 
 
 class _Line:
@@ -229,8 +233,15 @@ class _Helper:
         self._process.start()
         theirs.close()
 
+    @property
+    def alive(self) -> bool:
+        """Whether the process is there: one that idles may have been ended by the system, for its memory."""
+        return self._process.is_alive()
+
     def call(self, function: Callable[..., Any], args: tuple[Any, ...], progress: Callable[..., bool | None]) -> Any:
-        self.pipe.send((function, args))
+        order = ForkingPickler.dumps((function, args))
+        # In a thread: a process that the system has stopped reads nothing, and Cancel must be heard meanwhile.
+        threading.Thread(target=self._send, args=(order,), daemon=True).start()
         name, fraction = "start", 0.0
         while True:
             if progress(name, fraction) is False:
@@ -239,7 +250,7 @@ class _Helper:
                 continue
             try:
                 kind, value = self.pipe.recv()
-            except (EOFError, ConnectionResetError):
+            except (EOFError, OSError):
                 self._process.join(5)
                 raise GeofitError(
                     said(
@@ -255,10 +266,17 @@ class _Helper:
             else:
                 return value
 
+    def _send(self, order: memoryview) -> None:
+        with suppress(OSError):  # the process has ended, which the reading end finds out
+            self.pipe.send_bytes(order)
+
     def end(self) -> None:
-        self.pipe.close()
         self._process.terminate()
+        self._process.join(_PATIENCE)
+        # A stopped process hears no other signal.
+        self._process.kill()
         self._process.join()
+        self.pipe.close()
         self._process.close()
 
 
@@ -271,7 +289,7 @@ class _Told(Exception):  # noqa: N818 - the error is what it carries
 
 
 def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: Callable[..., bool | None]) -> Any:
-    helper = _HELPERS.pop() if _HELPERS else _Helper()
+    helper = _ready()
     try:
         result = helper.call(function, args, progress)
     except _Told as told:
@@ -285,6 +303,16 @@ def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: C
         raise
     _HELPERS.append(helper)
     return result
+
+
+def _ready() -> _Helper:
+    """Return an idle process that is there, or a new one."""
+    while _HELPERS:
+        helper = _HELPERS.pop()
+        if helper.alive:
+            return helper
+        helper.end()
+    return _Helper()
 
 
 def _serve(pipe: Connection, first: Callable[..., Any] | None) -> None:

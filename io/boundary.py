@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.messages import said
+from geofit.geometry.area import fault_of_area
 from geofit.io.columns import BOUNDARY
 from geofit.io.journal import Journal
 from geofit.io.parser_words import told_by
@@ -138,21 +139,6 @@ def _rings(node: Any) -> list[Any]:
 
 
 def _check(corners: Floats, name: str) -> None:
-    distinct = len(np.unique(corners, axis=0))
-    if distinct < 3:
-        raise InputError(
-            said("Different corners of the boundary: {count}; at least three are needed", count=distinct),
-            "List the corners of the study area in order.",
-            file=name,
-        )
-    from shapely import Polygon
-    from shapely.validation import explain_validity
-
-    polygon = Polygon(corners)
-    if not polygon.is_valid or polygon.area == 0:
-        what, _, place = explain_validity(polygon).rstrip("]").partition("[")
-        raise InputError(
-            said("The boundary crosses or touches itself: {reason}, {place}", reason=what, place=place),
-            "List the corners in order around the study area, each once.",
-            file=name,
-        )
+    fault = fault_of_area(corners)
+    if fault is not None:
+        raise InputError(fault, "List the corners in order around the study area, each once.", file=name)

@@ -53,7 +53,7 @@ def _spelled(words: str) -> tuple[str, ...]:
 
 
 _HOLE = _spelled(
-    "hole holeid bhid holename holenumber holeno borehole boreholeid boreholename boreholeno drillhole dhid "
+    "hole holeid bhid holename holenumber holeno borehole boreholeid boreholename boreholeno drillhole dhid collarid "
     "locationid locaid pointid well wellid wellname bore boreid wellbore uwi "
     "孔号 钻孔编号 钻孔号 钻孔 钻孔名称 孔名 勘探点编号 originalname id name 编号"
 )

@@ -8,13 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.errors import InputError
+from geofit.data.errors import InputError, MissingDependencyError
 from geofit.data.messages import said
 from geofit.io.extra import need
 
-__all__ = ["is_code", "project"]
+__all__ = ["WGS84", "is_code", "project", "refuse_degrees"]
 
 Floats = NDArray[np.float64]
+
+#: The system of longitudes and latitudes that name no other one.
+WGS84 = "EPSG:4326"
 
 
 def is_code(label: str | None) -> bool:
@@ -53,6 +56,33 @@ def project(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[
     lost = ~(np.isfinite(east) & np.isfinite(north))
     east[lost] = north[lost] = np.nan
     return east, north
+
+
+def refuse_degrees(crs: str, file: str) -> None:
+    """Refuse places of a geographic system where no projected one is named that they could be brought to.
+
+    Raises
+    ------
+    InputError
+        If the system counts in degrees.
+    """
+    if crs == WGS84 or _is_geographic(crs):
+        raise InputError(
+            said(
+                "The places are longitude and latitude ({crs}); easting and northing in metres are needed", crs=crs[:60]
+            ),
+            'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
+            "(geofit fit and geofit import: --crs).",
+            file=file,
+        )
+
+
+def _is_geographic(crs: str) -> bool:
+    """Whether a system counts in degrees; of one that nobody can look up here nothing is known."""
+    try:
+        return bool(_system(need("pyproj", "gis", said("Projecting {file}", file="")), crs, "").is_geographic)
+    except (InputError, MissingDependencyError):
+        return False
 
 
 def _system(pyproj: Any, text: str, file: str) -> Any:

@@ -90,7 +90,7 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
     grid = load_ground(source, own)
     for file, digest in own.inputs.items():
         journal.inputs[file] = digest
-    journal.issues += [issue for issue in own.issues if "have no data" not in issue.reason]
+    journal.take(issue for issue in own.issues if "have no data" not in issue.reason)
     x, y = np.meshgrid(grid.x, grid.y[::-1])
     xyz = np.column_stack([x.ravel(), y.ravel(), grid.z[::-1].ravel()])
     known = np.isfinite(xyz[:, 2])

@@ -15,7 +15,7 @@ from geofit.io.guess_values import by_values
 from geofit.io.hints import nearest
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.io.tables import Table, parse_numbers
+from geofit.io.tables import Table, parse_numbers, shown
 
 __all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as"]
 
@@ -292,7 +292,7 @@ def locate(table: Table, role: str, wanted: str | int) -> int:
             "There is no column '{wanted}' for {role}; the columns are {names}",
             wanted=Verbatim(wanted),
             role=Verbatim(role),
-            names=", ".join(table.header),
+            names=shown(table.header),
         ),
         said("Name one of them, or give its number from 1 to {count}.", count=len(table.header)),
         file=table.name,
@@ -303,8 +303,8 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
     if {"x", "y"} & set(missing) and any(plain_name(name)[0] in GEOGRAPHIC for name in table.header):
         return InputError(
             "Longitude and latitude are degrees; easting and northing in metres are needed",
-            'Project the coordinates to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
-            "(geofit import: --crs).",
+            'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
+            "(geofit fit and geofit import: --crs).",
             file=table.name,
         )
     names = listed(said("'{name}'", name=Verbatim(role)) for role in missing)
@@ -313,7 +313,7 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
             "No column for {names} was found in this {kind} table; its columns are {found}",
             names=names,
             kind=schema.name,
-            found=", ".join(table.header),
+            found=shown(table.header),
         )
         if table.named
         else said(

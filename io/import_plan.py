@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.errors import InputError
+from geofit.data.files import legible
 from geofit.data.messages import Verbatim, listed, said
 from geofit.data.site import ImportIssue, TableCount
-from geofit.io.columns import SCHEMAS, plain_name
+from geofit.io.columns import GEOGRAPHIC, SCHEMAS, plain_name
 from geofit.io.grid import load_ground
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
@@ -77,6 +78,14 @@ class Plan:
 def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, plan: Plan) -> None:
     """Preview a file and put its tables where they belong."""
     name = _relative(path, folder)
+    if legible(name) != name:
+        plan.set_aside(
+            legible(name),
+            0,
+            said("The name of the file is not UTF-8, and a site file cannot name it"),
+            said("Rename the file."),
+        )
+        return
     source = Source(path=path, name=name, target=crs or None)
     try:
         previews = preview_file(source, mappings)
@@ -117,6 +126,11 @@ def _not_recognised(preview: TablePreview) -> tuple[str, str]:
         # Of two kinds of which as much is there, one that asks for more is likelier.
         if share > best or (share == best > 0 and len(SCHEMAS[kind].required) > len(SCHEMAS[nearest].required)):
             nearest, missing, best = kind, absent, share
+    if names & GEOGRAPHIC and not preview.crs:
+        return said(
+            "The file is not used: its places are longitude and latitude ({names})",
+            names=listed(Verbatim(name) for name in preview.header if plain_name(name)[0] in GEOGRAPHIC),
+        ), said("Name the grid of the site, in metres, with --crs, such as EPSG:32650: they are projected to it.")
     if best >= 0.5:
         return said(
             "The file is not used: nearest to a {kind} table, but without {names}",

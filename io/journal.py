@@ -3,28 +3,35 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
+from geofit.data.messages import folded, said
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.source import Source
 
-__all__ = ["Journal"]
+__all__ = ["MOST", "Journal"]
 
 Severity = Literal["error", "warning", "note"]
+
+#: Findings of one kind, of one column of one file, that are listed one by one.
+MOST = 10_000
 
 
 @dataclass
 class Journal:
     """One list for all files of one reading; handed down to every reader, which appends to it.
 
+    ``found`` holds what was listed; of findings that are alike but for their row the first :data:`MOST`.
     ``refused`` says of holes whose collar was not used where that row stands.
     """
 
-    issues: list[ImportIssue] = field(default_factory=list)
+    found: list[ImportIssue] = field(default_factory=list)
     counts: list[TableCount] = field(default_factory=list)
     inputs: dict[str, str] = field(default_factory=dict)
     refused: dict[str, str] = field(default_factory=dict)
+    _alike: dict[tuple[Severity, str, str, str], tuple[int, int]] = field(default_factory=dict)
 
     def read(self, source: Source) -> bytes:
         """Return the bytes of a file and keep their SHA-256."""
@@ -43,8 +50,33 @@ class Journal:
         column: str = "",
         value: str = "",
     ) -> None:
-        """List one finding."""
-        self.issues.append(ImportIssue(file, row, column, value, severity, reason, remedy))
+        """List one finding; beyond :data:`MOST` that are alike it is counted, with the last row."""
+        alike = (severity, file, getattr(reason, "template", reason), column)
+        count, _ = self._alike.get(alike, (0, 0))
+        self._alike[alike] = (count + 1, row)
+        if count < MOST:
+            self.found.append(ImportIssue(file, row, folded(column), folded(value), severity, reason, remedy))
+
+    def take(self, issues: Iterable[ImportIssue]) -> None:
+        """List what another journal found."""
+        self.found += issues
+
+    @property
+    def issues(self) -> list[ImportIssue]:
+        """Everything that was found, the counted findings as one each."""
+        more = [
+            ImportIssue(
+                file,
+                row,
+                folded(column),
+                "",
+                severity,
+                said("{count} more of this kind, the last in this row: {reason}", count=count - MOST, reason=reason),
+            )
+            for (severity, file, reason, column), (count, row) in self._alike.items()
+            if count > MOST
+        ]
+        return self.found + more
 
     def count(self, file: str, read: int, listed: int) -> None:
         """Keep the rows of one file: those that are not listed are used."""

@@ -171,6 +171,8 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
         raise InputError(
             said("The mapping is not UTF-8: {error}", error=what), "Save it as UTF-8.", file=source.name
         ) from None
+    except RecursionError:
+        raise InputError("The file is nested too deeply", "See docs/formats_in.md.", file=source.name) from None
     except tomllib.TOMLDecodeError as error:
         what, line = told_by(error)
         raise InputError(

@@ -13,6 +13,7 @@ from geofit.io.columns import ORIENTATIONS
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
+from geofit.io.tables import shown
 
 __all__ = ["load_orientations"]
 
@@ -56,7 +57,7 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
         raise InputError(
             said(
                 "No columns for an attitude were found in this orientations table; its columns are {names}",
-                names=", ".join(rows.table.header),
+                names=shown(rows.table.header),
             ),
             "Name dip with azimuth or strike, or the normal nx, ny, nz.",
             file=rows.file,

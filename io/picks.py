@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from geofit.data.files import legible
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.site import ImportIssue, TableCount
@@ -45,6 +46,7 @@ def read_points(
     encoding: str | None = None,
     progress: Progress | None = None,
     mapping: ColumnMapping | None = None,
+    crs: str | None = None,
 ) -> Picks:
     """Read a text table of points.
 
@@ -61,6 +63,8 @@ def read_points(
         Called as ``progress(stage, fraction)``.
     mapping : ColumnMapping, optional
         How the table is read, where the other arguments do not say so.
+    crs : str, optional
+        Projected coordinate system of the site; longitudes and latitudes are brought to it.
 
     Returns
     -------
@@ -83,12 +87,13 @@ def read_points(
         decimal=decimal,
         encoding=encoding,
         columns={role: column for role, column in given.items() if column is not None},
+        target=crs,
     )
     if mapping is not None:
         source = mapping.fill(source)
     journal = Journal()
     tell(progress, "read", 0.0)
-    horizons = load_picks(source, HorizonNames(), journal, alone=Path(path).stem, progress=progress)
+    horizons = load_picks(source, HorizonNames(), journal, alone=legible(Path(path).stem), progress=progress)
     tell(progress, "compare places", 0.8)
     for name, points in horizons.items():
         list_places(name, points, journal)

@@ -6,7 +6,7 @@ import numpy as np
 
 from geofit.data.messages import said
 from geofit.data.points import PointSet
-from geofit.io.journal import Journal
+from geofit.io.journal import MOST, Journal
 
 __all__ = ["list_places"]
 
@@ -28,7 +28,21 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
     cell = np.floor(points.xyz[:, :2] / nearness + 0.5)
     order = np.lexsort((np.arange(len(points)), cell[:, 1], cell[:, 0]))
     same = (np.diff(cell[order], axis=0) == 0).all(axis=1)
-    for k in np.flatnonzero(same).tolist():
+    # One word each of the first: a file may repeat one row millions of times.
+    repeated = np.flatnonzero(same)
+    if len(repeated) > MOST:
+        journal.add(
+            "warning",
+            str(points.file[order[repeated[MOST]]]),
+            said(
+                "Horizon {horizon}: {count} points lie at the place of another; the first {most} are listed",
+                horizon=horizon,
+                count=len(repeated),
+                most=MOST,
+            ),
+            "Remove what is repeated.",
+        )
+    for k in repeated[:MOST].tolist():
         i, j = int(order[k]), int(order[k + 1])
         rise = float(points.xyz[j, 2] - points.xyz[i, 2])
         before = points.describe(i)

@@ -242,6 +242,9 @@ def _rank(table: Table, source: Source) -> dict[str, float]:
             stem = source.path.stem.casefold() + source.table.casefold()
             if any(word in stem for word in _WORDS[name]):
                 merit = merit + 0.2 * (1.0 - merit)
+            elif schema is SCHEMAS["collar"] and any(word in stem for word in _WORDS["picks"]):
+                # Holes with a place are collars, unless the file says that the places are points of horizons.
+                merit *= 0.6
             if merit > 0:
                 ranked[name] = round(merit, 2)
     return dict(sorted(ranked.items(), key=lambda item: -item[1]))

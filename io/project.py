@@ -21,11 +21,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from os import PathLike
-from pathlib import Path, PurePosixPath
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeVar
 
 from geofit import __version__
 from geofit.data.accuracy import plain
@@ -47,7 +48,19 @@ __all__ = [
     "save_project",
 ]
 
+_Entry = TypeVar("_Entry", "ProjectSource", "Edit", "ProjectResult")
+
 FORMAT = "geofit project"
+#: Names of the folder and of the files of surfaces, on every system: no separator, no drive, nothing hidden.
+_SURFACE_FOLDER = re.compile(r"[^/\\:\0]+_surfaces")
+_SURFACE_FILE = re.compile(r"[^./\\:\0][^/\\:\0]*-[0-9a-f]{8}\.step")
+_TYPES: dict[str, tuple[type, ...]] = {
+    "str": (str,),
+    "int": (int,),
+    "float | None": (float, int, type(None)),
+    "bool | None": (bool, type(None)),
+    "Mapping[str, Any]": (Mapping,),
+}
 #: Version of the layout. A change that an older reader would misread makes it one more, with a migration.
 VERSION = 1
 
@@ -176,8 +189,9 @@ def save_project(
         ) from None
     for surface_file in former - {result.surface for result in saved.results}:
         # Only what this project wrote itself, never a file from elsewhere.
-        if PurePosixPath(surface_file).parent.as_posix() == _folder(target).name:
-            (target.parent / surface_file).unlink(missing_ok=True)
+        folder, _, name = surface_file.partition("/")
+        if folder == _folder(target).name and _SURFACE_FILE.fullmatch(name):
+            (_folder(target) / name).unlink(missing_ok=True)
     return saved
 
 
@@ -278,11 +292,29 @@ def _project(data: Mapping[str, Any]) -> Project:
     return Project(
         name=data["name"],
         crs=data.get("crs", ""),
-        sources=tuple(ProjectSource(**entry) for entry in data.get("sources", [])),
+        sources=tuple(_entry(ProjectSource, entry) for entry in data.get("sources", [])),
         settings={name: _settings(values) for name, values in data.get("settings", {}).items()},
-        edits=tuple(Edit(**entry) for entry in data.get("edits", [])),
-        results=tuple(ProjectResult(**entry) for entry in data.get("results", [])),
+        edits=tuple(_entry(Edit, entry) for entry in data.get("edits", [])),
+        results=tuple(_entry(ProjectResult, entry) for entry in data.get("results", [])),
     )
+
+
+def _entry(kind: type[_Entry], values: Mapping[str, Any]) -> _Entry:
+    """Return an entry of a list of the file, each value of the type that it should have."""
+    entry = kind(**values)
+    for one in fields(kind):
+        value = getattr(entry, one.name)
+        allowed = _TYPES[str(one.type)]
+        if not isinstance(value, allowed) or (isinstance(value, bool) and bool not in allowed):
+            raise TypeError(f"{one.name} is {value!r:.60}")
+        if one.name == "path" and "\0" in value:
+            raise ValueError("a path has a NUL character")
+    if isinstance(entry, ProjectResult):
+        # Another name could lead anywhere on the disk, from where a surface is read and where an old one is removed.
+        folder, _, name = entry.surface.partition("/")
+        if not (_SURFACE_FOLDER.fullmatch(folder) and _SURFACE_FILE.fullmatch(name)):
+            raise ValueError(f"the surface file is {entry.surface!r:.60}")
+    return entry
 
 
 def _settings(values: Mapping[str, Any]) -> FitSettings:

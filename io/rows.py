@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from geofit.data.errors import InputError
 from geofit.data.messages import Verbatim, said
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
-from geofit.io.crs import is_code, project
+from geofit.io.crs import WGS84, is_code, project, refuse_degrees
 from geofit.io.formats import read_any_table
 from geofit.io.guess import find_columns
 from geofit.io.journal import Journal, Severity
@@ -89,10 +89,12 @@ class Rows:
         Raises
         ------
         InputError
-            If a coordinate system is unknown.
+            If a coordinate system is unknown, or counts in degrees and no other one is wanted.
         """
         x, y = self.numbers("x"), self.numbers("y")
         crs, target = self.source.crs or _degrees(self.table, self.columns), self.source.target
+        if target is None and crs is not None and is_code(crs):
+            refuse_degrees(crs, self.file)
         if not (is_code(crs) and is_code(target)) or crs is None or target is None:
             return x, y
         east, north = project(x, y, crs, target, self.file)
@@ -189,4 +191,4 @@ def read_rows(source: Source | str | Path, schema: Schema, journal: Journal) -> 
 def _degrees(table: Table, columns: dict[str, int]) -> str | None:
     """Return the system of longitude and latitude where the columns of x and y are named so."""
     names = [plain_name(table.header[columns[role]])[0] for role in ("x", "y") if role in columns]
-    return "EPSG:4326" if len(names) == 2 and all(name in GEOGRAPHIC for name in names) else None
+    return WGS84 if len(names) == 2 and all(name in GEOGRAPHIC for name in names) else None

@@ -173,6 +173,8 @@ def _parse(data: bytes, name: str) -> dict[str, Any]:
         raise InputError(
             said("The site file is not UTF-8: {error}", error=what), "Save it as UTF-8.", file=name
         ) from None
+    except RecursionError:
+        raise InputError("The file is nested too deeply", "See docs/site_file.md.", file=name) from None
     except tomllib.TOMLDecodeError as error:
         what, line = told_by(error)
         raise InputError(

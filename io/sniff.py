@@ -11,7 +11,16 @@ from geofit.data.errors import InputError
 from geofit.data.messages import said
 from geofit.io.parser_words import told_by
 
-__all__ = ["decode", "find_decimal", "find_separator", "is_header", "is_number", "is_units_row", "split_line"]
+__all__ = [
+    "decode",
+    "find_decimal",
+    "find_separator",
+    "is_header",
+    "is_number",
+    "is_units_row",
+    "quoted_cells",
+    "split_line",
+]
 
 #: In order of preference where several fit equally well; " " stands for runs of blanks.
 SEPARATORS = (";", "\t", ",", "|", " ")
@@ -111,7 +120,18 @@ def split_line(line: str, sep: str) -> list[str]:
         return line.split()
     if '"' not in line:
         return line.split(sep)
-    return next(csv.reader([line], delimiter=sep), [])
+    return quoted_cells([line], sep)
+
+
+def quoted_cells(lines: Sequence[str], sep: str) -> list[str]:
+    """Return the cells of one row that runs over ``lines``, each with its line break but perhaps the last.
+
+    A cell may be as long as the text: the limit of the standard reader is that of the whole process.
+    """
+    longest = max(map(len, lines), default=0) * len(lines)
+    if longest > csv.field_size_limit():
+        csv.field_size_limit(longest)
+    return next(csv.reader(lines, delimiter=sep), [])
 
 
 def is_number(cell: str) -> bool:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from geofit.data.errors import InputError
+from geofit.data.files import is_file, legible
 from geofit.data.messages import said
 
 __all__ = ["Source", "as_source"]
@@ -54,7 +55,7 @@ class Source:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
-        name = self.name or self.path.name
+        name = self.name or legible(self.path.name)
         mark = f" [{self.table}]" if self.table else ""
         object.__setattr__(self, "name", name if name.endswith(mark) else name + mark)
         words = {"tab": "\t", "space": " ", "comma": ",", "semicolon": ";", "\\t": "\t"}
@@ -87,7 +88,13 @@ class Source:
     def read(self) -> bytes:
         """Return the bytes of the file."""
         try:
+            if self.path.exists() and not is_file(self.path) and not self.path.is_dir():
+                raise InputError("It is a pipe or a device, not a file", "Name a file.", file=self.name)
             return self.path.read_bytes()
+        except ValueError:
+            raise InputError(
+                "The name of the file has a NUL character", "Name a file.", file=self.name.replace("\0", "?")
+            ) from None
         except FileNotFoundError:
             raise InputError(
                 "There is no such file",

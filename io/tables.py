@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import folded, said
 from geofit.io.journal import Journal
-from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, split_line
+from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, quoted_cells, split_line
 from geofit.io.source import Source
 
-__all__ = ["Table", "parse_numbers", "read_table", "unique_names"]
+__all__ = ["MOST_COLUMNS", "Table", "parse_numbers", "read_table", "require_width", "shown", "unique_names"]
 
 Floats = NDArray[np.float64]
 
-_SAMPLE = 200
+_SAMPLE, _SHOWN = 200, 40
+#: Columns of the widest sheet that a spreadsheet program holds.
+MOST_COLUMNS = 16_384
 _SEPARATOR_NAMES = {"\t": "tab", " ": "blanks"}
 
 
@@ -79,6 +81,7 @@ def read_table(source: Source, journal: Journal) -> Table:
     width = len(first)
     while named and width > 1 and not first[width - 1].strip():
         width -= 1
+    require_width(width, source.name)
     header = unique_names([cell.strip() for cell in first[:width]]) if named else _numbered(width)
     body = start + taken if named else start
     units: tuple[str, ...] = ()
@@ -89,7 +92,7 @@ def read_table(source: Source, journal: Journal) -> Table:
     columns, numbers, malformed = _columns(lines, body, width, sep, source.name, journal)
     if not numbers and not malformed:
         raise InputError(
-            said("The file has a header ({names}) but no rows", names=", ".join(header)),
+            said("The file has a header ({names}) but no rows", names=shown(header)),
             "Export the table again with its rows.",
             file=source.name,
         )
@@ -212,11 +215,33 @@ def _quoted(lines: list[str], i: int, sep: str) -> tuple[list[str], int]:
     for taken in range(2, min(60, len(lines) - i) + 1):
         if lines[i + taken - 1].count('"') % 2 == 1:
             inner = lines[i + 1 : i + taken - 1]
-            joined = next(csv.reader([line + "\n" for line in lines[i : i + taken]], delimiter=sep))
+            joined = quoted_cells([line + "\n" for line in lines[i : i + taken]], sep)
             if any(line.count(sep) >= len(joined) - 1 > 0 for line in inner):
                 break
             return joined, taken
     return alone, 1
+
+
+def require_width(width: int, file: str) -> None:
+    """Refuse a table that is wider than any spreadsheet.
+
+    Raises
+    ------
+    InputError
+        If there are more than :data:`MOST_COLUMNS` columns.
+    """
+    if width > MOST_COLUMNS:
+        raise InputError(
+            said("The table has {count} columns; at most {most} are read", count=width, most=MOST_COLUMNS),
+            "State the separator of the cells, or export the columns that are needed.",
+            file=file,
+        )
+
+
+def shown(names: Sequence[str]) -> str:
+    """Return the first names of columns with commas, and how many there are more."""
+    text = ", ".join(folded(name, 60) for name in names[:_SHOWN])
+    return said("{names}, and {count} more", names=text, count=len(names) - _SHOWN) if len(names) > _SHOWN else text
 
 
 def unique_names(names: list[str]) -> tuple[str, ...]:

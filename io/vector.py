@@ -10,6 +10,7 @@ import numpy as np
 from geofit.data.errors import InputError
 from geofit.data.messages import said
 from geofit.io.cells import number_text, table_of
+from geofit.io.crs import refuse_degrees
 from geofit.io.extra import need
 from geofit.io.journal import Journal
 from geofit.io.source import Source
@@ -59,7 +60,7 @@ def read_features(source: Source, journal: Journal) -> Table:
     if crs:
         journal.add("note", source.name, said("The coordinate system of the layer is {crs}", crs=crs[:120]))
     if crs and not source.crs and not source.target:
-        _refuse_degrees(source, crs)
+        refuse_degrees(crs, source.name)
     attributes = [str(name) for name in meta["fields"]]
     rows: list[tuple[int, list[str]]] = []
     malformed = rings = 0
@@ -102,23 +103,6 @@ def _text(value: Any) -> str:
     if value is None or value != value:
         return ""
     return number_text(float(value)) if isinstance(value, (int, float, np.number)) else str(value)
-
-
-def _refuse_degrees(source: Source, crs: str) -> None:
-    pyproj = need("pyproj", "gis", said("Reading the map {file}", file=source.name))
-    try:
-        degrees = pyproj.CRS.from_user_input(crs).is_geographic
-    except pyproj.exceptions.CRSError:
-        return
-    if degrees:
-        raise InputError(
-            said(
-                "The places are longitude and latitude ({crs}); easting and northing in metres are needed", crs=crs[:60]
-            ),
-            'Project the layer to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
-            "(geofit import: --crs).",
-            file=source.name,
-        )
 
 
 def _damaged(source: Source, error: Exception) -> InputError:

@@ -7,6 +7,7 @@ import io
 import warnings
 import zipfile
 import zlib
+from collections.abc import Iterable, Sequence
 from typing import Any
 from xml.etree.ElementTree import ParseError
 
@@ -22,6 +23,9 @@ from geofit.io.tables import Table
 __all__ = ["read_sheet", "sheet_names"]
 
 _SAMPLE = 200
+#: Rows of the longest sheet that a spreadsheet program holds; cells that are read, also empty ones before filled ones;
+#: bytes that a workbook may unpack to.
+MOST_ROWS, MOST_CELLS, MOST_BYTES = 1_048_576, 25_000_000, 2_000_000_000
 
 
 def sheet_names(source: Source) -> tuple[str, ...]:
@@ -98,12 +102,12 @@ def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # openpyxl warns of styles that it does not know
+            _require_size(data, source.name)
             book = openpyxl.load_workbook(io.BytesIO(data), read_only=True, data_only=True)
             sheets = {}
             for sheet in book.worksheets:
                 sheet.reset_dimensions()
-                rows = [(line, [_text(value) for value in row]) for line, row in enumerate(sheet.values, 1)]
-                sheets[str(sheet.title)] = [(line, cells) for line, cells in rows if any(cells)]
+                sheets[str(sheet.title)] = _filled_rows(sheet.values, source.name)
             book.close()
             return sheets
     except failures as error:
@@ -112,6 +116,54 @@ def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]
             "Open it in a spreadsheet program and save it as .xlsx, or the sheet as CSV UTF-8.",
             file=source.name,
         ) from None
+
+
+def _require_size(data: bytes, file: str) -> None:
+    """Refuse a workbook that unpacks to more than its rows can need."""
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        unpacked = sum(member.file_size for member in archive.infolist())
+    if unpacked > MOST_BYTES:
+        raise InputError(
+            said(
+                "The workbook unpacks to {size:.0f} MB; at most {most:.0f} are read",
+                size=unpacked / 1e6,
+                most=MOST_BYTES / 1e6,
+            ),
+            "Save the sheet as CSV UTF-8.",
+            file=file,
+        )
+
+
+def _filled_rows(values: Iterable[Sequence[Any]], file: str) -> list[tuple[int, list[str]]]:
+    """Return line and cells of the filled rows, each up to its last filled cell.
+
+    A file of a few bytes may claim two thousand million rows, or rows of which only the last of 16,384 cells is
+    filled.
+    """
+    found: list[tuple[int, list[str]]] = []
+    cells_read = 0
+    for line, row in enumerate(values, 1):
+        if line > MOST_ROWS or cells_read > MOST_CELLS:
+            raise InputError(
+                said(
+                    "The sheet has more rows ({rows}) or cells ({cells}) than can be read; at most {most_rows} and "
+                    "{most_cells}",
+                    rows=line,
+                    cells=cells_read,
+                    most_rows=MOST_ROWS,
+                    most_cells=MOST_CELLS,
+                ),
+                "Remove the rows and columns beyond the table, or save the sheet as CSV UTF-8.",
+                file=file,
+            )
+        width = len(row)
+        while width and row[width - 1] is None:
+            width -= 1
+        cells_read += width
+        cells = [_text(value) for value in row[:width]]
+        if any(cells):
+            found.append((line, cells))
+    return found
 
 
 def _text(value: Any) -> str:

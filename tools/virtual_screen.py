@@ -6,12 +6,36 @@ import os
 import select
 import shutil
 import subprocess
+import sys
 
-__all__ = ["NO_PROGRAM", "start"]
+__all__ = ["REMEDY", "start", "why_no_window"]
 
-NO_PROGRAM = "no display, and no Xvfb to make one (Debian and Ubuntu: apt-get install xvfb)"
+REMEDY = "install what is missing with: make system-packages"
+NO_PROGRAM = f"no display, and no Xvfb to make one; {REMEDY}"
 #: Seconds until the server must have said its number.
 PATIENCE = 20.0
+
+
+#: Opens what the windows need. Qt and VTK abort the process where they cannot start, so a child tries it.
+_PROBE = """
+from PySide6.QtWidgets import QApplication
+application = QApplication([])
+from geofit.gui.view3d.opengl import require_opengl
+require_opengl()
+"""
+
+
+def why_no_window() -> str | None:
+    """Return why no window can open on this display, in one line; None where it can."""
+    tried = subprocess.run(
+        [sys.executable, "-c", _PROBE], capture_output=True, text=True, errors="replace", check=False
+    )
+    if tried.returncode == 0:
+        return None
+    told = [line.strip() for line in tried.stderr.splitlines() if line.strip()] or [f"exit code {tried.returncode}"]
+    # Python names its error last; Qt names it first, and lists its plugins below.
+    why = told[-1] if told[-1].split(":")[0].endswith("Error") else told[0]
+    return f"no window can open here ({why}); {REMEDY}"
 
 
 def start(size: str) -> subprocess.Popen[bytes] | str:
@@ -39,6 +63,6 @@ def start(size: str) -> subprocess.Popen[bytes] | str:
     if not said.endswith(b"\n"):
         server.kill()
         server.wait()
-        return "no display, and Xvfb does not start"
+        return f"no display, and Xvfb does not start; {REMEDY}"
     os.environ["DISPLAY"] = f":{said.decode().strip()}"
     return server

@@ -14,11 +14,12 @@ from pathlib import Path
 from typing import Any
 
 from geofit.cad.faces import faces_of
+from geofit.cad.foreign import read_apart
 from geofit.cad.imported import FileShape, document, products, quiet, surface_of, unique_name
 from geofit.data.errors import InputError
 from geofit.surfaces.patch_surface import PatchSurface
 
-__all__ = ["read_brep", "read_iges"]
+__all__ = ["brep_surfaces", "iges_surfaces", "read_brep", "read_iges"]
 
 #: Edges of IGES faces nearer than this (metres) are one.
 SEWN = 1e-5
@@ -36,6 +37,11 @@ def read_iges(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     InputError
         If the file does not exist, is no IGES file or holds no face.
     """
+    return read_apart(path, "iges")
+
+
+def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
+    """Read an IGES file in this process, which a damaged file may end; see :func:`read_iges`."""
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.IGESCAFControl import IGESCAFControl_Reader
 
@@ -63,6 +69,11 @@ def read_brep(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     InputError
         If the file does not exist, is no BREP file or holds no face.
     """
+    return read_apart(path, "brep")
+
+
+def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
+    """Read a BREP file in this process, which a damaged file may end; see :func:`read_brep`."""
     from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools
     from OCP.TopAbs import TopAbs_COMPOUND

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from geofit.cad.faces import along, edges_with_faces, faces_of, free_edges, free_loops
 from geofit.data.accuracy import Check, ReadBack, Seam
 from geofit.data.messages import said
-from geofit.geometry.projection import project
+from geofit.geometry.projection import Projection, project
 from geofit.surfaces.protocol import FittedSurface, Surface
 
 if TYPE_CHECKING:
@@ -201,7 +201,7 @@ def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tupl
         core = np.flatnonzero(surface.core) if len(surface.core) == len(xyz) else chosen[:0]
         spread = np.unique(np.linspace(0, len(xyz) - 1, MEASURED // 4).astype(int))
         chosen = np.unique(np.concatenate([core[:: max(1, len(core) // MEASURED)], spread]))
-    length = _occ_lengths(shape, xyz, ours.patch, chosen, np.abs(ours.distance))
+    length = _occ_lengths(shape, xyz, ours, chosen)
     if len(chosen) < len(xyz):
         apart = np.abs(length - np.abs(ours.distance[chosen])).max()
         how = said(
@@ -213,17 +213,23 @@ def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tupl
     return distance, how
 
 
-def _occ_lengths(shape: FileShape, xyz: Floats, patch: NDArray[np.int64], chosen: Any, ours: Floats) -> Floats:
+def _occ_lengths(shape: FileShape, xyz: Floats, ours: Projection, chosen: NDArray[np.int64]) -> Floats:
+    """Return the distances of the chosen points from the file's faces, all by OpenCASCADE.
+
+    Its projection may stop in a local minimum. The file's own face, evaluated by it where our projection ends, is a
+    witness: no point lies farther from a face than from one place of it.
+    """
     from OCP.BRep import BRep_Tool
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeVertex
     from OCP.BRepExtrema import BRepExtrema_DistShapeShape
     from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
     from OCP.gp import gp_Pnt
+    from OCP.TopAbs import TopAbs_REVERSED
 
     length = np.empty(len(chosen))
     faces = faces_of(shape.shape.Located(shape.location))
     for index, face in enumerate(faces):
-        rows = np.flatnonzero(patch[chosen] == index)
+        rows = np.flatnonzero(ours.patch[chosen] == index)
         if not rows.size:
             continue
         geometry = BRep_Tool.Surface_s(face)
@@ -231,12 +237,17 @@ def _occ_lengths(shape: FileShape, xyz: Floats, patch: NDArray[np.int64], chosen
         whole = BRepBuilderAPI_MakeFace(geometry, *bounds, 1e-7).Face()
         projector = GeomAPI_ProjectPointOnSurf()
         projector.Init(geometry, *bounds)
+        # A patch of a reversed face runs backwards in u (geofit.cad.imported).
+        turned = face.Orientation() == TopAbs_REVERSED
         for row in rows:
             point = gp_Pnt(*xyz[chosen[row]].tolist())
             projector.Perform(point)
             length[row] = projector.LowerDistance() if projector.NbPoints() else np.inf
+            u, v = float(ours.u[chosen[row]]), float(ours.v[chosen[row]])
+            witness = geometry.Value(bounds[0] + bounds[1] - u if turned else u, v)
+            length[row] = min(length[row], point.Distance(witness))
             # A foot on the edge of the face is no orthogonal projection.
-            if length[row] > ours[chosen[row]] + 1e-8:
+            if length[row] > abs(ours.distance[chosen[row]]) + 1e-8:
                 vertex = BRepBuilderAPI_MakeVertex(point).Vertex()
                 length[row] = min(length[row], BRepExtrema_DistShapeShape(vertex, whole).Value())
     return length

@@ -8,6 +8,7 @@ is imported inside the functions: it takes seconds to load.
 from __future__ import annotations
 
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -19,18 +20,21 @@ import numpy as np
 
 from geofit import __version__
 from geofit.cad.faces import faces_of, placement
+from geofit.cad.foreign import read_apart
 from geofit.cad.imported import FileShape, document, products, quiet, surface_of
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
 from geofit.cad.step_text import canonical
 from geofit.data.accuracy import ReadBack
 from geofit.data.errors import InputError
+from geofit.data.files import legible, replacing
 from geofit.data.messages import said
+from geofit.data.points import LARGEST
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.protocol import FittedSurface
 
-__all__ = ["UNITS", "Unit", "read_shapes", "read_step", "store_step", "write_step"]
+__all__ = ["UNITS", "Unit", "read_shapes", "read_step", "step_surfaces", "store_step", "write_step"]
 
 Unit = Literal["m", "mm"]
 #: Length units of a file, and OpenCASCADE's words for them. No feet: the writer gives 13 digits, and a placement in
@@ -101,6 +105,19 @@ def store_step(surfaces: Mapping[str, FittedSurface], path: str | PathLike[str],
             said("Choose {names}.", names=" or ".join(UNITS)),
             file=str(target),
         )
+    for name, surface in surfaces.items():
+        reach = max(float(np.abs(patch.control + surface.origin).max()) for patch in surface.patches)
+        if not reach <= LARGEST:
+            raise InputError(
+                said(
+                    "A control point of '{name}' is {reach:.3g} m from 0; at most {most:.0e} m are written",
+                    name=name,
+                    reach=reach,
+                    most=LARGEST,
+                ),
+                "Fit the surface to points in the metres of the site's grid.",
+                file=str(target),
+            )
     shells = {name: shell(surface) for name, surface in surfaces.items()}
     with _parameters(unit):
         filled = document()
@@ -133,6 +150,11 @@ def read_step(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     InputError
         If the file does not exist, is no STEP file or holds no face.
     """
+    return read_apart(path, "step")
+
+
+def step_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
+    """Read a STEP file in this process, which a damaged file may end; see :func:`read_step`."""
     return {shape.name: surface_of(shape) for shape in read_shapes(path)}
 
 
@@ -148,8 +170,9 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
         found = document()
         reader = STEPCAFControl_Reader()
         reader.SetNameMode(True)
-        done = reader.ReadFile(str(source)) == IFSelect_RetDone and reader.Transfer(found)
-    shapes = list(products(found, source.stem)) if done else []
+        with _utf8_name(source) as name:
+            done = reader.ReadFile(name) == IFSelect_RetDone and reader.Transfer(found)
+    shapes = list(products(found, legible(source.stem))) if done else []
     if not shapes:
         what = "The file holds no face" if done else "The file cannot be read as STEP"
         raise InputError(what, "Export the surface as STEP (AP203, AP214 or AP242) again.", file=str(source))
@@ -157,12 +180,23 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
 
 
 @contextmanager
+def _utf8_name(path: Path) -> Iterator[str]:
+    """Give a name of a file that OpenCASCADE can open: one that is not UTF-8 it cannot."""
+    if legible(str(path)) == str(path):
+        yield str(path)
+        return
+    with tempfile.TemporaryDirectory(prefix="geofit-") as folder:
+        yield str(shutil.copy(path, Path(folder) / "copy.step"))
+
+
+@contextmanager
 def _parameters(unit: Unit = "m") -> Iterator[None]:
     """Set OpenCASCADE's global STEP parameters, and put them back."""
     from OCP.Interface import Interface_Static
-    from OCP.STEPControl import STEPControl_Controller
+    from OCP.STEPCAFControl import STEPCAFControl_Controller
 
-    STEPControl_Controller.Init_s()
+    # Before it, a fresh process knows no "stepcaf" parameter, and setting one does nothing.
+    STEPCAFControl_Controller.Init_s()
     before: dict[str, Any] = {}
     for name, value in {**PARAMETERS, "write.step.unit": UNITS[unit]}.items():
         if isinstance(value, str):
@@ -230,7 +264,9 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
     from OCP.TCollection import TCollection_HAsciiString
 
     try:
-        handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=".step")
+        # Beside its place, unless OpenCASCADE could not open it there.
+        beside = legible(str(target.parent)) == str(target.parent)
+        handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=".geofit-", suffix=".step")
     except OSError as error:
         raise InputError(
             said("The file cannot be written: {error}", error=error.strerror or str(error)),
@@ -252,10 +288,17 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
             header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
             done = writer.Write(temporary) == IFSelect_RetDone
         if not done:
-            raise InputError("OpenCASCADE cannot write the file", "Check the disk.", file=str(target))
-        Path(temporary).write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, target)
+            raise InputError(
+                "The file cannot be written: the disk may be full",
+                "Make room, or name another folder.",
+                file=str(target),
+            )
+        with replacing(target) as part:
+            part.write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
+    except (OSError, ValueError):  # ValueError: a text that was cut off in the middle
+        raise InputError(
+            "The file cannot be written: the disk may be full", "Make room, or name another folder.", file=str(target)
+        ) from None
     finally:
         Path(temporary).unlink(missing_ok=True)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +15,7 @@ from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
 from geofit.checks.trend import trend
 from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Seam
+from geofit.data.guard import guarded
 from geofit.data.labels import Labels
 from geofit.data.messages import said
 from geofit.geometry.projection import Projection, project
@@ -80,14 +81,20 @@ def check(
     honoured = np.ones(len(d), bool)
     honoured[[conflict.dropped for conflict in conflicts]] = False
     exact = surface.core & honoured if len(surface.core) == len(d) else np.zeros(len(d), bool)
+    examinations: tuple[Callable[[], Sequence[Check]], ...] = (
+        lambda: _tolerance_checks(surface, d, exact),
+        lambda: _seam_checks(surface, found),
+        lambda: _residual_checks(surface, d, patch, honoured & ~exact),
+        *_surface_checks(surface, projection, honoured),
+    )
+    checks: list[Check] = []
+    missing: list[str] = []
     # The systems of a few points each are small: starting threads for them costs more than the work.
     with threadpool_limits(limits=1):
-        checks = [
-            *_tolerance_checks(surface, d, exact),
-            *_seam_checks(surface, found),
-            *_residual_checks(surface, d, patch, honoured & ~exact),
-            *_surface_checks(surface, projection, honoured),
-        ]
+        for examine in examinations:
+            checks += guarded(
+                examine, (), lambda reason: missing.append(said("a check was not made: {reason}", reason=reason))
+            )
     return Accuracy(
         n=len(d),
         sigma=value,
@@ -106,7 +113,7 @@ def check(
         seams=found,
         checks=tuple(checks),
         conflicts=tuple(conflicts),
-        notes=tuple(notes),
+        notes=(*notes, *missing),
     )
 
 
@@ -166,11 +173,20 @@ def _residual_checks(surface: FittedSurface, d: Floats, patch: Labels, loose: ND
     return residual_checks(xyz, d[some], patch[some], surface.settings.interior_tolerance)
 
 
-def _surface_checks(surface: FittedSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:
-    """Look at the surface itself, at and between its points."""
+def _surface_checks(
+    surface: FittedSurface, projection: Projection, honoured: NDArray[np.bool_]
+) -> tuple[Callable[[], Sequence[Check]], ...]:
+    """Return what looks at the surface itself, at and between its points."""
     if not surface.patches:
-        return []
+        return ()
     parts = lattices(surface)
-    asked = (oscillation(surface, parts, projection, honoured), trend(surface, parts, honoured))
-    found = [one for one in asked if one is not None]
-    return [*shape_checks(surface, parts), self_crossing(surface, parts), *found]
+
+    def asked(found: Check | None) -> Sequence[Check]:
+        return () if found is None else (found,)
+
+    return (
+        lambda: shape_checks(surface, parts),
+        lambda: asked(self_crossing(surface, parts)),
+        lambda: asked(oscillation(surface, parts, projection, honoured)),
+        lambda: asked(trend(surface, parts, honoured)),
+    )

@@ -10,7 +10,7 @@ import typer
 from geofit import __version__
 from geofit.cli.app import app
 from geofit.cli.console import guarded, print_counts, print_issues, print_json, print_results
-from geofit.cli.options import SURFACE_FILES, Decimal, Json, SectionColumn, Sep, SurfaceColumn, X, Y, Z
+from geofit.cli.options import SURFACE_FILES, Crs, Decimal, Json, SectionColumn, Sep, SurfaceColumn, X, Y, Z
 from geofit.cli.sources import pick, read_source
 
 __all__ = ["check"]
@@ -30,6 +30,7 @@ def check(
     section: SectionColumn = None,
     sep: Sep = None,
     decimal: Decimal = None,
+    crs: Crs = None,
     out: Annotated[Path | None, typer.Option(help="Folder for the residual table; none: not written.")] = None,
     as_json: Json = False,
 ) -> int:
@@ -49,6 +50,7 @@ def check(
         "section": section,
         "sep": sep,
         "decimal": decimal,
+        "crs": crs,
     }
     site = read_source(points, columns, None)
     print_issues(site.issues)

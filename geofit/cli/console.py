@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 import typer
 
 from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.files import cannot_write
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
 
@@ -83,7 +84,7 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
             # A full disk, a folder that may not be written: the user's to mend.
             if isinstance(error, BrokenPipeError):
                 raise
-            say(f"geofit: {error.filename or 'a file'}: {error.strerror or error}. Check its permissions.")
+            say(f"geofit: {cannot_write(error, error.filename or 'a file')}")
             code = 2
         except ImportError as error:
             advice = _system_library(str(error))
@@ -234,17 +235,26 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], left: Sequ
 
 
 def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
-    """Summarise what the readers found on stderr: counts, and the first errors and warnings."""
+    """Summarise what the readers found on stderr: counts, and one of each kind of errors and warnings.
+
+    Errors come before warnings, and what was found seldom before what was found at every other row.
+    """
     if not issues:
         return
     counts = {word: sum(issue.severity == word for issue in issues) for word in ("error", "warning", "note")}
     summary = ", ".join(f"{count} {word}{'s' * (count != 1)}" for word, count in counts.items() if count)
     say(f"Import: {summary}." + (f" All of them: {where}" if where else ""))
-    grave = [issue for word in ("error", "warning") for issue in issues if issue.severity == word]
-    for issue in grave[:FIRST_ISSUES]:
-        say("  " + _sentence(issue))
-    if len(grave) > FIRST_ISSUES:
-        say(f"  ... and {len(grave) - FIRST_ISSUES} more.")
+    grave = [issue for issue in issues if issue.severity != "note"]
+    kinds: dict[tuple[str, str, str], list[ImportIssue]] = {}
+    for issue in grave:
+        kinds.setdefault((issue.severity, issue.file, getattr(issue.reason, "template", issue.reason)), []).append(
+            issue
+        )
+    ordered = sorted(kinds.values(), key=lambda alike: (alike[0].severity != "error", len(alike)))
+    for alike in ordered[:FIRST_ISSUES]:
+        say("  " + _sentence(alike[0]) + (f" ({len(alike) - 1} more like it)" if len(alike) > 1 else ""))
+    if rest := sum(map(len, ordered[FIRST_ISSUES:])):
+        say(f"  ... and {rest} more.")
 
 
 def _sentence(issue: ImportIssue) -> str:

@@ -12,6 +12,7 @@ from geofit.cli.console import guarded, listening
 from geofit.cli.options import (
     FROM_SITE,
     Across,
+    Crs,
     Decimal,
     Frame,
     Json,
@@ -44,6 +45,7 @@ def fit(
     section: SectionColumn = None,
     sep: Sep = None,
     decimal: Decimal = None,
+    crs: Crs = None,
     boundary: Annotated[
         Path | None, typer.Option(help="Study area: table of corners (x, y) in order, or GeoJSON polygon; m.")
     ] = None,
@@ -112,6 +114,7 @@ def fit(
     }
     changes = {name: value for name, value in given.items() if value is not None}
     columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "sep": sep, "decimal": decimal}
+    columns["crs"] = crs
     FitSettings(**changes)  # a bad value is told before files are read
     with listening() as progress:
         site = read_source(source, columns, boundary)

@@ -48,6 +48,10 @@ SurfaceColumn = Annotated[str | None, typer.Option("--surface", help="CSV: colum
 SectionColumn = Annotated[str | None, typer.Option("--section", help="CSV: column of the section's name.")]
 Sep = Annotated[str | None, typer.Option(help="CSV: separator: one character, 'tab' or 'space'. Default: found.")]
 Decimal = Annotated[str | None, typer.Option(help="CSV: decimal mark, '.' or ','. Default: found.")]
+Crs = Annotated[
+    str | None,
+    typer.Option("--crs", help="CSV: grid of the site, EPSG:number; longitude and latitude are projected to it."),
+]
 Tolerance = Annotated[float, typer.Option(help="Largest distance of triangles and lines from the surface, m.")]
 FORMATS = (
     "step, iges, brep, dxf (contours), dxf-mesh, ifc, landxml, tsurf, geoh5, omf, vtp, vtm, obj, ply, stl, glb, "

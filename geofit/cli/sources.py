@@ -18,6 +18,7 @@ def read_source(source: Path, columns: dict[str, str | None], boundary: Path | N
     """Read a site file, or a table of points with the columns that the user names (None: guessed)."""
     from dataclasses import replace
 
+    from geofit.data.files import legible
     from geofit.data.site import Site
     from geofit.io.boundary import read_boundary
     from geofit.io.picks import read_points
@@ -41,9 +42,10 @@ def read_source(source: Path, columns: dict[str, str | None], boundary: Path | N
         section=columns.get("section"),
         sep=columns.get("sep"),
         decimal=columns.get("decimal"),
+        crs=columns.get("crs"),
     )
     return Site(
-        name=source.stem,
+        name=legible(source.stem),
         horizons=picks.horizons,
         boundary=area,
         issues=picks.issues,

@@ -21,7 +21,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from geofit.data.messages import Said, Verbatim, listed, said
+from geofit.data.messages import Said, Verbatim, folded, listed, said
 
 __all__ = [
     "Cancelled",
@@ -77,7 +77,7 @@ class InputError(GeofitError):
         place: list[str] = [Verbatim(file)] if file else []
         place += [said("row {row}", row=row)] if row is not None else []
         place += [said("column '{column}'", column=Verbatim(column))] if column is not None else []
-        place += [said("value '{value}'", value=Verbatim(value))] if value is not None else []
+        place += [said("value '{value}'", value=Verbatim(folded(value)))] if value is not None else []
         sentence = _sentence(reason, remedy)
         super().__init__(said("{place}: {sentence}", place=listed(place), sentence=sentence) if place else sentence)
 

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import re
 import unicodedata
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
-__all__ = ["file_stems", "replacing"]
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+
+__all__ = ["cannot_write", "file_stems", "is_file", "legible", "replacing", "spreadsheet_cell"]
 
 _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(1, 10))}
 _LONGEST = 80
@@ -18,6 +23,11 @@ _LONGEST = 80
 @contextmanager
 def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     """Give a temporary name beside ``path``; it becomes ``path`` only if the block ends without an error.
+
+    Raises
+    ------
+    InputError
+        If the system refuses to write the file (a full disk, no permission), with its name and the remedy.
 
     Examples
     --------
@@ -33,8 +43,73 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     try:
         yield part
         os.replace(part, path)
+    except OSError as error:
+        named = {str(name) for name in (error.filename, error.filename2) if name is not None}
+        if error.errno is None or (named and str(part) not in named and str(path) not in named):
+            raise  # another file's
+        raise cannot_write(error, path) from None
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+def cannot_write(error: OSError, path: str | os.PathLike[str]) -> InputError:
+    """Return an error of the system as one that names the file and what to do about it."""
+    match error.errno:
+        case errno.ENOSPC | errno.EDQUOT | errno.EFBIG:
+            remedy = said("Make room on the disk, or name another folder.")
+        case errno.ENOENT | errno.ENOTDIR:
+            remedy = said("Make the folder, or name another.")
+        case errno.ENAMETOOLONG | errno.EINVAL:
+            remedy = said("Choose another name.")
+        case _:
+            remedy = said("Name a folder that you may write to, and close the file in other programs.")
+    reason = said("The file cannot be written: {error}", error=error.strerror or str(error))
+    return InputError(reason, remedy, file=legible(str(path)))
+
+
+def is_file(path: str | os.PathLike[str]) -> bool:
+    """Whether there is an ordinary file: of a pipe or a device the end may never come, and NUL is in no name."""
+    try:
+        return Path(path).is_file()
+    except (OSError, ValueError):
+        return False
+
+
+def legible(name: str) -> str:
+    """Return the name of a file as text that can be printed and written.
+
+    On Linux the bytes of a name need not be UTF-8: archives from Windows bring names in GBK.
+
+    Examples
+    --------
+    >>> legible("picks.csv"), legible(os.fsdecode("钻孔".encode("gbk")))
+    ('picks.csv', '钻孔')
+    """
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return os.fsencode(name).decode("gb18030", "replace")
+    return name
+
+
+def spreadsheet_cell(cell: Any) -> Any:
+    """Return a cell of a CSV file that no spreadsheet program takes for a formula.
+
+    A name from a stranger's file may begin with one, which runs when the table is opened; numbers stay as they are.
+
+    Examples
+    --------
+    >>> [spreadsheet_cell(cell) for cell in ("=1+1", "-3.5", "@a", "ZK1", -3.5)]
+    ["'=1+1", '-3.5', "'@a", 'ZK1', -3.5]
+    """
+    if not isinstance(cell, str) or not cell.startswith(("=", "+", "-", "@", "\t", "\r")):
+        return cell
+    try:
+        float(cell)
+    except ValueError:
+        return f"'{cell}"
+    return cell
 
 
 def file_stems(names: Iterable[str]) -> dict[str, str]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from functools import reduce
 from typing import Any
 
-__all__ = ["Said", "Verbatim", "listed", "said"]
+__all__ = ["Said", "Verbatim", "folded", "listed", "said"]
 
 
 class Said(str):
@@ -46,6 +46,17 @@ def said(template: str, **values: Any) -> Said:
     text = Said(template.format(**values))
     text.template, text.values = template, values
     return text
+
+
+def folded(text: str, most: int = 200) -> str:
+    """Return a text of any length as one that a person can read: its beginning, and how long it is.
+
+    Examples
+    --------
+    >>> folded("short"), folded("9" * 20_000_000, 5)
+    ('short', '99999… (20000000 characters)')
+    """
+    return text if len(text) <= most else f"{text[:most]}… ({len(text)} characters)"
 
 
 def listed(texts: Iterable[str]) -> str:

@@ -14,7 +14,7 @@ from geofit.data.errors import PointsError
 from geofit.data.labels import Labels
 from geofit.data.messages import Verbatim, said
 
-__all__ = ["KINDS", "PointSet"]
+__all__ = ["KINDS", "LARGEST", "PointSet", "look_like_degrees"]
 
 #: Source kinds that the readers give; any other word is allowed.
 KINDS = ("borehole", "adit", "section", "outcrop", "geophysics", "map", "point")
@@ -22,6 +22,37 @@ KINDS = ("borehole", "adit", "section", "outcrop", "geophysics", "map", "point")
 Strings = NDArray[np.str_]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+#: Largest coordinate, metres: beyond it a double has not the digits that a surface is measured by.
+LARGEST = 1e9
+#: Longitudes and latitudes: limits; the widest site; how much nearer to each other than to the origin the places are;
+#: metres of elevation a degree (one is 111 km) below which a surface over degrees would be flatter than any rock.
+_LIMITS, _WIDEST, _AWAY, _RISE = (180.0, 90.0), 5.0, 10.0, 10.0
+
+
+def look_like_degrees(xyz: ArrayLike) -> bool:
+    """Return whether (n, 3) coordinates can only be longitude, latitude and metres.
+
+    They are within the limits of both, in less than 5 units of each other but far from 0, written finer than to the
+    millimetre, and rise ten times more than they extend: a slope that a horizon over metres does not have, but
+    every horizon over degrees.
+
+    Examples
+    --------
+    >>> look_like_degrees([[110.1012, 30.2034, 5.0], [110.1223, 30.2145, 9.0], [110.1334, 30.2256, 7.0]])
+    True
+    >>> look_like_degrees([[0.0, 0.0, 5.0], [100.0, 0.0, 9.0], [50.0, 80.0, 7.0]])
+    False
+    """
+    values = np.asarray(xyz, float)
+    if len(values) < 3 or (np.abs(values[:, :2]) > _LIMITS).any():
+        return False
+    low, high = values.min(axis=0), values.max(axis=0)
+    extent = float((high - low)[:2].max())
+    middle = float(np.hypot(*(low + high)[:2] / 2))
+    milli = 1e3 * values[:, :2]
+    fine = (np.abs(milli - np.round(milli)) > 1e-4).any(axis=1).mean() > 0.5
+    return bool(0 < extent <= _WIDEST and middle > _AWAY * extent and high[2] - low[2] > _RISE * extent and fine)
 
 
 _WORDS = ("kind", "hole", "section", "file")

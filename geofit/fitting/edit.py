@@ -16,6 +16,7 @@ from scipy.sparse import csr_array, vstack
 
 from geofit.data.errors import ExactnessError, FitError
 from geofit.data.messages import Said, listed, said
+from geofit.data.points import LARGEST
 from geofit.fitting.assemble import Part, divide
 from geofit.fitting.model import Model
 from geofit.fitting.skin import least_change
@@ -266,8 +267,10 @@ def _model(surface: HorizonFit) -> Model:
 
 
 def _finite(value: float, name: str) -> None:
-    if not np.isfinite(value):
-        raise FitError(said("{name} is {value}; a finite number is needed.", name=name, value=value))
+    if not np.isfinite(value) or abs(value) > LARGEST:
+        raise FitError(
+            said("{name} is {value}; a finite number up to {most:.0e} is needed.", name=name, value=value, most=LARGEST)
+        )
 
 
 def _part(model: Model, patch: str) -> Part:

@@ -267,7 +267,7 @@ class Periphery:
         elif self.settings.smoothing != "auto":
             reason = said("the smoothing is given")
         note = said(
-            "interior tolerance {tolerance:g} m not met, points: {count}, worst {worst:.3f} m: {reason}",
+            "interior tolerance {tolerance:g} m not met in height, points: {count}, worst {worst:.3f} m: {reason}",
             tolerance=self.settings.interior_tolerance,
             count=count,
             worst=float(excess.max()),

@@ -84,7 +84,8 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     if len(cluster) < FEWEST:
         return _uniform(plane, area, said("the dense places hold fewer than 20 points each"))
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
-    length, width = _extents(plane[cluster])
+    # The points of the box, not of the cluster: the edges may be drawn in to one section.
+    length, width = _extents(plane[cluster][_within(plane[cluster], (low[0], high[0], low[1], high[1]))])
     if width < 0.08 * length:
         return split_none(
             plane,

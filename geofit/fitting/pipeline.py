@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
+from geofit.checks.check import CORE_LIMIT
 from geofit.data.errors import ExactnessError, FitError, PointsError
 from geofit.data.messages import said
-from geofit.data.points import PointSet
+from geofit.data.points import LARGEST, PointSet, look_like_degrees
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.fitting.adjust import adjust
@@ -21,12 +22,15 @@ from geofit.fitting.model import Model, Problem
 from geofit.fitting.parametrize import Chart, choose_chart
 from geofit.fitting.partition import Split, split_all, split_auto, split_none, split_rectangle
 from geofit.fitting.robust import fit_robustly
+from geofit.geometry.area import fault_of_area
 from geofit.geometry.projection import project
 
 __all__ = ["fit_horizon"]
 
 Floats = NDArray[np.float64]
 
+#: Metres that a study area may lie off all points: those of a neighbouring site are fitted, of another grid not.
+FAR = 10_000.0
 #: Rounds of parameter correction for points between the sections of a folded surface.
 CORRECTIONS = 4
 
@@ -130,6 +134,8 @@ def _fit_horizon(
 
     clock.stage("adjust", 0.9)
     surface = _adjusted(model, surface)
+    if chart.parametric:
+        surface = _exact_or_not(surface)
     clock.stage("done", 1.0)
     return surface.with_(diagnostics={**surface.diagnostics, "seconds": dict(clock.seconds)})
 
@@ -173,6 +179,28 @@ def _adjusted(model: Model, surface: HorizonFit) -> HorizonFit:
     return surface
 
 
+def _exact_or_not(surface: HorizonFit) -> HorizonFit:
+    """Call those points exact that the surface meets: of a fold, points between the sections may be missed."""
+    model, accuracy = surface.model, surface.accuracy
+    assert model is not None
+    assert accuracy is not None
+    missed = surface.core & (np.abs(accuracy.residuals) > CORE_LIMIT)
+    if not missed.any():
+        return surface
+    split = model.problem.split
+    reason = said(
+        "{reason}; points that it does not meet, by up to {worst:.3g} m: {count}, which count as approximated",
+        reason=split.reason,
+        count=int(missed.sum()),
+        worst=float(np.abs(accuracy.residuals[missed]).max()),
+    )
+    known = replace(model.problem, split=Split(split.core, split.inside & ~missed, reason))
+    found = fit_of(replace(model, problem=known))
+    assert found.accuracy is not None
+    said_before = tuple(note for note in accuracy.notes if note not in found.accuracy.notes)
+    return found.with_(accuracy=replace(found.accuracy, notes=(*found.accuracy.notes, *said_before)))
+
+
 def _with_note(surface: HorizonFit, note: str) -> HorizonFit:
     assert surface.accuracy is not None
     return surface.with_(accuracy=replace(surface.accuracy, notes=(*surface.accuracy.notes, note)))
@@ -194,13 +222,49 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         raise PointsError(
             said("All {count} points stand at one place; at least 3 places are needed.", count=len(points))
         )
+    farthest = float(np.abs(points.xyz).max())
+    if farthest > LARGEST:
+        raise PointsError(
+            said(
+                "A coordinate is {farthest:.3g} m; at most {largest:.0e} m are fitted. Check the unit and the columns.",
+                farthest=farthest,
+                largest=LARGEST,
+            )
+        )
+    if look_like_degrees(points.xyz):
+        raise PointsError(
+            said(
+                "The points look like longitude and latitude in degrees (the first: {x:.6g}, {y:.6g}); easting and "
+                "northing in metres are needed. Project them to the grid of the site (geofit fit --crs EPSG:..., or "
+                "crs in the site file).",
+                x=points.xyz[0, 0],
+                y=points.xyz[0, 1],
+            )
+        )
     if boundary is None:
         return None
-    corners = np.asarray(boundary, float)
+    try:
+        corners = np.asarray(boundary, float)
+    except (TypeError, ValueError):
+        raise PointsError(
+            said("The boundary is no list of corners; at least three pairs of easting and northing are needed.")
+        ) from None
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
         text = said(
             "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.",
             shape=corners.shape,
+        )
+        raise PointsError(text)
+    fault = fault_of_area(corners)
+    if fault is not None:
+        raise PointsError(said("{fault}. List the corners in order around the study area, each once.", fault=fault))
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    off = np.maximum(low - points.xyz[:, :2], points.xyz[:, :2] - high).max(axis=1).min()
+    if off > max(np.hypot(*(high - low)), FAR):
+        text = said(
+            "All points lie off the study area, the nearest by {off:.0f} m. Check the coordinates of both, and the "
+            "order of easting and northing.",
+            off=float(off),
         )
         raise PointsError(text)
     return corners

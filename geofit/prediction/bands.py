@@ -8,7 +8,6 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import NearestNDInterpolator
-from scipy.spatial import Delaunay
 from scipy.special import ndtri
 from threadpoolctl import threadpool_limits
 
@@ -20,6 +19,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.posterior import Posterior, posterior
 from geofit.geometry.clip import inside
+from geofit.geometry.hull import within_hull
 from geofit.splines import bspline
 
 __all__ = ["Grid", "Spread", "band", "grid_over", "prediction_sd", "uncertainty_on"]
@@ -96,7 +96,7 @@ def grid_over(surface: HorizonFit) -> Grid:
     within = (plane >= (u0 - edge, v0 - edge)).all(axis=1) & (plane <= (u1 + edge, v1 + edge)).all(axis=1)
     plane = np.clip(plane, (u0, v0), (u1, v1))
     if chart.frame.kind != "map":
-        within &= Delaunay(chart.plane).find_simplex(plane) >= 0
+        within &= within_hull(chart.plane, plane)
     if surface.outline is not None:
         # The outline itself counts as inside.
         middle = (low + high) / 2

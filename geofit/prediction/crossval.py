@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.guard import guarded
 from geofit.data.messages import Said, said
 from geofit.data.prediction import LeftOut, Scheme
 from geofit.fitting.calibration import Calibration, calibrate, gathered, share_inside, variance_of
@@ -81,7 +83,14 @@ def calibrated(fit: LinearFit, folds: list[Fold], places: Floats, variance: Floa
     return calibrate(given.plane, near, blocks, holes, places, variance)
 
 
-def left_out(model: Model, given: Posterior, fold: Fold, calibration: Calibration, plate: Floats | None) -> LeftOut:
+def left_out(
+    model: Model,
+    given: Posterior,
+    fold: Fold,
+    calibration: Calibration,
+    plate: Floats | None,
+    report: Callable[[str], object],
+) -> LeftOut:
     """Return the figures of one scheme over all points of the horizon.
 
     Parameters
@@ -97,6 +106,8 @@ def left_out(model: Model, given: Posterior, fold: Fold, calibration: Calibratio
     plate : (n, n) array or None
         Inverse of the thin-plate spline (:func:`geofit.prediction.thinplate.thin_plate_inverse`) with which it and
         kriging predict the same folds; None: no other method is compared.
+    report : callable
+        Called with the reason where another method fails; the figures do without it.
     """
     error = fold.predicted.error
     variance, noise = variance_of(fold.predicted), (given.noise * given.noise_ratio) ** 2
@@ -105,8 +116,18 @@ def left_out(model: Model, given: Posterior, fold: Fold, calibration: Calibratio
     others: dict[str, float] = {}
     if plate is not None and known.any():
         z = model.problem.chart.values[given.kept]
-        others["thin plate"] = _rms((z - thin_plate_left_out(given.plane, z, fold.groups, plate))[known])
-        others["kriging"] = _rms((z - krige_left_out(given.plane, z, fold.groups))[known])
+        methods: dict[str, Callable[[], Floats]] = {
+            "thin plate": lambda: thin_plate_left_out(given.plane, z, fold.groups, plate),
+            "kriging": lambda: krige_left_out(given.plane, z, fold.groups),
+        }
+        for method, predict in methods.items():
+
+            def missing(reason: str, method: str = method) -> None:
+                report(said("{method} was not compared: {reason}", method=said(method), reason=reason))
+
+            estimate = guarded(predict, None, missing)
+            if estimate is not None:
+                others[method] = _rms((z - estimate)[known])
     count = len(model.problem.points)
     label = np.zeros(count, dtype=fold.label.dtype)
     label[given.kept[known]] = fold.label[known]

@@ -6,18 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from geofit.data.errors import FitError
+from geofit.data.guard import guarded
 from geofit.data.messages import said
 from geofit.data.prediction import LeftOut, OffData, Outlier
 from geofit.data.progress import Progress, tell
-from geofit.fitting.calibration import uncalibrated
+from geofit.fitting.calibration import Calibration, uncalibrated
 from geofit.fitting.deletion import linear_fit
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.outliers import find_outliers
-from geofit.fitting.posterior import posterior
-from geofit.prediction.bands import Spread, grid_over, uncertainty_on
-from geofit.prediction.crossval import about_the_hull, calibrated, folds_of, left_out, one_by_one
+from geofit.fitting.posterior import Posterior, posterior
+from geofit.prediction.bands import Grid, Spread, grid_over, uncertainty_on
+from geofit.prediction.crossval import Fold, about_the_hull, calibrated, folds_of, left_out, one_by_one
 from geofit.prediction.drilling import suggest_holes
 from geofit.prediction.refits import sections_by_refit
 from geofit.prediction.thinplate import thin_plate_inverse
@@ -63,12 +63,14 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
     if model is None:
         return _nothing(said("'{name}' was not fitted here: no point can be left out of it", name=surface.name))
     with threadpool_limits(limits=1):
-        if model.problem.chart.parametric:
-            return sections_by_refit(surface, model, progress)
-        try:
-            return _examine(surface, model, progress)
-        except FitError as error:
-            return _nothing(said("the error off the data cannot be told: {reason}", reason=str(error)))
+        notes: list[str] = []
+
+        def missing(reason: str) -> None:
+            notes.append(said("the error off the data cannot be told: {reason}", reason=reason))
+
+        look = sections_by_refit if model.problem.chart.parametric else _examine
+        found = guarded(lambda: look(surface, model, progress), None, missing)
+        return _nothing(notes[0]) if found is None else found
 
 
 def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> OffData:
@@ -77,11 +79,52 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Of
     given = posterior(model)
     grid = grid_over(surface)
     many = len(given.value) > MOST
-    calibration = uncalibrated()
-    outliers: tuple[Outlier, ...] = ()
     tell(progress, "cross-validation", 0.2)
+    folds, calibration, outliers = guarded(
+        lambda: _left_out(model, given, grid, progress, notes),
+        ([], uncalibrated(), ()),
+        lambda reason: notes.append(said("no point was left out, the band is not calibrated: {reason}", reason=reason)),
+    )
+    if model.net.lines is not None:
+        notes.append(said("the core is linear across its sections; its left-out errors are those of a cubic one"))
+    tell(progress, "other methods", 0.65)
+    plate = guarded(
+        lambda: None if many else thin_plate_inverse(given.plane),
+        None,
+        lambda reason: notes.append(said("no other method was compared: {reason}", reason=reason)),
+    )
+    results = []
+    for fold in folds:
+        results.append(left_out(model, given, fold, calibration, plate, notes.append))
+        beyond = about_the_hull(given, fold) if not many else None
+        notes += [beyond] if beyond else []
+        notes += _not_held(results[-1])
+    tell(progress, "next holes", 0.8)
+    spread = Spread(model, given, calibration)
+    if not len(grid.plane):
+        notes.append(said("the points have no area: there is no standard deviation between them"))
+    suggestions = guarded(
+        lambda: suggest_holes(grid, spread) if len(grid.plane) else (),
+        (),
+        lambda reason: notes.append(said("no holes are suggested: {reason}", reason=reason)),
+    )
+    uncertainty = guarded(
+        lambda: uncertainty_on(grid, spread) if len(grid.plane) else None,
+        None,
+        lambda reason: notes.append(said("the standard deviation is not known: {reason}", reason=reason)),
+    )
+    tell(progress, "done", 1.0)
+    return OffData(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
+
+
+def _left_out(
+    model: Model, given: Posterior, grid: Grid, progress: Progress | None, notes: list[str]
+) -> tuple[list[Fold], Calibration, tuple[Outlier, ...]]:
+    """Leave the points out, hold the standard deviation to their errors, and name those far from their neighbours."""
+    many = len(given.value) > MOST
     if many:
-        folds = one_by_one(model, given)
+        folds, calibration = one_by_one(model, given), uncalibrated()
+        outliers: tuple[Outlier, ...] = ()
         notes.append(
             said(
                 "{count} points are too many to leave out in groups: each is left out alone, of the regional field, "
@@ -93,26 +136,11 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Of
         fit = linear_fit(model, given)
         folds = folds_of(model, fit)
         tell(progress, "calibration", 0.5)
-        calibration = calibrated(fit, folds, grid.plane, Spread(model, given, calibration).variance(grid.plane))
+        calibration = calibrated(fit, folds, grid.plane, Spread(model, given, uncalibrated()).variance(grid.plane))
         outliers = find_outliers(fit, calibration.at(given.plane))
         if not given.exact_net:
             notes.append(said("so many control points: the regional field alone is left out, on a coarser net"))
-    if model.net.lines is not None:
-        notes.append(said("the core is linear across its sections; its left-out errors are those of a cubic one"))
-    tell(progress, "other methods", 0.65)
-    plate = None if many else thin_plate_inverse(given.plane)
-    results = []
-    for fold in folds:
-        results.append(left_out(model, given, fold, calibration, plate))
-        beyond = about_the_hull(given, fold) if not many else None
-        notes += [beyond] if beyond else []
-        notes += _not_held(results[-1])
-    tell(progress, "next holes", 0.8)
-    spread = Spread(model, given, calibration)
-    suggestions = suggest_holes(grid, spread) if len(grid.plane) else ()
-    uncertainty = uncertainty_on(grid, spread) if len(grid.plane) else None
-    tell(progress, "done", 1.0)
-    return OffData(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
+    return folds, calibration, outliers
 
 
 def _not_held(found: LeftOut) -> list[str]:

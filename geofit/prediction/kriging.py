@@ -47,11 +47,19 @@ class Variogram:
 
 
 def fit_variogram(plane: Floats, z: Floats) -> Variogram:
-    """Fit a variogram model to (n,) values at (n, 2) places."""
+    """Fit a variogram model to (n,) values at (n, 2) places.
+
+    Where no two places are nearer than half the extent (three boreholes, the corners of a square), all distances
+    count; where there are no two places, the variogram is the line of slope 1.
+    """
     part = np.linspace(0, len(z) - 1, min(len(z), _MOST)).astype(int)
     h = pdist(plane[part])
     half_square = pdist(z[part, None], "sqeuclidean") / 2
+    if not h.any():
+        return Variogram(0.0, 0.0, np.inf, 1.0)
     longest = float(h.max()) / 2
+    if not (h[h > 0] < longest).any():
+        longest = float(np.nextafter(h.max(), np.inf))
     cell = np.floor(h / longest * CLASSES).astype(int)
     near = cell < CLASSES
     count = np.bincount(cell[near], minlength=CLASSES)

@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.files import replacing
+from geofit.data.files import legible, replacing
 from geofit.data.messages import Verbatim, listed, said
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, ImportIssue, Site, TableCount
@@ -96,6 +96,12 @@ def import_files(
     site_file = Path(site_file)
     if not files:
         raise InputError("No file is given", "Name the tables, drawings, maps and grids of the site.")
+    if legible(site_file.name) != site_file.name:
+        raise InputError(
+            "The name of the site file is not UTF-8, and its mapping file cannot name it",
+            "Choose another name.",
+            file=legible(str(site_file)),
+        )
     folder = site_file.parent
     folder.mkdir(parents=True, exist_ok=True)
     plan = Plan()

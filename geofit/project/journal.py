@@ -9,12 +9,14 @@
 
 Each line carries its checksum and is on the disk (fsync) before the command counts as done. A session that ends
 removes its journal; one that is there and that no living process holds was cut off, and is told again from its
-first line up to the last whole one.
+first line up to the last whole one. A journal that a newer geofit wrote, or that makes no sense, is kept under another
+name (``.unreadable``) and never looked at again.
 """
 
 from __future__ import annotations
 
 import json
+import logging
 import os
 import sys
 import zlib
@@ -30,7 +32,9 @@ from geofit.project.state import State
 __all__ = ["Journal", "Unfinished", "unfinished"]
 
 FORMAT, VERSION = "geofit journal", 1
-_SUFFIX = ".journal"
+_SUFFIX, _KEPT = ".journal", ".unreadable"
+
+_LOG = logging.getLogger(__name__)
 
 
 class Journal:
@@ -73,7 +77,8 @@ class Journal:
         self.path.unlink(missing_ok=True)
 
     def _write(self, record: Mapping[str, Any]) -> None:
-        text = json.dumps(record, ensure_ascii=False).encode()
+        # A path may have bytes that are not UTF-8: they come back as they are.
+        text = json.dumps(record, ensure_ascii=False).encode("utf-8", "surrogatepass")
         self._stream.write(b"%08x " % zlib.crc32(text) + text + b"\n")
         self._stream.flush()
         os.fsync(self._stream.fileno())
@@ -114,28 +119,51 @@ class Unfinished:
 
 
 def unfinished(folder: Path) -> list[Unfinished]:
-    """Return the sessions that were cut off with something unsaved, the latest first; journals of others stay."""
+    """Return the sessions that were cut off with something unsaved, the latest first; journals of others stay.
+
+    One that cannot be read is renamed to ``NAME.unreadable``, and the log says so.
+    """
     found = []
     for path in folder.glob(f"*{_SUFFIX}"):
         try:
             with path.open("rb+") as stream:
                 _hold(stream)
-                session = _read(path, stream.read())
+                data = stream.read()
         except OSError:
             continue  # another process has it open, or has just removed it
-        if session is not None and session.final != session.saved:
+        try:
+            session = _read(path, data)
+            begun = session is not None and session.final != session.saved
+        except Exception as error:  # any bytes may be there: the journals of other sessions are still to be told
+            _set_aside(path, error)
+            continue
+        if session is not None and begun:
             found.append(session)
         else:
             path.unlink(missing_ok=True)
     return sorted(found, key=lambda session: -session.time)
 
 
+def _set_aside(path: Path, error: Exception) -> None:
+    kept = path.with_name(path.name + _KEPT)
+    with suppress(OSError):
+        os.replace(path, kept)
+        _LOG.warning("The journal of a session cannot be read (%s); it is kept as %s", error, kept)
+
+
 def _read(path: Path, data: bytes) -> Unfinished | None:
-    """Return what a journal tells; None if not even its first line is whole."""
+    """Return what a journal tells; None if nothing was done: the session was cut off within its first line.
+
+    Any error says that a newer geofit wrote it, or that it is damaged.
+    """
+    if b"\n" not in data:
+        return None
     records = _records(data)
     head = next(records, None)
-    if head is None or head.get("format") != FORMAT or head.get("version") != VERSION:
-        return None
+    if head is None:
+        raise ValueError("its first line is damaged")
+    if head["format"] != FORMAT or head["version"] != VERSION:
+        raise ValueError(f"it is a {head['format']} of version {head['version']}, this geofit reads {VERSION}")
     done: list[Command] = []
     undone: list[Command] = []
     project_file = head["project_file"]

@@ -5,11 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from geofit.data.errors import Cancelled, GeofitError, InputError, SettingsError
+from geofit.data.errors import InputError
 from geofit.data.files import file_stems, replacing
+from geofit.data.guard import guarded
 from geofit.data.messages import said
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
@@ -128,13 +130,13 @@ def deliver(
     for i, (name, surface) in enumerate(fits.surfaces.items()):
         share = (1.0 - FITS) / len(fits.surfaces)
         part = _within(progress, FITS + i * share, FITS + (i + 1) * share, name)
-        try:
-            made = _written(surface, site, out / stems[name], part, language, fits.seconds[name], bands)
-        except Cancelled:
-            raise
-        except GeofitError as error:
-            failures[name] = error.args[0] if error.args else str(error)
-        else:
+
+        def failed(reason: str, name: str = name) -> None:
+            failures[name] = reason
+
+        stem, seconds = out / stems[name], fits.seconds[name]
+        made = guarded(partial(_written, surface, site, stem, part, language, seconds, bands), None, failed)
+        if made is not None:
             results.append(made.result)
             images |= made.images
             warnings += made.warnings
@@ -221,6 +223,7 @@ def write_reports(
     _make(out)
     images: dict[str, bytes] = {}
     made = []
+    warnings: list[str] = []
     for i, result in enumerate(results):
         low, high = 0.9 * i / len(results), 0.9 * (i + 1) / len(results)
         part = _within(progress, low, high, result.name)
@@ -228,7 +231,9 @@ def write_reports(
         if examined and result.offdata is None:
             result = replace(result, offdata=examine(result.surface, _within(progress, low, 0.6 * high + 0.4 * low)))
         if result.storage is None:
-            result = replace(result, storage=_storage(result.surface))
+            storage, missing = _storage(result.surface)
+            result = replace(result, storage=storage)
+            warnings += missing
         if pictured:
             part("pictures", 0.6)
             images |= draw(result, language).images
@@ -243,7 +248,7 @@ def write_reports(
     tell(progress, "report", 0.95)
     _write_report(report, whole, images, out, language, font, forms)
     files = {form: out / f"report.{form}" for form in forms}
-    return Reports(files, tuple(text for text in (font, unordered, whole.missing) if text), tuple(made))
+    return Reports(files, tuple(text for text in (font, *warnings, unordered, whole.missing) if text), tuple(made))
 
 
 def _within(progress: Progress | None, low: float, high: float, name: str = "") -> Progress:
@@ -285,20 +290,30 @@ def _written(
     warnings = _write_bands(surface, offdata, stem) if bands else ()
     clock.stop("STEP and read-back")
     progress("pictures", 0.7)
-    result = HorizonResult(surface, site, back, _storage(surface), path.stat().st_size, offdata=offdata)
+    storage, missing = _storage(surface)
+    result = HorizonResult(surface, site, back, storage, path.stat().st_size, offdata=offdata)
     pictures = draw(result, language)
     write_picture(result, pictures, stem.with_name(stem.name + ".png"), language)
     clock.stop("pictures")
     result = replace(result, seconds=clock.seconds)
     write_residuals(result, stem.with_name(stem.name + "_residuals.csv"), language)
     write_json(result, stem.with_name(stem.name + ".json"))
-    return _Made(result, pictures.images, warnings)
+    return _Made(result, pictures.images, (*warnings, *missing))
 
 
-def _storage(surface: HorizonFit) -> Storage:
+def _storage(surface: HorizonFit) -> tuple[Storage | None, tuple[str, ...]]:
+    """Compare the storage of a surface with that of a TIN and a grid; say why where that fails."""
     from geofit.checks.storage import equal_accuracy
 
-    return equal_accuracy(surface, surface.settings.interior_tolerance)
+    missing: list[str] = []
+    found = guarded(
+        lambda: equal_accuracy(surface, surface.settings.interior_tolerance),
+        None,
+        lambda reason: missing.append(
+            said("{name}: its storage was not compared: {reason}", name=surface.name, reason=reason)
+        ),
+    )
+    return found, tuple(missing)
 
 
 def _write_bands(surface: HorizonFit, offdata: OffData, stem: Path) -> tuple[str, ...]:
@@ -332,10 +347,13 @@ def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, str]:
 
     if site.order and len([name for name in site.order if name in fits.horizon.values()]) < 2:
         return None, ""
-    try:
-        return compare(site, fits), ""
-    except SettingsError as error:
-        return None, said("The order of the horizons was not examined: {reason}", reason=error.args[0])
+    missing: list[str] = []
+    compared = guarded(
+        lambda: compare(site, fits),
+        None,
+        lambda reason: missing.append(said("The order of the horizons was not examined: {reason}", reason=reason)),
+    )
+    return compared, missing[0] if missing else ""
 
 
 def _write_report(

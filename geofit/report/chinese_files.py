@@ -37,15 +37,47 @@ _ANY = {
     "Projecting {file}": "投影 {file}",
     "The target '{target}' is no projected system in metres": "目标坐标系“{target}”不是以米为单位的投影坐标系",
     "Name the grid of the site, such as a UTM zone: EPSG:32650.": "请指定场地的投影坐标系，如 UTM 带：EPSG:32650。",
+    "Reading the file takes longer than {seconds:.0f} s": "读取该文件超过 {seconds:.0f} s",
+    "The file is damaged: reading it ends OpenCASCADE (exit code {code})": "文件已损坏：读取时 OpenCASCADE 终止（退出码 {code}）",
+    "Open it in a CAD program and export the surface as STEP again.": "请用 CAD 软件打开，并重新将曲面导出为 STEP。",
+    "The file holds coordinates that are no finite numbers": "文件中有非有限数坐标",
+    "Reading the file needs too much memory": "读取该文件所需内存过大",
+    "{count} more of this kind, the last in this row: {reason}": "另有 {count} 条同类，最后一条在此行：{reason}",
+    "The table has {count} columns; at most {most} are read": "表有 {count} 列；最多读取 {most} 列",
+    "State the separator of the cells, or export the columns that are needed.": "请指明分隔符，或只导出所需的列。",
+    "{names}, and {count} more": "{names} 等，另有 {count} 列",
+    "The workbook unpacks to {size:.0f} MB; at most {most:.0f} are read": "工作簿解压后为 {size:.0f} MB；最多读取 {most:.0f} MB",
+    "The sheet has more rows ({rows}) or cells ({cells}) than can be read; at most {most_rows} and {most_cells}": "工作表的行数"
+    "（{rows}）或单元格数（{cells}）超出可读范围；最多 {most_rows} 行、{most_cells} 个单元格",
+    "Remove the rows and columns beyond the table, or save the sheet as CSV UTF-8.": "请删除表外的行列，或将工作表另存为 CSV UTF-8。",
+    "Horizon {horizon}: {count} points lie at the place of another; the first {most} are listed": "层面 {horizon}：{count} 个点与"
+    "其他点同位；列出前 {most} 个",
+    "Remove what is repeated.": "请删除重复内容。",
+    "It is a pipe or a device, not a file": "这是管道或设备，不是文件",
+    "Name a file.": "请指定文件。",
+    "The name of the file has a NUL character": "文件名含有空字符（NUL）",
+    "The name of the file is not UTF-8, and a site file cannot name it": "文件名不是 UTF-8，场地文件无法引用",
+    "Rename the file.": "请重命名该文件。",
+    "The name of the site file is not UTF-8, and its mapping file cannot name it": "场地文件名不是 UTF-8，映射文件无法引用",
+    "Choose another name.": "请另选文件名。",
+    "The file cannot be written: the disk may be full": "文件无法写入：磁盘可能已满",
+    "Make room, or name another folder.": "请腾出空间，或另选文件夹。",
+    "Make room on the disk, or name another folder.": "请腾出磁盘空间，或另选文件夹。",
+    "Name a folder that you may write to, and close the file in other programs.": "请选择可写的文件夹，并在其他程序中关闭该文件。",
+    "The file is not used: its places are longitude and latitude ({names})": "文件未采用：其位置为经纬度（{names}）",
+    "Name the grid of the site, in metres, with --crs, such as EPSG:32650: they are projected to it.": "请用 --crs 指定以米为单位的"
+    "场地坐标系（如 EPSG:32650），坐标将投影到该坐标系。",
+    "A control point of '{name}' is {reach:.3g} m from 0; at most {most:.0e} m are written": "“{name}”有控制点距原点 {reach:.3g} m；最多写出 "
+    "{most:.0e} m",
+    "Fit the surface to points in the metres of the site's grid.": "请用场地坐标系中以米为单位的点拟合曲面。",
+    "The file is nested too deeply": "文件嵌套过深",
     "The coordinate system '{text}' is unknown: {error}": "坐标系“{text}”未知：{error}",
     "Give a code such as EPSG:32650.": "请给出代码，如 EPSG:32650。",
     "The places are longitude and latitude ({crs}); easting and northing in metres are needed": "位置为经纬度（{crs}）；应为以米为单位的东坐标"
     "与北坐标",
     "Longitude and latitude are degrees; easting and northing in metres are needed": "经纬度以度为单位；应为以米为单位的东坐标与北坐标",
-    'Project the coordinates to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." (geofit import: '
-    "--crs).": '请先将坐标投影到场地坐标系，或指定该坐标系：[site] crs = "EPSG:..."（geofit import：--crs）。',
-    'Project the layer to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." (geofit import: --crs).': "请先将图层投影到"
-    '场地坐标系，或指定该坐标系：[site] crs = "EPSG:..."（geofit import：--crs）。',
+    'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." (geofit fit and geofit import: '
+    "--crs).": '请先投影到场地坐标系，或指定该坐标系：[site] crs = "EPSG:..."（命令行：--crs）。',
 }
 
 _TABLES = {

@@ -33,7 +33,7 @@ _FIT = {
     "{n} points are judged by sigma, not pulled into the tolerance one by one; noise about {noise:.3f} m": "{n} 个点以 σ 评判，"
     "不逐点拉入容差；噪声约 {noise:.3f} m",
     "no more control points are allowed there": "该处不允许再增加控制点",
-    "interior tolerance {tolerance:g} m not met, points: {count}, worst {worst:.3f} m: {reason}": "{count} 个点未满足内部容差 "
+    "interior tolerance {tolerance:g} m not met in height, points: {count}, worst {worst:.3f} m: {reason}": "{count} 个点未满足内部容差 "
     "{tolerance:g} m，最大 {worst:.3f} m：{reason}",
     "the points scatter by about {noise:.2g} m about the smoothest surface that they support; meeting each within {tolerance:g} m bends it between them, and an interior tolerance of about {wider:.2g} m would predict new holes better": "各点围绕其所能支持的最光滑曲面的离散约为 {noise:.2g} m；要求逐点在 {tolerance:g} m 以内会使曲面在点间弯曲，内部容差取约 {wider:.2g} m 时对新钻孔的预测更好",
     "its points bear each other out to about {noise:.3g} m only, more than epsilon {epsilon:g} m": "其各点仅能在约 {noise:.3g} m 内相互印证，超过控制误差 ε {epsilon:g} m",
@@ -132,6 +132,18 @@ _ERRORS = {
     "{count} points given": "给出 {count} 个点",
     "{given}; at least 3 are needed to lay a surface. Check the horizon's name and the filters of the import.": "{given}；成面至少需 3 "
     "个点。请检查层面名称与导入筛选。",
+    "The points look like longitude and latitude in degrees (the first: {x:.6g}, {y:.6g}); easting and northing in "
+    "metres are needed. Project them to the grid of the site (geofit fit --crs EPSG:..., or crs in the site file).": "各点坐标似为以度为"
+    "单位的经纬度（首点：{x:.6g}，{y:.6g}）；应为以米为单位的东坐标与北坐标。请投影到场地坐标系（命令行 --crs EPSG:...，或场地文件中的 crs）。",
+    "{reason}; points that it does not meet, by up to {worst:.3g} m: {count}, which count as approximated": "{reason}；其中 {count} 个点"
+    "未能通过（最大相差 {worst:.3g} m），按逼近点计",
+    "The boundary is no list of corners; at least three pairs of easting and northing are needed.": "边界不是角点列表；至少需三对东、北坐标。",
+    "{fault}. List the corners in order around the study area, each once.": "{fault}。请沿研究区依次列出各角点，每点一次。",
+    "All points lie off the study area, the nearest by {off:.0f} m. Check the coordinates of both, and the order of "
+    "easting and northing.": "全部点位于研究区之外，最近者相距 {off:.0f} m。请检查二者坐标及东、北坐标的次序。",
+    "A coordinate is {farthest:.3g} m; at most {largest:.0e} m are fitted. Check the unit and the columns.": "有坐标为 {farthest:.3g} m；"
+    "最多拟合 {largest:.0e} m。请检查单位与列。",
+    "The boundary has no area: its corners lie on one line": "边界没有面积：各角点在一条直线上",
     "All {count} points stand at one place; at least 3 places are needed.": "全部 {count} 个点位于同一位置；至少需 3 个不同位置。",
     "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.": "边界的形状为 {shape}；至少需三个"
     "有限的角点（东坐标，北坐标）。",
@@ -170,7 +182,7 @@ _ERRORS = {
     "控制点。",
     "'{name}' was read from a file: its patches have no common control net. Fit it again, then adjust.": "“{name}”由文件读入，各曲面片"
     "没有公共控制网。请重新拟合后再调整。",
-    "{name} is {value}; a finite number is needed.": "{name} 为 {value}；应为有限数。",
+    "{name} is {value}; a finite number up to {most:.0e} is needed.": "{name} 为 {value}；应为不超过 {most:.0e} 的有限数。",
     "There is no patch '{patch}'. The patches are: {names}.": "没有曲面片“{patch}”。现有：{names}。",
     "The point {point} lies beside the surface '{name}'. Choose a place above or below it.": "点 {point} 在曲面“{name}”范围之外。请选择"
     "其上方或下方的位置。",
@@ -305,6 +317,17 @@ _OFF_DATA = {
     "errors are distances from the surface through the other sections; the outermost two stay": "误差为到其余剖面所成曲面的距离；"
     "最外两条剖面不留出",
     "{count} sections are too many to leave out by new fits": "{count} 条剖面过多，不能逐一重新拟合",
+    "no point was left out, the band is not calibrated: {reason}": "未作留出检验，置信带未经校准：{reason}",
+    "no other method was compared: {reason}": "未与其他方法比较：{reason}",
+    "{method} was not compared: {reason}": "未与{method}比较：{reason}",
+    "the points have no area: there is no standard deviation between them": "数据点不构成面积，其间没有标准差",
+    "no holes are suggested: {reason}": "不建议新孔位：{reason}",
+    "the standard deviation is not known: {reason}": "标准差未知：{reason}",
+    "a check was not made: {reason}": "一项检查未能进行：{reason}",
+    "the dips were not compared: {reason}": "未与产状比较：{reason}",
+    "the ground was not compared: {reason}": "未与地面比较：{reason}",
+    "{name}: its storage was not compared: {reason}": "{name}：未比较其存储量：{reason}",
+    "unforeseen error {kind} ({text}; {place}); please report it": "未预见的错误 {kind}（{text}；{place}），请报告",
     "without {failed} of the sections no surface can be laid": "缺少其中 {failed} 条剖面便不能成面",
 }
 

@@ -56,7 +56,7 @@ def map_shape(result: HorizonResult, *, plan: bool) -> float:
     axes = np.eye(3)[:2] if plan else choose_view(result.surface).axes
     xyz = np.concatenate([*rims(result.surface).values(), result.surface.points.xyz])
     width, height = np.ptp(xyz @ axes.T, axis=0)
-    return float(height / width)
+    return float(height / width) if width > 0 else float("inf")
 
 
 def site_plan(axes: Axes, result: HorizonResult, t: Language = EN) -> None:

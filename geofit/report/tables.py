@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
-from geofit.data.files import replacing
+from geofit.data.files import replacing, spreadsheet_cell
 from geofit.data.site import ImportIssue
 from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
@@ -61,4 +61,4 @@ def _write(path: Path, header: Sequence[str], rows: Iterable[Sequence[Any]]) -> 
     with replacing(path) as part, part.open("w", encoding="utf-8-sig", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(header)
-        writer.writerows(rows)
+        writer.writerows([spreadsheet_cell(cell) for cell in row] for row in rows)

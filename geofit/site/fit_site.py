@@ -5,10 +5,12 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import combinations
 from typing import Any
 
-from geofit.data.errors import Cancelled, FitError, GeofitError, PointsError, SettingsError
+from geofit.data.errors import FitError, PointsError, SettingsError
+from geofit.data.guard import guarded
 from geofit.data.messages import said
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
@@ -98,12 +100,10 @@ def fit_site(
                 (k + min(max(fraction, 0.0), 1.0)) / len(names),
             )
 
-        try:
-            fits.add(name, found, listen)
-        except Cancelled:
-            raise
-        except GeofitError as error:
-            found.failures[name] = error.args[0] if error.args else str(error)
+        def failed(reason: str, name: str = name) -> None:
+            found.failures[name] = reason
+
+        guarded(partial(fits.add, name, found, listen), None, failed)
     if apart:
         tell(progress, "repair", 1.0)
         _push_apart(site, found)

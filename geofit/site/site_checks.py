@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from geofit.data.guard import guarded
+from geofit.data.messages import said
 from geofit.data.site import Ground, Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.clip import inside
@@ -35,12 +37,26 @@ def check_surroundings(surface: HorizonFit, site: Site, horizon: str = "") -> Ho
     accuracy = surface.accuracy
     if accuracy is None:
         return surface
-    _, dips = check_dips(surface, _of_block(site.orientations, surface, horizon) if horizon else site.orientations)
+    missing: list[str] = []
     tolerance = 0.0 if site.ground is None else ground_tolerance(site.ground, surface.settings.interior_tolerance)
-    asked = (dips, check_ground(surface, site.ground, tolerance))
+    measured = site.orientations
+    asked = (
+        guarded(
+            lambda: check_dips(surface, _of_block(measured, surface, horizon) if horizon else measured)[1],
+            None,
+            lambda reason: missing.append(said("the dips were not compared: {reason}", reason=reason)),
+        ),
+        guarded(
+            lambda: check_ground(surface, site.ground, tolerance),
+            None,
+            lambda reason: missing.append(said("the ground was not compared: {reason}", reason=reason)),
+        ),
+    )
     found = [check for check in asked if check is not None]
     kept = [check for check in accuracy.checks if check.name not in {one.name for one in found}]
-    return surface.with_(accuracy=replace(accuracy, checks=(*kept, *found)))
+    return surface.with_(
+        accuracy=replace(accuracy, checks=(*kept, *found), notes=(*accuracy.notes, *missing)),
+    )
 
 
 def ground_tolerance(ground: Ground, least: float) -> float:

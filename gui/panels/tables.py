@@ -21,7 +21,7 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QAction, QIcon, QKeySequence, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHeaderView, QMenu, QTableView, QWidget
 
-from geofit.data.files import replacing
+from geofit.data.files import replacing, spreadsheet_cell
 from geofit.gui.words import spoken
 
 __all__ = ["ArrayModel", "Column", "DataTable", "natural", "spoken_words"]
@@ -303,7 +303,7 @@ class DataTable(QTableView):
         writer = csv.writer(stream, delimiter=separator, lineterminator="\n")
         writer.writerow([column.title for column in self.rows.columns])
         sources = [self.rows.source(row) for row in rows]
-        writer.writerows([column.text(source) for column in self.rows.columns] for source in sources)
+        writer.writerows([spreadsheet_cell(column.text(source)) for column in self.rows.columns] for source in sources)
         return stream.getvalue()
 
     def _ask_where(self) -> None:

@@ -2504,6 +2504,10 @@ azimuth {azimuth}° · dip {dip}°</source>
         <translation>%s 的数据此后已改变：不能照原样重建其曲面。请拟合。</translation>
     </message>
     <message>
+        <source>The journal of a session cannot be read (%s); it is kept as %s</source>
+        <translation>一次工作的日志无法读取（%s）；已保留为 %s</translation>
+    </message>
+    <message>
         <source>There is no journal, so that a crash would lose unsaved work: %s</source>
         <translation>没有操作日志，程序崩溃时未保存的工作将丢失：%s</translation>
     </message>

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Mapping
+from io import BytesIO
 from os import PathLike
 from typing import Any
 
@@ -70,7 +71,9 @@ def write_geoh5(
     h5py = need("h5py", "geoh5", said("Writing {format}", format="geoh5"))
     if not meshes:
         raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
-    with replacing(path) as part, h5py.File(part, "w", track_order=False) as file:
+    # In memory: on a full disk the library ends the process.
+    whole = BytesIO()
+    with h5py.File(whole, "w", track_order=False) as file:
         model = _Model(file.create_group("GEOSCIENCE"), h5py.string_dtype())
         for name, mesh in meshes.items():
             item = model.add(name, SURFACE, "Surface", mesh.xyz)
@@ -80,6 +83,8 @@ def write_geoh5(
         for name, (data, deviation) in (points or {}).items():
             item = model.add(f"{name} points", POINTS, "Points", data.xyz)
             model.values(item, "deviation", "Vertex", np.asarray(deviation, float))
+    with replacing(path) as part:
+        part.write_bytes(whole.getvalue())
 
 
 class _Model:

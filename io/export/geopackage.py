@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from io import BytesIO
 from os import PathLike
 
 import numpy as np
@@ -50,10 +51,12 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
     # Otherwise GDAL writes the time into the file.
     pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": "2000-01-01T00:00:00.000Z"})
     try:
-        with replacing(path) as part, warnings.catch_warnings():
+        # In memory: of a full disk the library tells in many ways.
+        whole = BytesIO()
+        with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "'crs' was not provided")
             pyogrio.raw.write(
-                part, geometry, fields, ["horizon", "elevation"],
+                whole, geometry, fields, ["horizon", "elevation"],
                 layer="contours", driver="GPKG", geometry_type="LineString", crs=crs or None,
             )  # fmt: skip
     except (pyogrio.errors.DataSourceError, pyogrio.errors.CRSError) as error:
@@ -62,5 +65,8 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
             "Check the path; give the system as EPSG:number, or none: --crs ''.",
             file=str(path),
         ) from None
+    else:
+        with replacing(path) as part:
+            part.write_bytes(whole.getvalue())
     finally:
         pyogrio.set_gdal_config_options({"OGR_CURRENT_DATE": None})

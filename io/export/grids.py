@@ -98,8 +98,11 @@ def write_geotiff(grid: Ground, path: str | PathLike[str], crs: str = "") -> Non
         "driver": "GTiff", "count": 1, "dtype": "float64", "height": len(grid.y), "width": len(grid.x),
         "transform": transform, "crs": system, "nodata": np.nan, "compress": "deflate",
     }  # fmt: skip
-    with replacing(path) as part, rasterio.open(part, "w", **profile) as file:
-        file.write(grid.z[::-1], 1)
+    with rasterio.MemoryFile() as whole:
+        with whole.open(**profile) as file:
+            file.write(grid.z[::-1], 1)
+        with replacing(path) as part:
+            part.write_bytes(whole.read())
 
 
 def _rows(values: Floats, blank: str) -> list[str]:

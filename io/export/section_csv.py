@@ -6,7 +6,7 @@ import csv
 from collections.abc import Mapping, Sequence
 from os import PathLike
 
-from geofit.data.files import replacing
+from geofit.data.files import replacing, spreadsheet_cell
 from geofit.sampling.cut import CutLine
 
 __all__ = ["HEADER", "write_section_csv"]
@@ -40,7 +40,7 @@ def write_section_csv(cuts: Mapping[str, Sequence[CutLine]], path: str | PathLik
     with replacing(path) as part, part.open("w", encoding="utf-8-sig", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(HEADER)
-        for name, lines in cuts.items():
+        for name, lines in ((spreadsheet_cell(name), lines) for name, lines in cuts.items()):
             for number, line in enumerate(lines, 1):
                 for distance, (x, y, z) in zip(line.distance.tolist(), line.xyz.tolist(), strict=True):
                     writer.writerow((name, number, *(f"{value:.6f}" for value in (distance, z, x, y))))

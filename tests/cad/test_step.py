@@ -11,6 +11,7 @@ from geofit.cad.read_back import read_back, self_intersects
 from geofit.cad.step import read_shapes, read_step, write_step
 from geofit.cad.step_text import canonical
 from geofit.data.errors import InputError, StitchError
+from geofit.data.points import PointSet
 from geofit.splines.patch import Patch
 
 
@@ -318,3 +319,52 @@ def test_canonical_text():
     assert "OCCURRENCE('1','\\X4\\00005C4200020000\\X0\\'" in out
     assert "#7 = STYLED_ITEM('color',(#8),#3);" in out
     assert out.endswith("ENDSEC;\nEND-ISO-10303-21;\n")
+
+
+class Stuck:
+    """OpenCASCADE's projection where it stops in a local minimum, 834 m off."""
+
+    def Init(self, *_):  # noqa: N802
+        pass
+
+    def Perform(self, _):  # noqa: N802
+        pass
+
+    def NbPoints(self):  # noqa: N802
+        return 1
+
+    def LowerDistance(self):  # noqa: N802
+        return 834.0
+
+
+class StuckShapes:
+    def __init__(self, *_):
+        pass
+
+    def Value(self):  # noqa: N802
+        return 834.0
+
+
+def on_it(surface):
+    """The surface with points that it meets, all of them its core."""
+    places = [
+        patch.evaluate(*(np.quantile(knots, [0.2, 0.5, 0.9]) for knots in (patch.knots_u, patch.knots_v)))
+        for patch in surface.patches
+    ]
+    points = PointSet(np.concatenate(places) + surface.origin)
+    return surface.with_(points=points, core=np.ones(len(points), bool))
+
+
+def test_a_projection_that_stops_in_a_local_minimum_is_no_fault_of_the_file(tmp_path, monkeypatch):
+    monkeypatch.setattr("OCP.GeomAPI.GeomAPI_ProjectPointOnSurf", Stuck)
+    monkeypatch.setattr("OCP.BRepExtrema.BRepExtrema_DistShapeShape", StuckShapes)
+    back = write_step({"a": on_it(horizon(nine()[1], name="a"))}, tmp_path / "a.step")["a"]
+    assert back.core_max_abs < 1e-6
+
+
+def test_the_witness_hides_no_point_that_is_missed(tmp_path):
+    surface = on_it(horizon(nine()[1], name="a"))
+    off = surface.points.with_(xyz=surface.points.xyz + np.array([0, 0, 1e-3]))
+    back = write_step({"a": surface.with_(points=off)}, tmp_path / "a.step")["a"]
+    assert back.core_max_abs > 1e-4
+    assert {check.name: check for check in back.checks}["read-back core"].passed is False

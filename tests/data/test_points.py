@@ -8,8 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+import geofit
 from geofit import PointSet
 from geofit.data.errors import GeofitError, PointsError
+from geofit.data.points import look_like_degrees
 
 XYZ = [[0.0, 0.0, 1.0], [5.0, 0.0, 2.0], [5.0, 5.0, 3.0]]
 
@@ -163,3 +165,36 @@ def test_with_replaces_columns_and_checks_them():
 )
 def test_a_point_is_described_as_a_person_would_look_it_up(columns, words):
     assert three(**columns).describe(1) == words
+
+
+def geographic(n=12, seed=0, extent=0.02, middle=(110.123, 30.456), relief=40.0):
+    rng = np.random.default_rng(seed)
+    plan = np.array(middle) + extent * rng.uniform(-0.5, 0.5, (n, 2))
+    return np.column_stack([plan, 700 + relief * rng.uniform(size=n)])
+
+
+@pytest.mark.parametrize("middle", [(110.1, 30.4), (-70.2, -33.4), (0.01, 51.5), (178.5, -16.2), (25.0, 0.02)])
+@pytest.mark.parametrize("extent", [0.002, 0.05, 1.5])
+def test_longitude_and_latitude_are_known_by_their_values(middle, extent):
+    assert look_like_degrees(geographic(extent=extent, middle=middle))
+
+
+@pytest.mark.parametrize(
+    "xyz",
+    [
+        np.random.default_rng(1).uniform(0, 80, (30, 3)),  # a local grid
+        geographic(relief=0.1),  # level
+        np.round(geographic(extent=3.0), 3),  # to the millimetre
+        geographic() + np.array([500000, 3100000, 0]),
+        geographic()[:2],
+        np.zeros((5, 3)),
+        np.array([[100.0, 50.0, z] for z in range(9)]),  # a vertical hole in a local grid
+    ],
+)
+def test_metres_are_not_taken_for_degrees(xyz):
+    assert not look_like_degrees(xyz)
+
+
+def test_a_fit_refuses_degrees_and_names_the_remedy():
+    with pytest.raises(PointsError, match=r"look like longitude and latitude .*--crs EPSG"):
+        geofit.fit_horizon(PointSet(geographic()))

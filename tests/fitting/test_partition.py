@@ -162,3 +162,13 @@ def test_all_and_none_are_what_they_say():
     assert split_all(plane, AREA, "x").core == AREA
     assert split_none(plane, "x").core is None
     assert not split_none(plane, "x").inside.any()
+
+
+def test_a_box_drawn_in_to_one_section_is_no_core():
+    # Of the dense cluster two points lie beside its one section; the box's edge comes in past them.
+    rng = np.random.default_rng(0)
+    section = np.column_stack([np.sort(rng.uniform(0, 360, 22)), np.full(22, 400.0)])
+    beside = np.array([[30.0, 460.0], [330.0, 481.0]])
+    split = split_auto(np.concatenate([section, beside, uniform(25, seed=1)]), AREA)
+    assert split.core is None
+    assert "one section makes no core" in split.reason

@@ -11,18 +11,15 @@ import threading
 import pytest
 import virtual_screen
 
-pytest.importorskip("PySide6", reason="the windows need PySide6: pip install 'geofit[gui]'")
-
 
 def _display() -> str | None:
-    """Return why no window can open here; where Xvfb is installed, start it and return None."""
-    if not sys.platform.startswith("linux") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
-        return None
-    server = virtual_screen.start("1600x1000")
-    if isinstance(server, str):
-        return server
-    _SERVERS.append(server)
-    return None
+    """Return why no window can open here; where there is no display and Xvfb is installed, start it."""
+    if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
+        server = virtual_screen.start("1600x1000")
+        if isinstance(server, str):
+            return server
+        _SERVERS.append(server)
+    return virtual_screen.why_no_window()
 
 
 _SERVERS: list[subprocess.Popen[bytes]] = []
@@ -39,15 +36,20 @@ def _end() -> None:
 atexit.register(_end)
 
 
+class _NoWindow(pytest.Module):
+    """A file of tests that cannot run here: it is not imported, because some libraries abort the process then."""
+
+    def collect(self):
+        pytest.skip(_REASON, allow_module_level=True)
+
+
+def pytest_pycollect_makemodule(module_path, parent):
+    return None if _REASON is None else _NoWindow.from_parent(parent, path=module_path)
+
+
 @pytest.fixture(scope="session")
 def qapp_args():
     return ["geofit-test"]
-
-
-@pytest.fixture(autouse=True)
-def display():
-    if _REASON is not None:
-        pytest.skip(_REASON)
 
 
 @pytest.fixture(autouse=True)
@@ -70,7 +72,7 @@ def nothing_left(request):
     """No task and no thread of ours outlives its test, no window stays, no timer of a gone window runs."""
     before = set(threading.enumerate())
     yield
-    if _REASON is not None or "qtbot" not in request.fixturenames:
+    if "qtbot" not in request.fixturenames:
         return
     from PySide6.QtCore import QCoreApplication, QEvent
     from PySide6.QtWidgets import QApplication

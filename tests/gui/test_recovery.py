@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import importlib.util
+import json
 import subprocess
 import sys
+import zlib
 from itertools import pairwise
 from pathlib import Path
 
@@ -15,7 +17,7 @@ from geofit.data.settings import FitSettings
 from geofit.project.building import make
 from geofit.project.commands import PullToPoint, RenameSite, SetSettings, SetSurface
 from geofit.project.document import Document
-from geofit.project.journal import Journal, unfinished
+from geofit.project.journal import FORMAT, Journal, unfinished
 
 CHILD = Path(__file__).with_name("cut_off.py")
 KILLS = 60
@@ -171,3 +173,55 @@ def test_states_of_two_sessions_differ():
     # The test above compares states: it must be able to tell them apart.
     found = states(3, 40)
     assert sum(a != b for a, b in pairwise(found)) > 30
+
+
+def line(record):
+    text = record if isinstance(record, bytes) else json.dumps(record).encode()
+    return b"%08x " % zlib.crc32(text) + text + b"\n"
+
+
+def head(**changes):
+    state = Document().state.to_data()
+    return {"format": FORMAT, "version": 1, "site_file": None, "project_file": None, "state": state, **changes}
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        line(head(version=2)),
+        line(head(format="another")),
+        b"0" + line(head())[1:],
+        line(head()) + line({"undo": True}),
+        line(head()) + line({"do": {"kind": "no such command"}}),
+        line(head()) + line({"do": {"kind": "exclude"}}),
+        line(head()) + line([1, 2]),
+        line(head()) + line(b"no json"),
+        line(head(state={})),
+        line(head(site_file=7)),
+        line([]),
+        b"\xff\xfe\n\n",
+    ],
+    ids=["newer", "another format", "damaged", "undo of nothing", "unknown", "senseless", "a list", "no JSON",
+         "no state", "a number for a path", "a list first", "bytes"],
+)  # fmt: skip
+def test_a_journal_that_cannot_be_read_is_kept_and_blocks_no_other(tmp_path, data, caplog):
+    strange = tmp_path / "session-1-0.journal"
+    strange.write_bytes(data)
+    document = Document()
+    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal.done(RenameSite("another"))
+    journal._stream.close()
+    (session,) = unfinished(tmp_path)
+    assert session.final.name == "another"
+    assert not strange.exists()
+    kept = tmp_path / "session-1-0.journal.unreadable"
+    assert kept.read_bytes() == data
+    assert str(kept) in caplog.text
+    assert len(unfinished(tmp_path)) == 1
+
+
+def test_a_session_that_was_cut_off_within_its_first_line_leaves_nothing(tmp_path):
+    for k, data in enumerate((b"", line(head())[:-1])):
+        (tmp_path / f"session-1-{k}.journal").write_bytes(data)
+    assert unfinished(tmp_path) == []
+    assert list(tmp_path.iterdir()) == []

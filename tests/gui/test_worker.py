@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import signal
 import threading
 import time
+from contextlib import suppress
 
 import pytest
 from PySide6.QtCore import QObject
@@ -128,6 +130,47 @@ def test_a_failure_keeps_its_kind_across_the_process(owner, qtbot):
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
     assert isinstance(errors[0], FitError)
+
+
+def pid_of_the_only_helper(owner, qtbot):
+    """Have one idle process, and return its number."""
+    worker.finish_all(10)
+    results = []
+    task = worker.run_apart(owner, process_number, on_done=results.append)
+    with qtbot.waitSignal(task.ended, timeout=60_000):
+        pass
+    return results[0]
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9 is for Linux and macOS")
+def test_a_process_that_died_while_idle_is_replaced(owner, qtbot):
+    number = pid_of_the_only_helper(owner, qtbot)
+    os.kill(number, signal.SIGKILL)
+    time.sleep(0.2)
+    results, errors = [], []
+    task = worker.run_apart(owner, process_number, on_done=results.append, on_failed=errors.append)
+    with qtbot.waitSignal(task.ended, timeout=60_000):
+        pass
+    assert not errors
+    assert results[0] != number
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="processes are stopped on Linux and macOS")
+@pytest.mark.parametrize("size", [1, 3_000_000])
+def test_cancel_ends_a_stopped_process(owner, qtbot, size):
+    # An order larger than a pipe holds is still on its way when Cancel comes.
+    number = pid_of_the_only_helper(owner, qtbot)
+    os.kill(number, signal.SIGSTOP)
+    stopped = []
+    task = worker.run_apart(owner, double, "x" * size, on_cancelled=lambda: stopped.append(1))
+    qtbot.wait(200)
+    try:
+        with qtbot.waitSignal(task.ended, timeout=20_000):
+            task.cancel()
+    finally:
+        with suppress(ProcessLookupError):
+            os.kill(number, signal.SIGKILL)
+    assert stopped == [1]
 
 
 def test_the_owner_may_go_first(qtbot):

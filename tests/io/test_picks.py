@@ -100,3 +100,22 @@ def test_grid_by_cell_centres(write):
     head = "NCOLS 2\nNROWS 2\nXLLCENTER 100\nYLLCENTER 200\nDX 10\nDY 5\n"
     ground = read_ground(write(head + "1 2\n3 4\n", "g.asc"))
     assert (ground.x.tolist(), ground.y.tolist()) == ([100, 110], [200, 205])
+
+
+DEGREES = "LONGITUDE,LATITUDE,z\n117.10,28.20,100\n117.12,28.21,120\n117.13,28.25,130\n117.15,28.22,111\n"
+
+
+@pytest.mark.parametrize("columns", [{}, {"x": "LONGITUDE", "y": "LATITUDE", "z": "z"}, {"x": 1, "y": 2}])
+def test_longitude_and_latitude_are_refused_with_the_remedy(tmp_path, columns):
+    (tmp_path / "p.csv").write_text(DEGREES)
+    with pytest.raises(InputError, match=r"easting and northing in metres are needed.*--crs"):
+        read_points(tmp_path / "p.csv", **columns)
+
+
+@pytest.mark.parametrize("columns", [{}, {"x": "LONGITUDE", "y": "LATITUDE", "z": "z"}])
+def test_longitude_and_latitude_are_projected_to_the_grid_that_is_named(tmp_path, columns):
+    pyproj = pytest.importorskip("pyproj", reason="projecting needs geofit[gis]")
+    (tmp_path / "p.csv").write_text(DEGREES)
+    points = read_points(tmp_path / "p.csv", **columns, crs="EPSG:32650").horizons["p"]
+    known = pyproj.Transformer.from_crs(4326, 32650, always_xy=True).transform(117.10, 28.20)
+    np.testing.assert_allclose(points.xyz[0], [*known, 100.0], atol=1e-6)

@@ -190,3 +190,66 @@ def test_a_damaged_file_is_read_or_refused(cut, byte, drop, tmp_path):
     (tmp_path / "b.geofit").write_bytes(text)
     with suppress(InputError):
         open_project(tmp_path / "b.geofit")
+
+
+FOREIGN = [
+    r"dam_surfaces/..\..\x",
+    "dam_surfaces/../../x-00000000.step",
+    "dam_surfaces/x",
+    "../dam_surfaces/x-00000000.step",
+    r"dam_surfaces\x-00000000.step",
+    "dam_surfaces/C:x-00000000.step",
+    "/x-00000000.step",
+    "dam_surfaces/.x-00000000.step",
+    "dam_surfaces/x-00000000.step\0.txt",
+]
+
+
+def with_surface(folder, name):
+    save_project(sample(), folder / "dam.geofit", {"T": horizon([fold()], name="T")})
+    data = json.loads((folder / "dam.geofit").read_text("utf-8"))
+    data["results"][0]["surface"] = name
+    (folder / "dam.geofit").write_text(json.dumps(data), "utf-8")
+    return data
+
+
+@pytest.mark.parametrize("name", FOREIGN)
+def test_a_surface_that_no_project_writes_is_refused(tmp_path, name):
+    with_surface(tmp_path, name)
+    with pytest.raises(InputError, match="surface"):
+        open_project(tmp_path / "dam.geofit")
+
+
+@pytest.mark.parametrize("name", FOREIGN[:6])
+def test_a_save_removes_no_file_of_another_name(tmp_path, name, monkeypatch):
+    # As on Windows a backslash leads out of the folder, here it is a letter of the name: no such file goes either.
+    data = with_surface(tmp_path, name)
+    strange = tmp_path / name
+    strange.parent.mkdir(parents=True, exist_ok=True)
+    strange.write_text("somebody's")
+    result = module.ProjectResult(**data["results"][0])
+    (tmp_path / "dam.geofit").unlink()
+    save_project(Project(name="dam", results=(result,)), tmp_path / "dam.geofit", {"T": horizon([fold()], name="T")})
+    assert strange.read_text() == "somebody's"
+
+
+@pytest.mark.parametrize(
+    ("key", "entry"),
+    [
+        ("results", {"horizon": 1, "surface": "a_surfaces/x-00000000.step", "sha256": ""}),
+        ("results", {"horizon": "T", "surface": 7, "sha256": ""}),
+        ("results", {"horizon": "T", "surface": "a_surfaces/x-00000000.step", "sha256": "", "recipe": []}),
+        ("results", {"horizon": "T", "surface": "a_surfaces/x-00000000.step", "sha256": "", "n": "many"}),
+        ("sources", {"path": 3}),
+        ("sources", {"path": "a\0b"}),
+        ("sources", {"path": "a", "mapping": "x"}),
+        ("edits", {"kind": "exclude", "values": 1}),
+        ("edits", {"kind": None}),
+        ("edits", 5),
+    ],
+)
+def test_values_of_the_wrong_type_are_refused(tmp_path, key, entry):
+    data = {"format": "geofit project", "version": 1, "name": "dam", key: [entry]}
+    (tmp_path / "p.geofit").write_text(json.dumps(data), "utf-8")
+    with pytest.raises(InputError, match="does not hold what version 1 should"):
+        open_project(tmp_path / "p.geofit")

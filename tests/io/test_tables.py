@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import sys
+import zipfile
+
 import numpy as np
 import pytest
 
 from geofit.data.errors import InputError
+from geofit.data.messages import said
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers, read_table
@@ -121,3 +126,105 @@ def test_stated_encoding_that_does_not_fit(write):
 def test_decimal_comma_as_separator_is_refused(write):
     with pytest.raises(InputError, match="both separator and decimal"):
         read(write("a\n"), sep=",", decimal=",")
+
+
+def points_of(path):
+    from geofit.io import read_points
+
+    return read_points(path)
+
+
+def test_a_quoted_cell_of_any_length_is_read(tmp_path):
+    (tmp_path / "p.csv").write_text('x,y,z,kind\n1,2,3,"' + "a" * 200_000 + '"\n4,5,6,b\n7,8,1,c\n')
+    assert len(points_of(tmp_path / "p.csv").horizons["p"]) == 3
+
+
+@pytest.mark.parametrize("quote", ["", '"'])
+def test_a_header_wider_than_any_sheet_is_refused(tmp_path, quote):
+    header = ",".join(f"{quote}c{k}{quote}" for k in range(300_000))
+    (tmp_path / "p.csv").write_text(header + "\n" + ",".join("1" * 300_000) + "\n")
+    with pytest.raises(InputError, match="300000 columns; at most 16384") as refused:
+        points_of(tmp_path / "p.csv")
+    assert len(str(refused.value)) < 400
+
+
+def test_a_long_line_is_folded_where_it_is_listed(tmp_path):
+    (tmp_path / "p.csv").write_text("x,y,z\n1,2,3\n" + "9" * 2_000_000 + "\n4,5,6\n")
+    picks = points_of(tmp_path / "p.csv")
+    assert max(len(issue.value) for issue in picks.issues) < 300
+    (tmp_path / "q.csv").write_text("9" * 2_000_000)
+    with pytest.raises(InputError) as refused:
+        points_of(tmp_path / "q.csv")
+    assert len(str(refused.value)) < 1000
+
+
+def test_findings_that_are_alike_are_counted(monkeypatch):
+    monkeypatch.setattr("geofit.io.journal.MOST", 5)
+    journal = Journal()
+    for row in range(100):
+        journal.add("note", "a.csv", "alike", row=row)
+        journal.add("note", "a.csv", said("alike too {row}", row=row), row=row)
+    journal.add("note", "a.csv", "another", row=7)
+    assert len(journal.issues) == 13
+    more = [issue for issue in journal.issues if "95 more of this kind" in issue.reason]
+    assert [issue.row for issue in more] == [99, 99]
+
+
+def test_many_repeated_points_are_counted(tmp_path):
+    (tmp_path / "p.csv").write_text("x,y,z\n" + "1,2,3\n" * 30_000 + "4,5,6\n")
+    picks = points_of(tmp_path / "p.csv")
+    assert len(picks.horizons["p"]) == 30_001
+    assert len(picks.issues) < 10_100
+    assert any("29999 points lie at the place of another" in issue.reason for issue in picks.issues)
+
+
+def sheet(path, xml):
+    """A workbook of one sheet with the given rows as XML."""
+    openpyxl = pytest.importorskip("openpyxl")
+    openpyxl.Workbook().save(path)
+    with zipfile.ZipFile(path) as book:
+        parts = {name: book.read(name) for name in book.namelist()}
+    head = '<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData>'
+    parts["xl/worksheets/sheet1.xml"] = f"{head}{xml}</sheetData></worksheet>".encode()
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as book:
+        for name, data in parts.items():
+            book.writestr(name, data)
+
+
+@pytest.mark.parametrize(
+    "xml",
+    [
+        '<row r="1"><c r="A1"><v>1</v></c></row><row r="2000000000"><c r="A2000000000"><v>1</v></c></row>',
+        "".join(f'<row r="{k}"><c r="XFD{k}"><v>1</v></c></row>' for k in range(1, 3000)),
+    ],
+    ids=["a row far below", "cells far right"],
+)
+def test_a_workbook_that_claims_more_than_a_sheet_holds_is_refused(tmp_path, xml):
+    sheet(tmp_path / "bomb.xlsx", xml)
+    with pytest.raises(InputError, match=r"more rows .* or cells"):
+        points_of(tmp_path / "bomb.xlsx")
+
+
+def test_a_workbook_that_unpacks_to_too_much_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr("geofit.io.workbook.MOST_BYTES", 5_000)
+    sheet(tmp_path / "bomb.xlsx", "<!--" + " " * 10_000 + "-->")
+    with pytest.raises(InputError, match="unpacks to"):
+        points_of(tmp_path / "bomb.xlsx")
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="names are bytes on Linux only")
+def test_a_file_whose_name_is_not_utf8_is_read_under_a_legible_one(tmp_path):
+    path = tmp_path / os.fsdecode("层面.csv".encode("gbk"))
+    path.write_text("x,y,z\n1,2,3\n4,5,6\n7,8,1\n")
+    picks = points_of(path)
+    assert list(picks.horizons) == ["层面"]
+    assert set(picks.horizons["层面"].file.tolist()) == {"层面.csv"}
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="pipes with a name are for Linux and macOS")
+def test_a_pipe_and_a_name_with_nul_are_refused(tmp_path):
+    os.mkfifo(tmp_path / "p.csv")
+    with pytest.raises(InputError, match="a pipe or a device"):
+        points_of(tmp_path / "p.csv")
+    with pytest.raises(InputError, match="NUL"):
+        points_of(f"{tmp_path}/p\0.csv")

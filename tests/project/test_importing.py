@@ -185,3 +185,50 @@ def test_a_name_that_another_file_uses_is_kept_in_every_language(folder):
     found = import_files([folder / name for name in FILES], folder / "s.toml", language=ZH)
     assert "base of clay" in found.site.horizons
     assert "clay底界" not in found.site.horizons
+
+
+def kinds_of(folder, **files):
+    paths = []
+    for name, text in files.items():
+        (folder / f"{name}.csv").write_text(text)
+        paths.append(folder / f"{name}.csv")
+    done = import_files(paths, folder / "site.toml")
+    mapping = (folder / "site_mapping.toml").read_text("utf-8")
+    return done, mapping
+
+
+PLACES = "B1,500100,3100200,50\nB2,500300,3100250,55\nB3,500400,3100260,44\nB4,500440,3100300,41\n"
+
+
+@pytest.mark.parametrize("name", ["picks", "T2_points", "contacts"])
+def test_points_with_their_holes_are_no_collars_where_the_file_says_so(tmp_path, name):
+    done, mapping = kinds_of(tmp_path, **{name: "hole,x,y,z\n" + PLACES})
+    assert 'kind = "picks"' in mapping
+    assert [len(points) for points in done.site.horizons.values()] == [4]
+
+
+@pytest.mark.parametrize("header", ["CollarID,X,Y,Z", "collar_id,x,y,z", "hole,x,y,z"])
+def test_collars_are_found_by_the_name_of_their_holes(tmp_path, header):
+    done, mapping = kinds_of(tmp_path, holes=header + "\n" + PLACES)
+    assert 'kind = "collar"' in mapping
+    assert len(done.site.holes) == 4
+
+
+def test_a_table_of_degrees_names_the_remedy(tmp_path):
+    done, _ = kinds_of(tmp_path, p="name,longitude,latitude,horizon\nB1,110.1,30.2,T2\nB2,110.2,30.3,T2\n")
+    (issue,) = [issue for issue in done.issues if issue.severity == "error"]
+    assert "longitude and latitude" in issue.reason
+    assert "--crs" in issue.remedy
+
+
+def test_warnings_are_shown_by_kind(capsys):
+    from geofit.cli.console import print_issues
+    from geofit.data.messages import said
+    from geofit.data.site import ImportIssue
+
+    many = [ImportIssue("a.csv", k, "", "", "warning", said("dull {k}", k=k)) for k in range(280)]
+    print_issues(
+        [*many, ImportIssue("a.csv", 7, "", "", "warning", "grave"), ImportIssue("a.csv", 9, "", "", "error", "bad")]
+    )
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split(":")[-1].strip() for line in lines[1:]] == ["bad.", "grave.", "dull 0. (279 more like it)"]

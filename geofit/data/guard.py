@@ -1,0 +1,61 @@
+"""The one place where an unforeseen error is caught: it costs the examination that raised it, and is reported."""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import TypeVar
+
+from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.messages import said
+
+__all__ = ["guarded", "reason_of"]
+
+T = TypeVar("T")
+
+
+def guarded(work: Callable[[], T], instead: T, report: Callable[[str], object]) -> T:
+    """Run one examination; if it fails, report the reason and return what takes its place.
+
+    Parameters
+    ----------
+    work : callable
+        The examination.
+    instead : object
+        The result without it.
+    report : callable
+        Called with the reason in words.
+
+    Raises
+    ------
+    Cancelled
+        If the user stopped the examination; it did not fail.
+
+    Examples
+    --------
+    >>> notes = []
+    >>> guarded(lambda: 1 // 0, -1, notes.append), notes[0].values["kind"]
+    (-1, 'ZeroDivisionError')
+    """
+    try:
+        return work()
+    except Cancelled:
+        raise
+    except Exception as error:  # whatever it is, the other examinations are sound
+        report(reason_of(error))
+        return instead
+
+
+def reason_of(error: Exception) -> str:
+    """Return an error in words; of an unforeseen one also the kind and the line, for the report to the developers."""
+    if isinstance(error, GeofitError):
+        return error.args[0] if error.args else str(error)
+    frame = traceback.extract_tb(error.__traceback__)[-1:]
+    place = f"{Path(frame[0].filename).name}:{frame[0].lineno}" if frame else "?"
+    return said(
+        "unforeseen error {kind} ({text}; {place}); please report it",
+        kind=type(error).__name__,
+        text=" ".join(str(error).split())[:200],
+        place=place,
+    )

@@ -1,0 +1,28 @@
+"""Examinations of the smallest and of degenerate horizons end in figures and notes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geofit import PointSet, fit_horizon
+from geofit.prediction.examine import examine
+
+TRIANGLE = np.array([[0, 0, 10], [100, 0, 12], [50, 80, 11.0]])
+SQUARE = np.array([[0, 0, 1], [100, 0, 2], [0, 100, 3], [100, 100, 1.0]])
+TWO_PLACES = np.array([[0, 0, 0], [0, 0, 0], [1, 0, 0], [1, 0, 0], [1, 0, 0.0]])
+VERTICAL = np.column_stack([np.full(6, 500000.0), np.full(6, 3100000.0), np.arange(901.0, 907.0)])
+
+
+@pytest.mark.parametrize("xyz", [TRIANGLE, SQUARE, TWO_PLACES, VERTICAL, VERTICAL[:3]])
+def test_no_unforeseen_error(xyz):
+    found = examine(fit_horizon(PointSet(xyz)))
+    assert not [note for note in found.notes if "unforeseen" in note]
+    assert found.left_out
+
+
+def test_one_vertical_hole_has_no_area_and_says_so():
+    found = examine(fit_horizon(PointSet(VERTICAL)))
+    assert found.uncertainty is None
+    assert found.suggestions == ()
+    assert "the points have no area: there is no standard deviation between them" in found.notes

@@ -1,0 +1,89 @@
+"""What a fit calls exact is exact."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geofit import FitSettings, PointSet, fit_horizon
+from geofit.checks.check import CORE_LIMIT
+from geofit.data.errors import ExactnessError, FitError, InputError, PointsError
+
+
+def overturned(between: int, offset: float, seed: int) -> PointSet:
+    """Five sections through an overturned fold, and points between them that are ``offset`` metres off it."""
+    rng = np.random.default_rng(seed)
+    t = np.linspace(0, 1, 30)
+    line = np.column_stack([200 * t + 120 * np.sin(2 * np.pi * t), np.zeros(30), 200 * t])
+    rows = [line + np.array([0, y, 0]) for y in np.arange(0, 500, 100.0)]
+    t, y = rng.uniform(0.1, 0.9, between), rng.uniform(20, 380, between)
+    off = offset * rng.choice([-1, 1], between)
+    rows.append(np.column_stack([200 * t + 120 * np.sin(2 * np.pi * t), y, 200 * t + off]))
+    names = [f"S{k}" for k in range(5) for _ in range(30)] + [""] * between
+    return PointSet(np.concatenate(rows) + np.array([500000, 3100000, 0]), section=names)
+
+
+@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize(("between", "offset"), [(0, 0.0), (5, 0.1), (10, 0.02)])
+def test_points_of_a_fold_that_count_as_exact_are_met(between, offset, seed):
+    try:
+        surface = fit_horizon(overturned(between, offset, seed), FitSettings(frame="sections"))
+    except ExactnessError:
+        return
+    residuals = np.abs(surface.accuracy.residuals)
+    assert residuals[surface.core].max() <= CORE_LIMIT
+    assert surface.partition.core == surface.core.sum()
+    missed = int((residuals > CORE_LIMIT).sum())
+    assert surface.partition.periphery == missed
+    assert ("does not meet" in surface.partition.reason) == (missed > 0)
+
+
+def test_a_fold_that_misses_a_point_says_so():
+    surface = fit_horizon(overturned(10, 0.02, 7), FitSettings(frame="sections"))
+    assert surface.partition.periphery == 1
+    checks = {check.name: check for check in surface.accuracy.checks}
+    assert checks["interior tolerance"].passed is False
+
+
+def cloud(shift=0.0):
+    rng = np.random.default_rng(3)
+    return PointSet(rng.uniform(0, 100, (20, 3)) + np.array([500000, 3100000, 0]) + shift)
+
+
+BOX = np.array([[500000.0, 3100000.0], [500100.0, 3100000.0], [500100.0, 3100100.0], [500000.0, 3100100.0]])
+
+
+@pytest.mark.parametrize(
+    ("boundary", "words"),
+    [
+        (BOX[[0, 2, 1, 3]], "crosses or touches itself"),
+        (BOX[[0, 0, 0]], "at least three are needed"),
+        (BOX[0] + np.arange(4)[:, None] * np.array([10.0, 20.0]), "no area"),
+        ([[1, 2], [3, 4, 5], [6, 7]], "no list of corners"),
+        (["a", "b", "c"], "no list of corners"),
+        (BOX + 50_000.0, "All points lie off the study area"),
+    ],
+    ids=["crossing", "one corner", "flat", "ragged", "words", "far off"],
+)
+def test_a_boundary_from_a_program_is_checked_as_that_of_a_file(boundary, words):
+    with pytest.raises(PointsError, match=words):
+        fit_horizon(cloud(), None, boundary)
+
+
+def test_coordinates_beyond_the_digits_of_a_double_are_refused():
+    with pytest.raises(PointsError, match="at most 1e"):
+        fit_horizon(cloud(shift=1e10))
+
+
+@pytest.mark.parametrize("dz", [1e300, float("nan"), float("inf")])
+def test_a_change_by_hand_that_no_surface_survives_is_refused(dz):
+    surface = fit_horizon(cloud())
+    with pytest.raises(FitError, match="finite number up to"):
+        surface.adjust(surface.patches[0].name, 2, 2, dz=dz)
+
+
+def test_a_surface_beyond_the_digits_of_a_double_is_not_written(tmp_path):
+    surface = fit_horizon(cloud())
+    with pytest.raises(InputError, match="at most 1e"):
+        surface.with_(origin=surface.origin + 1e10).write_step(tmp_path / "far.step")
+    assert list(tmp_path.iterdir()) == []
