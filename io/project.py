@@ -307,7 +307,7 @@ def _entry(kind: type[_Entry], values: Mapping[str, Any]) -> _Entry:
         allowed = _TYPES[str(one.type)]
         if not isinstance(value, allowed) or (isinstance(value, bool) and bool not in allowed):
             raise TypeError(f"{one.name} is {value!r:.60}")
-        if one.name == "path" and "\0" in value:
+        if one.name == "path" and "\0" in str(value):
             raise ValueError("a path has a NUL character")
     if isinstance(entry, ProjectResult):
         # Another name could lead anywhere on the disk, from where a surface is read and where an old one is removed.

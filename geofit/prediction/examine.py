@@ -8,7 +8,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.guard import guarded
 from geofit.data.messages import said
-from geofit.data.prediction import LeftOut, OffData, Outlier
+from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion
 from geofit.data.progress import Progress, tell
 from geofit.fitting.calibration import Calibration, uncalibrated
 from geofit.fitting.deletion import linear_fit
@@ -80,9 +80,10 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Of
     grid = grid_over(surface)
     many = len(given.value) > MOST
     tell(progress, "cross-validation", 0.2)
+    nothing: tuple[list[Fold], Calibration, tuple[Outlier, ...]] = ([], uncalibrated(), ())
     folds, calibration, outliers = guarded(
         lambda: _left_out(model, given, grid, progress, notes),
-        ([], uncalibrated(), ()),
+        nothing,
         lambda reason: notes.append(said("no point was left out, the band is not calibrated: {reason}", reason=reason)),
     )
     if model.net.lines is not None:
@@ -103,9 +104,10 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Of
     spread = Spread(model, given, calibration)
     if not len(grid.plane):
         notes.append(said("the points have no area: there is no standard deviation between them"))
+    none: tuple[Suggestion, ...] = ()
     suggestions = guarded(
-        lambda: suggest_holes(grid, spread) if len(grid.plane) else (),
-        (),
+        lambda: suggest_holes(grid, spread) if len(grid.plane) else none,
+        none,
         lambda reason: notes.append(said("no holes are suggested: {reason}", reason=reason)),
     )
     uncertainty = guarded(
