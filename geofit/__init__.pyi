@@ -1,5 +1,10 @@
 # The names of `import geofit`, one line each: types for editors, and the table of what is imported when first used.
 from geofit import io as io
+from geofit.bodies.body import ImplicitBody as ImplicitBody
+from geofit.bodies.data import BodyData as BodyData
+from geofit.bodies.fit import fit_body as fit_body
+from geofit.bodies.settings import BodySettings as BodySettings
+from geofit.caves.body import centreline_body as centreline_body
 from geofit.data import errors as errors
 from geofit.data.errors import GeofitError as GeofitError
 from geofit.data.points import PointSet as PointSet
@@ -15,6 +20,12 @@ from geofit.io.export.write import write_surface as write_surface
 from geofit.io.picks import read_points as read_points
 from geofit.io.site_file import read_site as read_site
 from geofit.io.surface_files import read_surface as read_surface
+from geofit.io.volumes import read_volume as read_volume
+from geofit.medial.fit import metaballs as metaballs
+from geofit.pores.balls import maximal_balls as maximal_balls
+from geofit.pores.extraction import pore_network as pore_network
+from geofit.pores.surface import pore_surface as pore_surface
+from geofit.pores.volume import RockVolume as RockVolume
 from geofit.prediction.bands import band as band
 from geofit.prediction.bands import prediction_sd as prediction_sd
 from geofit.prediction.examine import examine as examine

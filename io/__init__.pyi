@@ -2,6 +2,8 @@
 from geofit.io.boreholes import Boreholes as Boreholes
 from geofit.io.boreholes import read_boreholes as read_boreholes
 from geofit.io.boundary import read_boundary as read_boundary
+from geofit.io.centreline import read_centreline as read_centreline
+from geofit.io.compass import read_compass as read_compass
 from geofit.io.contacts import Contacts as Contacts
 from geofit.io.contacts import take_contacts as take_contacts
 from geofit.io.export.dxf import write_section_dxf as write_section_dxf
@@ -23,3 +25,5 @@ from geofit.io.site_file import read_site as read_site
 from geofit.io.source import Source as Source
 from geofit.io.surface_files import read_surface as read_surface
 from geofit.io.surface_files import read_surfaces as read_surfaces
+from geofit.io.survex import read_survex as read_survex
+from geofit.io.volumes import read_volume as read_volume

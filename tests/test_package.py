@@ -20,8 +20,8 @@ ROOT = Path(__file__).resolve().parents[1]
 #: Floors of docs/architecture.md, the lowest first: a folder stands on exactly one. A module imports from its own
 #: folder and those below; names imported inside functions count.
 FLOORS = (
-    "data", "sample", "splines", "geometry", "surfaces", "sampling", "cad", "checks", "fitting", "prediction", "site",
-    "io", "report", "project", "cli", "gui",
+    "data", "sample", "splines", "geometry", "implicit", "surfaces", "sampling", "cad", "checks", "fitting",
+    "prediction", "site", "bodies", "pores", "medial", "caves", "io", "report", "project", "cli", "gui",
 )  # fmt: skip
 FLOOR = {folder: height for height, folder in enumerate(FLOORS)}
 #: Who alone may import these, at the named places.
@@ -31,7 +31,7 @@ RESERVED = {
     "PySide6": ("gui/",),
     "pyvistaqt": ("gui/",),
     "pyvista": ("geofit/report/scene.py", "gui/"),
-    "vtkmodules": ("geofit/report/scene.py", "gui/"),
+    "vtkmodules": ("geofit/report/scene.py", "geofit/implicit/", "gui/"),
     "matplotlib": ("geofit/report/", "gui/"),
     "fpdf": ("geofit/report/pdf.py", "geofit/report/pdf_table.py"),
     "typer": ("geofit/cli/",),

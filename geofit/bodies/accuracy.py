@@ -1,0 +1,185 @@
+"""The verdict on a body: sigma of its contacts against epsilon, and whether it agrees with every logged metre."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.accuracy import Accuracy, Check, Conflict, Group
+from geofit.data.messages import said
+
+if TYPE_CHECKING:
+    from geofit.bodies.body import ImplicitBody
+
+__all__ = ["BodyAccuracy", "examine"]
+
+Floats = NDArray[np.float64]
+WORST = 20
+#: Sides of the box, and how a sentence calls them.
+SIDE_WORDS = {
+    "west": said("west"), "east": said("east"), "south": said("south"), "north": said("north"),
+    "bottom": said("bottom"), "top": said("top"),
+}  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class BodyAccuracy(Accuracy):
+    """The check of one body: the figures of a horizon, and those that only a body has.
+
+    ``residuals`` (n,) are the signed orthogonal distances of all contacts given, metres, positive outside.
+    ``wrong_side`` counts samples on the wrong side; ``missed_length`` is logged inside but outside the body,
+    ``excess_length`` the reverse, metres, ``logged_length`` all that is logged with a length. ``extra_crossings``
+    counts changes of side between neighbouring samples of a hole that are of one side. ``unsupported`` counts parts of
+    the body without a contact or inside sample, ``far_share`` is the share of its surface farther than
+    ``far_distance`` metres from all data; ``open_sides`` are the sides of the box at which it is cut.
+    """
+
+    wrong_side: int = 0
+    missed_length: float = 0.0
+    excess_length: float = 0.0
+    logged_length: float = 0.0
+    extra_crossings: int = 0
+    unsupported: int = 0
+    far_share: float = 0.0
+    far_distance: float = 0.0
+    open_sides: tuple[str, ...] = ()
+
+
+def examine(body: ImplicitBody) -> BodyAccuracy:
+    """Return the accuracy of a body."""
+    data, settings = body.data, body.settings
+    residuals = body.distance(data.contacts)
+    residuals.setflags(write=False)
+    n = len(residuals)
+    sigma = float(np.sqrt((residuals**2).sum() / max(n - 1, 1)))
+    wrong_in, wrong_out = body.value(data.inside) >= 0, body.value(data.outside) <= 0
+    extra_in, missed = _between(body, data.inside, data.inside_hole, data.inside_length, inside=True)
+    extra_out, excess = _between(body, data.outside, data.outside_hole, data.outside_length, inside=False)
+    missed += float(np.nansum(data.inside_length[wrong_in]))
+    excess += float(np.nansum(data.outside_length[wrong_out]))
+    logged = float(np.nansum(data.inside_length) + np.nansum(data.outside_length))
+    wrong = int(wrong_in.sum() + wrong_out.sum())
+    places = np.concatenate([data.inside[wrong_in], data.outside[wrong_out]])[:WORST]
+    far = body.region.reach
+    far_share = _far_share(body, far)
+    unsupported, cut = body.fitted.unsupported, body.field.cut
+    checks = (
+        Check(
+            "sides", wrong == 0, float(wrong), 0.0, "1",
+            said("{wrong} of {count} samples lie on the wrong side of the surface", wrong=wrong,
+                 count=len(data.inside) + len(data.outside)),
+            tuple((float(x), float(y), float(z)) for x, y, z in places),
+        ),
+        Check(
+            "logged lengths", missed + excess <= 0.0 if logged else None, missed + excess, 0.0, "m",
+            said("{missed:.2f} m are logged inside but lie outside the body, {excess:.2f} m the reverse, of "
+                 "{logged:.1f} m", missed=missed, excess=excess, logged=logged),
+        ),
+        Check(
+            "crossings", extra_in + extra_out == 0, float(extra_in + extra_out), 0.0, "1",
+            said("{count} places where a hole crosses the surface between two samples of one side",
+                 count=extra_in + extra_out),
+        ),
+        Check(
+            "components", unsupported == 0, float(unsupported), 0.0, "1",
+            said("{count} parts of the body hold no contact and no inside sample", count=unsupported),
+        ),
+        Check(
+            "closed", not cut, float(len(cut)), 0.0, "1",
+            said("The body is closed in its box") if not cut else
+            said("The body is cut at the box: {sides}", sides=", ".join(SIDE_WORDS[side] for side in cut)),
+        ),
+        Check(
+            "far from data", None, far_share, 1.0, "1",
+            said("{share:.1%} of the surface is farther than {distance:.1f} m from all data", share=far_share,
+                 distance=far),
+        ),
+    )  # fmt: skip
+    conflicts = tuple(Conflict(-1, -1, 0.0, issue.text) for issue in body.issues if not issue.used)
+    order = np.argsort(-np.abs(residuals), kind="stable")
+    return BodyAccuracy(
+        n=n,
+        sigma=sigma,
+        epsilon=settings.epsilon,
+        passed=sigma < settings.epsilon,
+        max_abs=float(np.abs(residuals).max(initial=0.0)),
+        mean=float(residuals.mean()) if n else 0.0,
+        residuals=residuals,
+        patch=np.full(n, body.name, dtype=np.str_),
+        by_patch=_groups(residuals, np.full(n, body.name, dtype=np.str_)),
+        by_kind={},
+        by_hole=_groups(residuals, data.hole),
+        by_section={},
+        over={"epsilon": int((np.abs(residuals) > settings.epsilon).sum())},
+        worst=tuple(order[:WORST].tolist()),
+        checks=checks,
+        conflicts=conflicts,
+        notes=_notes(body),
+        wrong_side=wrong,
+        missed_length=missed,
+        excess_length=excess,
+        logged_length=logged,
+        extra_crossings=extra_in + extra_out,
+        unsupported=unsupported,
+        far_share=far_share,
+        far_distance=far,
+        open_sides=cut,
+    )
+
+
+def _between(
+    body: ImplicitBody, xyz: Floats, hole: NDArray[np.str_], length: Floats, *, inside: bool
+) -> tuple[int, float]:
+    """Return crossings between neighbouring samples of one hole and side, and the length they take (metres)."""
+    if len(xyz) < 2:
+        return 0, 0.0
+    gap = np.linalg.norm(np.diff(xyz, axis=0), axis=1)
+    # Samples of one stretch lie one sample's length apart; a longer way leads to the next stretch.
+    pair = (hole[1:] == hole[:-1]) & (hole[1:] != "") & (gap < 1.01 * np.maximum(length[1:], length[:-1]))
+    middle = (xyz[1:] + xyz[:-1])[pair] / 2
+    value = body.value(middle)
+    crossed = value >= 0 if inside else value <= 0
+    # Half the way between the two samples is off, by linear interpolation with both of them on their side.
+    return 2 * int(crossed.sum()), float(gap[pair][crossed].sum() / 2)
+
+
+def _far_share(body: ImplicitBody, distance: float) -> float:
+    from scipy.spatial import cKDTree
+
+    # Crossed edges of a raster: as many a square metre whatever the surface's direction, within a third.
+    places = body.fitted.survey.places
+    if not len(places):
+        return 0.0
+    data = np.concatenate([body.data.contacts, body.data.inside, body.data.outside]) - body.origin
+    return float((cKDTree(data).query(places)[0] > distance).mean())
+
+
+def _groups(residuals: Floats, names: NDArray[np.str_]) -> Mapping[str, Group]:
+    groups = {}
+    for name in np.unique(names[names != ""]).tolist():
+        d = residuals[names == name]
+        sigma = float(np.sqrt((d**2).sum() / max(len(d) - 1, 1)))
+        groups[name] = Group(len(d), sigma, float(np.abs(d).max()), float(d.mean()))
+    return groups
+
+
+def _notes(body: ImplicitBody) -> tuple[str, ...]:
+    fitted, region = body.fitted, body.region
+    samples = len(fitted.prepared.inside) + len(fitted.prepared.outside)
+    notes: list[str] = [
+        said(
+            "{active} of {samples} samples are active; the field satisfies {conditions} conditions",
+            active=fitted.active, samples=samples + len(region.closing), conditions=fitted.conditions,
+        )
+    ]  # fmt: skip
+    if len(region.closing):
+        notes.append(
+            said("Ground farther than {reach:.1f} m from contacts and inside samples counts as outside "
+                 "({count} places)", reach=region.reach, count=len(region.closing))
+        )  # fmt: skip
+    notes += [issue.text for issue in body.issues]
+    return tuple(notes)

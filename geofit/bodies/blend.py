@@ -1,0 +1,172 @@
+"""Many thousand conditions: one coarse field, corrected in overlapping parts that are blended.
+
+A field through a few hundred well-spread contacts takes the shape; in each part a correction of compact kernels makes
+it exact there. Corrections are blended by weights that are C2 and add up to one (partition of unity; Wendland,
+*Scattered Data Approximation*, ch. 15). Every correction of a part satisfies all conditions inside the part. The blend
+is their convex combination, so it satisfies them too: equalities and inequalities alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.bodies.active import Samples, fit_active, spread
+from geofit.bodies.kernels import blend
+from geofit.bodies.rbf import Rbf
+
+__all__ = ["Blend", "BlendFit", "Part", "fit_blend"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Conditions and samples of the coarse field.
+COARSE = 500
+COARSE_SAMPLES = 4000
+#: Rounds of the coarse field: what it leaves violated, the parts correct.
+COARSE_ROUNDS = 6
+#: Conditions in the core of a part, and how much each side of it is grown (share of the side).
+CORE = 60
+#: What a sample on the wrong side of the coarse field counts there.
+LACKING = 0.3
+OVERLAP = 0.12
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A box with its correction: ``centre`` and ``half`` (3,) of the grown box."""
+
+    centre: Floats
+    half: Floats
+    correction: Rbf | None
+
+    def holds(self, x: Floats) -> NDArray[np.bool_]:
+        """Return whether each of (n, 3) places lies in the grown box."""
+        return np.asarray((np.abs(x - self.centre) < self.half).all(axis=1))
+
+
+@dataclass(frozen=True, eq=False)
+class Blend:
+    """The coarse field plus the blended corrections; its parts cover the box of the body."""
+
+    coarse: Rbf
+    parts: tuple[Part, ...]
+
+    def value(self, x: Floats) -> Floats:
+        """Return the values (n,) at (n, 3) places."""
+        out = self.coarse.value(x)
+        blend(np.ascontiguousarray(x), *self._packed, False, out, np.zeros((0, 3)))
+        return out
+
+    def gradient(self, x: Floats) -> Floats:
+        """Return the gradients (n, 3) at (n, 3) places."""
+        out = np.ascontiguousarray(self.coarse.gradient(x))
+        blend(np.ascontiguousarray(x), *self._packed, True, np.zeros(len(x)), out)
+        return out
+
+    @cached_property
+    def _packed(self) -> tuple[NDArray[Any], ...]:
+        """The parts as the arrays of :func:`geofit.bodies.kernels.blend`."""
+        none = Rbf(np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(4), 1.0)
+        own = [part.correction or none for part in self.parts]
+        return (
+            np.array([part.centre for part in self.parts]),
+            np.array([part.half for part in self.parts]),
+            np.array([rbf.reach for rbf in own]),
+            np.cumsum([0, *(len(rbf.centres) for rbf in own)]).astype(np.int64),
+            np.concatenate([rbf.centres for rbf in own]),
+            np.concatenate([rbf.weights for rbf in own]),
+            np.cumsum([0, *(len(rbf.dipoles) for rbf in own)]).astype(np.int64),
+            np.concatenate([rbf.dipoles for rbf in own]),
+            np.concatenate([rbf.moments for rbf in own]),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class BlendFit:
+    """The field, the number of samples active in the coarse field and the parts, all conditions, and the rounds."""
+
+    field: Blend
+    active: int
+    conditions: int
+    rounds: int
+
+
+def fit_blend(
+    points: Floats, oriented: NDArray[np.bool_], normals: Floats, samples: Samples, corners: Floats
+) -> BlendFit:
+    """Fit a field that is zero at the contacts and keeps every sample on its side, in parts.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Contacts.
+    oriented : (n,) array of bool
+        Contacts with a normal.
+    normals : (k, 3) array
+        Gradients at those.
+    samples : Samples
+        Inequalities.
+    corners : (c, 3) array
+        Places whose box the parts must cover.
+    """
+    rows = np.where(oriented, 4, 1)
+    chosen = np.sort(spread(points, max(50, int(COARSE / rows.mean()))))
+    gradient = np.full_like(points, np.nan)
+    gradient[oriented] = normals
+    some = np.arange(0, len(samples), -(-len(samples) // COARSE_SAMPLES)) if len(samples) else np.zeros(0, np.int64)
+    own = chosen[oriented[chosen]]
+    first = fit_active(
+        points[chosen],
+        np.zeros(len(chosen)),
+        points[own],
+        gradient[own],
+        samples[some],
+        most=COARSE_ROUNDS,
+        partial=True,
+    )
+    coarse = first.rbf
+    rest = -coarse.value(points)
+    bend = gradient[oriented] - coarse.gradient(points[oriented])
+    gradient[oriented] = bend
+    lower = np.minimum(corners.min(axis=0), points.min(axis=0)) - 1e-9
+    upper = np.maximum(corners.max(axis=0), points.max(axis=0)) + 1e-9
+    left = Samples(samples.xyz, samples.side, samples.bound - samples.side * coarse.value(samples.xyz), samples.slack)
+    parts, active, rounds = [], len(first.active), first.rounds
+    lacking = left.xyz[left.bound > left.slack]
+    load = np.concatenate([rows, np.full(len(lacking), LACKING)])
+    for low, high in _boxes(np.concatenate([points, lacking]), load, lower, upper):
+        centre, half = (low + high) / 2, (high - low) * (0.5 + OVERLAP)
+        part = Part(centre, half, None)
+        at = np.flatnonzero(part.holds(points))
+        near = left[part.holds(samples.xyz)]
+        if len(at) or (near.bound > near.slack).any():
+            turned = at[oriented[at]]
+            reach = 2.0 * float(np.linalg.norm(half))
+            fit = fit_active(points[at], rest[at], points[turned], gradient[turned], near, reach)
+            part = Part(centre, half, fit.rbf)
+            active, rounds = active + len(fit.active), max(rounds, fit.rounds)
+        parts.append(part)
+    return BlendFit(Blend(coarse, tuple(parts)), active, int(rows.sum()) + active, rounds)
+
+
+def _boxes(points: Floats, load: Floats, lower: Floats, upper: Floats) -> Iterator[tuple[Floats, Floats]]:
+    """Split a box at medians of its points until each part carries a small load; the parts tile the box."""
+    size = upper - lower
+    if load.sum() <= CORE:
+        yield lower, upper
+        return
+    # The longest side, and no cut that would leave a sliver: parts grow by a share of their sides.
+    axis = int(size.argmax())
+    cut = float(np.median(points[:, axis]))
+    cut = min(max(cut, lower[axis] + 0.2 * size[axis]), upper[axis] - 0.2 * size[axis])
+    below = points[:, axis] < cut
+    for side, low, high in ((below, lower[axis], cut), (~below, cut, upper[axis])):
+        first, last = lower.copy(), upper.copy()
+        first[axis], last[axis] = low, high
+        yield from _boxes(points[side], load[side], first, last)

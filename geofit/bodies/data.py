@@ -1,0 +1,337 @@
+"""What is known of a body: contacts on its surface, places inside and outside, normals; checked and merged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.data.errors import FitError, PointsError
+from geofit.data.messages import said
+
+__all__ = ["BodyData", "BodyIssue", "Prepared", "prepare"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Strings = NDArray[np.str_]
+EMPTY = np.zeros((0, 3))
+
+
+@dataclass(frozen=True)
+class BodyIssue:
+    """Something in the data of a body that a person should look at.
+
+    ``used`` is whether the fit uses the data all the same; ``place`` is in map coordinates.
+    """
+
+    kind: Literal["coincident", "contradiction", "normal", "interval", "gap"]
+    text: str
+    place: tuple[float, float, float] | None = None
+    used: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class BodyData:
+    """What is known of a body, in metres and map coordinates.
+
+    Parameters
+    ----------
+    contacts : (n, 3) array_like
+        Places on the surface of the body.
+    inside, outside : (m, 3), (k, 3) array_like
+        Places known to lie in the body and off it, such as samples along logged intervals.
+    normals : (n, 3) array_like or None
+        Outward normals at the contacts, of any length; a row of NaN where none is known.
+    hole, inside_hole, outside_hole : str or array_like of str
+        Borehole (or section) of each contact and sample; empty where there is none.
+    inside_length, outside_length : float or array_like
+        Length in metres of the interval that each sample represents; nan where it represents none.
+    issues : tuple of BodyIssue
+        What was found when the data were made.
+
+    Raises
+    ------
+    PointsError
+        If an array has the wrong shape, or a coordinate is not finite.
+
+    Examples
+    --------
+    >>> data = BodyData(contacts=[[0, 0, 1], [0, 0, -1]], inside=[[0, 0, 0]])
+    >>> len(data.contacts), len(data.outside), bool(np.isnan(data.normals).all())
+    (2, 0, True)
+    """
+
+    contacts: Floats = field(default_factory=lambda: EMPTY)
+    inside: Floats = field(default_factory=lambda: EMPTY)
+    outside: Floats = field(default_factory=lambda: EMPTY)
+    normals: Floats = None  # type: ignore[assignment]
+    hole: Strings = ""  # type: ignore[assignment]
+    inside_hole: Strings = ""  # type: ignore[assignment]
+    outside_hole: Strings = ""  # type: ignore[assignment]
+    inside_length: Floats = np.nan  # type: ignore[assignment]
+    outside_length: Floats = np.nan  # type: ignore[assignment]
+    issues: tuple[BodyIssue, ...] = ()
+
+    def __init__(
+        self,
+        contacts: ArrayLike = (),
+        inside: ArrayLike = (),
+        outside: ArrayLike = (),
+        normals: ArrayLike | None = None,
+        hole: ArrayLike = "",
+        inside_hole: ArrayLike = "",
+        outside_hole: ArrayLike = "",
+        inside_length: ArrayLike = np.nan,
+        outside_length: ArrayLike = np.nan,
+        issues: tuple[BodyIssue, ...] = (),
+    ) -> None:
+        for name, given in (("contacts", contacts), ("inside", inside), ("outside", outside)):
+            self._set(name, _places(name, given))
+        n = len(self.contacts)
+        known = np.full((n, 3), np.nan) if normals is None else np.array(normals, float)
+        if known.size == 0:
+            known = known.reshape(0, 3)
+        if known.shape != (n, 3):
+            raise PointsError(
+                said("normals has shape {shape}; {n} contacts need shape ({n}, 3), NaN where no normal is known.",
+                     shape=known.shape, n=n)
+            )  # fmt: skip
+        self._set("normals", known)
+        for name, values, count in (
+            ("hole", hole, n),
+            ("inside_hole", inside_hole, len(self.inside)),
+            ("outside_hole", outside_hole, len(self.outside)),
+        ):
+            self._set(name, _column(name, values, count, np.str_))
+        self._set("inside_length", _column("inside_length", inside_length, len(self.inside), np.float64))
+        self._set("outside_length", _column("outside_length", outside_length, len(self.outside), np.float64))
+        object.__setattr__(self, "issues", tuple(issues))
+
+    def _set(self, name: str, array: NDArray[Any]) -> None:
+        array.setflags(write=False)
+        object.__setattr__(self, name, array)
+
+    @property
+    def holes(self) -> tuple[str, ...]:
+        """Names of the holes, sorted."""
+        names = set(self.hole.tolist()) | set(self.inside_hole.tolist()) | set(self.outside_hole.tolist())
+        return tuple(sorted(names - {""}))
+
+    def select(self, contacts: NDArray[np.bool_], inside: NDArray[np.bool_], outside: NDArray[np.bool_]) -> BodyData:
+        """Return a part of the data."""
+        return BodyData(
+            self.contacts[contacts], self.inside[inside], self.outside[outside], self.normals[contacts],
+            self.hole[contacts], self.inside_hole[inside], self.outside_hole[outside],
+            self.inside_length[inside], self.outside_length[outside], self.issues,
+        )  # fmt: skip
+
+    def without(self, hole: str) -> BodyData:
+        """Return the data without those of one hole."""
+        return self.select(self.hole != hole, self.inside_hole != hole, self.outside_hole != hole)
+
+
+def _places(name: str, given: ArrayLike) -> Floats:
+    try:
+        xyz = np.array(given, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise PointsError(
+            said("{name} must hold numbers: {error}. Give an (n, 3) array of metres.", name=name, error=str(error))
+        ) from None
+    if xyz.size == 0:
+        xyz = xyz.reshape(0, 3)
+    if xyz.ndim != 2 or xyz.shape[1] != 3:
+        raise PointsError(
+            said("{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.", name=name,
+                 shape=xyz.shape)
+        )  # fmt: skip
+    bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
+    if bad.size:
+        raise PointsError(
+            said("{count} of {total} {name} are not finite, the first at index {index}. Remove or complete them.",
+                 count=bad.size, total=len(xyz), name=name, index=bad[0])
+        )  # fmt: skip
+    return xyz
+
+
+def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
+    array = np.asarray(values, dtype=dtype)
+    if array.ndim == 0:
+        return np.full(n, array, dtype=array.dtype)
+    if array.shape != (n,):
+        raise PointsError(
+            said("{name} has shape {shape}; {n} points need shape ({n},) or one value for all.", name=name,
+                 shape=array.shape, n=n)
+        )  # fmt: skip
+    return array.copy()
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """Data that a fit can use.
+
+    ``contacts`` (n, 3) differ from each other, ``normals`` (n, 3) have length one or are NaN; ``member`` (N,) is the
+    row in ``contacts`` of each contact given. ``inside`` and ``outside`` contradict nothing; ``inside_used`` and
+    ``outside_used`` are masks over what was given.
+    """
+
+    contacts: Floats
+    normals: Floats
+    member: Ints
+    inside: Floats
+    outside: Floats
+    inside_used: NDArray[np.bool_]
+    outside_used: NDArray[np.bool_]
+    issues: tuple[BodyIssue, ...]
+
+
+def prepare(data: BodyData, coincidence_distance: float) -> Prepared:
+    """Merge coincident contacts, list what contradicts itself, and make sure that a body can be fitted.
+
+    Parameters
+    ----------
+    data : BodyData
+        The data.
+    coincidence_distance : float
+        Points nearer to each other than this many metres are one.
+
+    Raises
+    ------
+    FitError
+        If the data cannot bound a body: nothing inside, nothing that bounds it, one hole only.
+    """
+    issues = list(data.issues)
+    contacts, member = _merge(data.contacts, coincidence_distance)
+    count = np.bincount(member, minlength=len(contacts))
+    for k in np.flatnonzero(count > 1).tolist():
+        text = said("{count} contacts coincide within {distance:g} m: they count as one", count=int(count[k]),
+                    distance=coincidence_distance)  # fmt: skip
+        issues.append(BodyIssue("coincident", text, _place(contacts[k])))
+    normals = _normals(data, contacts, member, issues)
+    inside_used, outside_used = _sides(data, contacts, coincidence_distance, issues)
+    inside, _ = _merge(data.inside[inside_used], coincidence_distance)
+    outside, _ = _merge(data.outside[outside_used], coincidence_distance)
+    for name, given, kept in (
+        ("inside", int(inside_used.sum()), len(inside)),
+        ("outside", int(outside_used.sum()), len(outside)),
+    ):
+        if given > kept:
+            text = said("{count} {side} samples repeat another one: they count once", count=given - kept, side=name)
+            issues.append(BodyIssue("coincident", text))
+    found = Prepared(contacts, normals, member, inside, outside, inside_used, outside_used, tuple(issues))
+    _require_body(data, found)
+    return found
+
+
+def _merge(xyz: Floats, distance: float) -> tuple[Floats, Ints]:
+    """Return the places that differ, the first of each group, and the row there of every place given."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    if len(xyz) < 2:
+        return xyz, np.zeros(len(xyz), np.int64)
+    pairs = cKDTree(xyz - xyz[0]).query_pairs(distance, output_type="ndarray")
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(xyz), len(xyz)))
+    _, label = connected_components(graph, directed=False)
+    _, first, member = np.unique(label, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    rank = np.empty(len(order), np.int64)
+    rank[order] = np.arange(len(order))
+    return xyz[first[order]], rank[member]
+
+
+def _normals(data: BodyData, contacts: Floats, member: Ints, issues: list[BodyIssue]) -> Floats:
+    """Return the mean normal of each merged contact, unit or NaN; opposite ones are listed and left out."""
+    length = np.linalg.norm(data.normals, axis=1)
+    for i in np.flatnonzero(length == 0).tolist():
+        issues.append(
+            BodyIssue("normal", said("The normal of contact {index} is zero: it is not used", index=i),
+                      _place(data.contacts[i]), used=False)
+        )  # fmt: skip
+    known = np.isfinite(length) & (length > 0)
+    unit = np.zeros_like(data.normals)
+    unit[known] = data.normals[known] / length[known, None]
+    total = np.zeros_like(contacts)
+    np.add.at(total, member, unit)
+    count = np.bincount(member[known], minlength=len(contacts))
+    size = np.linalg.norm(total, axis=1)
+    # Mean of unit vectors below cos(60 degrees): they do not mean the same side.
+    opposite = (count > 1) & (size < 0.5 * count)
+    for k in np.flatnonzero(opposite).tolist():
+        text = said("{count} coincident contacts have opposite normals: none of these normals is used",
+                    count=int(count[k]))  # fmt: skip
+        issues.append(BodyIssue("normal", text, _place(contacts[k]), used=False))
+    use = (count > 0) & ~opposite
+    result = np.full_like(contacts, np.nan)
+    result[use] = total[use] / size[use, None]
+    return result
+
+
+def _sides(
+    data: BodyData, contacts: Floats, distance: float, issues: list[BodyIssue]
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which samples can be used; those that contradict each other or lie on a contact are listed."""
+    from scipy.spatial import cKDTree
+
+    origin = np.concatenate([contacts, data.inside, data.outside, np.zeros((1, 3))])[0]
+    used = []
+    for name, samples in (("inside", data.inside), ("outside", data.outside)):
+        mask = np.ones(len(samples), bool)
+        if len(contacts) and len(samples):
+            mask = cKDTree(contacts - origin).query(samples - origin)[0] > distance
+        for i in np.flatnonzero(~mask).tolist():
+            text = said("{side} sample {index} lies on a contact: its side is not used", side=name, index=i)
+            issues.append(BodyIssue("coincident", text, _place(samples[i]), used=False))
+        used.append(mask)
+    if len(data.inside) and len(data.outside):
+        far, near = cKDTree(data.outside - origin).query(data.inside - origin)
+        for i in np.flatnonzero(far <= distance).tolist():
+            holes = data.inside_hole[i], data.outside_hole[near[i]]
+            text = said(
+                "Inside sample {inside} (hole '{first}') and outside sample {outside} (hole '{second}') are one place: "
+                "intervals contradict each other, neither side is used",
+                inside=i, outside=int(near[i]), first=holes[0], second=holes[1],
+            )  # fmt: skip
+            issues.append(BodyIssue("contradiction", text, _place(data.inside[i]), used=False))
+        clash = cKDTree(data.inside - origin).query(data.outside - origin)[0] <= distance
+        used[0] &= far > distance
+        used[1] &= ~clash
+    return used[0], used[1]
+
+
+def _require_body(data: BodyData, found: Prepared) -> None:
+    oriented = np.isfinite(found.normals).all(axis=1).any()
+    given = {"contacts": len(found.contacts), "inside": len(found.inside), "outside": len(found.outside)}
+    if not len(found.inside) and not oriented:
+        raise FitError(
+            said("Nothing lies inside the body ({contacts} contacts, {inside} inside and {outside} outside samples, no "
+                 "normals). Give intervals in the body, inside samples, or contacts with normals.", **given)
+        )  # fmt: skip
+    if not len(found.contacts) and not len(found.outside):
+        raise FitError(
+            said("Nothing bounds the body: all {inside} samples are inside. Give contacts, or intervals outside it.",
+                 **given)
+        )  # fmt: skip
+    if not len(found.contacts):
+        raise FitError(
+            said("There is no contact: {inside} samples are inside, {outside} outside, and none of the data lies on "
+                 "the surface. Give contacts, such as the ends of the intervals in the body.", **given)
+        )  # fmt: skip
+    if len(data.holes) == 1 and (data.hole == data.holes[0]).all():
+        raise FitError(
+            said("All contacts come from one hole, '{hole}': they do not show how wide the body is. Give at least two "
+                 "holes, or outlines or points elsewhere.", hole=data.holes[0])
+        )  # fmt: skip
+    everything = np.concatenate([found.contacts, found.inside, found.outside])
+    extent = np.linalg.svd(everything - everything.mean(axis=0), compute_uv=False)
+    if len(everything) < 2 or extent[1] < 1e-3 * extent[0]:
+        raise FitError(
+            said("All {count} data lie on one line, like those of one hole: they do not show how wide the body is. "
+                 "Give at least two holes.", count=len(everything))
+        )  # fmt: skip
+
+
+def _place(xyz: Floats) -> tuple[float, float, float]:
+    return (float(xyz[0]), float(xyz[1]), float(xyz[2]))

@@ -1,0 +1,179 @@
+"""Fit a body: contacts, samples and normals to the smoothest field that is right about all of them."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.bodies.active import Samples, fit_active
+from geofit.bodies.data import BodyData, Prepared, prepare
+from geofit.bodies.field import BodyField
+from geofit.bodies.fitted import Fitted, Survey
+from geofit.bodies.frame import BodyFrame
+from geofit.bodies.rbf import Saddle
+from geofit.bodies.region import Region, hole_spacing, region_of
+from geofit.bodies.settings import BodySettings
+from geofit.data.errors import FitError
+from geofit.data.messages import said
+
+if TYPE_CHECKING:
+    from geofit.bodies.body import ImplicitBody
+
+__all__ = ["Fitted", "fit_body", "fit_field"]
+
+Floats = NDArray[np.float64]
+
+#: Parts of the body that no data support are closed and the field is fitted again, this often at most.
+ROUNDS = 5
+#: Nodes of the raster on which such parts are looked for, along the longest side of the box.
+NODES = 48
+
+
+def fit_body(
+    data: BodyData | Any,
+    settings: BodySettings | None = None,
+    *,
+    codes: str | Sequence[str] | None = None,
+    name: str = "",
+) -> ImplicitBody:
+    """Fit a closed body.
+
+    Parameters
+    ----------
+    data : BodyData, or a source of intervals
+        Arrays in metres and map coordinates; or boreholes with their logs (:class:`geofit.io.boreholes.Boreholes`, or
+        a site that holds them), of which ``codes`` chooses what lies inside.
+    settings : BodySettings, optional
+        How it is fitted and judged.
+    codes : str or sequence of str, optional
+        Codes of the intervals inside the body; for a source of intervals only.
+    name : str
+        Name of the body; by default its codes, or "body".
+
+    Returns
+    -------
+    ImplicitBody
+        With its accuracy.
+
+    Raises
+    ------
+    FitError
+        If the data cannot bound a body, or contradict each other beyond remedy.
+    SettingsError
+        If codes are missing, or given for arrays.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> rng = np.random.default_rng(0)
+    >>> unit = rng.normal(size=(60, 3))
+    >>> unit /= np.linalg.norm(unit, axis=1)[:, None]
+    >>> ball = fit_body(BodyData(contacts=10 * unit, inside=[[0, 0, 0]], outside=15 * unit), name="ball")
+    >>> bool(ball.value([[1, 2, 3]])[0] < 0), ball.accuracy.verdict
+    (True, 'PASS')
+    """
+    from geofit.bodies.accuracy import examine
+    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.intervals import as_body_data
+
+    settings = BodySettings() if settings is None else settings
+    given = as_body_data(data, codes, settings)
+    fitted = fit_field(given, settings)
+    if not name:
+        name = "body" if codes is None else codes if isinstance(codes, str) else "+".join(codes)
+    body = ImplicitBody(name, given, settings, fitted)
+    return body.with_accuracy(examine(body))
+
+
+def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
+    """Fit the field alone, without a verdict; parameters and errors as :func:`fit_body`."""
+    start = time.perf_counter()
+    prepared = prepare(data, settings.coincidence_distance)
+    region = region_of(prepared.contacts, prepared.inside, prepared.outside, settings, hole_spacing(data))
+    if settings.box is not None:
+        own = np.concatenate([prepared.contacts, prepared.inside])
+        if not ((own >= region.lower) & (own <= region.upper)).all(axis=1).any():
+            raise FitError(
+                said("No contact and no inside sample lies in the box {lower} to {upper}. Give a box around the body.",
+                     lower=region.lower.tolist(), upper=region.upper.tolist())
+            )  # fmt: skip
+    frame = BodyFrame.around(region.lower, region.upper, settings)
+    outside = np.concatenate([prepared.outside, region.closing])
+    lower, upper = region.lower - frame.origin, region.upper - frame.origin
+    unsupported = 0
+    for attempt in range(ROUNDS + 1):
+        fit = _solve(prepared, outside, region, frame, settings)
+        field = BodyField(fit[0], frame, lower, upper)
+        survey, strays = _survey(field, prepared, frame.origin)
+        unsupported = len(strays)
+        if not settings.closed or not unsupported or attempt == ROUNDS:
+            break
+        outside = np.concatenate([outside, strays])
+    interpolant, system, active, conditions, rounds = fit
+    field = BodyField(interpolant, frame, lower, upper, field.reaches())
+    return Fitted(
+        field, region, prepared, survey, system, active, conditions, rounds, time.perf_counter() - start, unsupported
+    )
+
+
+def _solve(
+    prepared: Prepared, outside: Floats, region: Region, frame: BodyFrame, settings: BodySettings
+) -> tuple[Any, Saddle | None, int, int, int]:
+    """Return the interpolant, its system, the number of active samples and of conditions, and the rounds."""
+    from scipy.spatial import cKDTree
+
+    contacts = frame.to_fit(prepared.contacts)
+    oriented = np.isfinite(prepared.normals).all(axis=1)
+    slopes = frame.gradient_to_fit(prepared.normals[oriented])
+    xyz = frame.to_fit(np.concatenate([prepared.inside, outside]))
+    side = np.concatenate([-np.ones(len(prepared.inside)), np.ones(len(outside))])
+    near = cKDTree(contacts).query(xyz)[0] * frame.size if len(xyz) else np.zeros(0)
+    # Quadratic near a contact: thin intervals would otherwise make a field of tents, with every sample active.
+    samples = Samples.of(xyz, side, np.minimum(near, region.bound) ** 2 / region.bound)
+    if len(contacts) + 3 * int(oriented.sum()) > settings.dense:
+        from geofit.bodies.blend import fit_blend
+
+        corners = np.array(np.meshgrid(*zip(region.lower, region.upper, strict=True))).reshape(3, -1).T
+        blend = fit_blend(contacts, oriented, slopes, samples, frame.to_fit(corners))
+        return blend.field, None, blend.active, blend.conditions, blend.rounds
+    fit = fit_active(contacts, np.zeros(len(contacts)), contacts[oriented], slopes, samples)
+    conditions = len(contacts) + 3 * int(oriented.sum()) + len(fit.active)
+    return fit.rbf, fit.system, len(fit.active), conditions, fit.rounds
+
+
+def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[Survey, Floats]:
+    """Look at the body on a raster; also return the deepest place (map coordinates) of each part without data."""
+    from scipy.ndimage import label, minimum_position
+
+    from geofit.implicit.lattice import Lattice, sample
+
+    lattice = Lattice.around(field.lower, field.upper, cells=NODES)
+    values = sample(field, lattice)
+    inside = values < 0
+    places, own = [], np.argwhere(inside)
+    for axis, step in enumerate(np.eye(3)):
+        changes = np.argwhere(np.diff(inside, axis=axis))
+        places.append(lattice.origin + lattice.spacing * (changes + step / 2))
+    low, high = (own.min(axis=0) - 2, own.max(axis=0) + 2) if len(own) else (np.zeros(3), np.array(lattice.shape) - 1)
+    survey = Survey(
+        lattice.spacing,
+        np.concatenate(places),
+        np.maximum(lattice.origin + lattice.spacing * low, field.lower),
+        np.minimum(lattice.origin + lattice.spacing * high, field.upper),
+    )
+    parts, count = label(inside, np.ones((3, 3, 3)))
+    data = np.concatenate([prepared.contacts, prepared.inside]) - origin
+    first = np.floor((data - lattice.origin) / lattice.spacing).astype(int)
+    supported = {0}
+    for corner in np.ndindex(2, 2, 2):
+        node = np.clip(first + corner, 0, np.array(lattice.shape) - 1)
+        supported.update(np.unique(parts[tuple(node.T)]).tolist())
+    alone = [k for k in range(1, count + 1) if k not in supported]
+    if not alone:
+        return survey, np.zeros((0, 3))
+    deepest = np.array(minimum_position(values, parts, alone))
+    return survey, np.asarray(lattice.origin + lattice.spacing * deepest + origin)

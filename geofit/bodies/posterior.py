@@ -1,0 +1,99 @@
+"""How well the field of a body is known: its standard deviation, a band in metres, and the chance of being inside.
+
+An interpolant of kernel r^3 is the kriging estimate of an intrinsic random field with that generalised covariance
+(Matheron, "The intrinsic random functions and their applications", Adv. Appl. Prob. 5, 1973); the same factorised
+system gives the covariance of what the data leave open. The scale of the random field comes from the contacts
+themselves, each left out in turn, without a new fit (Dubrule, "Cross validation of kriging in a unique neighborhood",
+Math. Geol. 15, 1983).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.bodies.active import spread
+from geofit.bodies.rbf import Saddle
+
+if TYPE_CHECKING:
+    from geofit.bodies.body import ImplicitBody
+
+__all__ = ["Posterior"]
+
+Floats = NDArray[np.float64]
+
+#: Contacts and samples that represent a body that was fitted in parts.
+CONTACTS = 500
+SAMPLES = 200
+#: Usual scale of the random field in distances between holes, and how many contacts weigh as much as it; found on
+#: planted bodies (benchmarks/bodies.py).
+USUAL = 0.18
+TRUST = 30
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """What the data of a body leave open.
+
+    Parameters
+    ----------
+    body : ImplicitBody
+        The body.
+    """
+
+    body: ImplicitBody
+
+    @cached_property
+    def system(self) -> Saddle:
+        """The system of contacts, normals and active samples; for a body fitted in parts, of some spread over it."""
+        if self.body.fitted.system is not None:
+            return self.body.fitted.system
+        prepared, frame = self.body.fitted.prepared, self.body.field.frame
+        contacts = frame.to_fit(prepared.contacts)
+        samples = frame.to_fit(np.concatenate([prepared.inside, prepared.outside]))
+        parts = [x[np.sort(spread(x, count))] for x, count in ((contacts, CONTACTS), (samples, SAMPLES)) if len(x)]
+        return Saddle(np.concatenate(parts))
+
+    @cached_property
+    def scale(self) -> float:
+        """Standard deviation of the random field per unit of its covariance, metres.
+
+        The root mean square of the contacts' left-out errors over their unit standard deviations, its logarithm drawn
+        towards what bodies of this distance between holes usually have: a few contacts say little about a scale.
+        """
+        system, count = self.system, len(self.body.fitted.prepared.contacts)
+        if self.body.fitted.system is None:
+            count = min(count, CONTACTS)
+        value = self.body.field.interpolant.value(system.points)
+        weights = system.interpolate(value, self._slopes).weights[:count]
+        precision = system.precision()[:count]
+        own = np.sqrt(np.mean(weights**2 / np.maximum(precision, 1e-300)))
+        spacing = self.body.region.spacing
+        usual = USUAL * spacing / (spacing / self.body.field.frame.size) ** 1.5
+        return float(np.exp((count * np.log(max(own, 1e-6 * usual)) + TRUST * np.log(usual)) / (count + TRUST)))
+
+    @property
+    def _slopes(self) -> Floats:
+        oriented = self.system.oriented
+        return self.body.field.interpolant.gradient(oriented) if len(oriented) else np.zeros((0, 3))
+
+    def deviation(self, xyz: ArrayLike) -> Floats:
+        """Return the standard deviation (n,) of the field at (n, 3) places in map coordinates, metres."""
+        fitted = self.body.field.frame.to_fit(np.asarray(xyz, float))
+        return self.scale * np.sqrt(self.system.variance(fitted))
+
+    def band(self, xyz: ArrayLike) -> Floats:
+        """Return the standard deviation (n,) of the surface's position near (n, 3) places on it, metres."""
+        slope = np.linalg.norm(self.body.gradient(xyz), axis=1)
+        return np.asarray(self.deviation(xyz) / np.maximum(slope, 1e-300))
+
+    def probability(self, xyz: ArrayLike) -> Floats:
+        """Return the probability (n,) that each of (n, 3) places lies inside the body."""
+        from scipy.special import ndtr
+
+        value, deviation = self.body.value(xyz), self.deviation(xyz)
+        return np.asarray(ndtr(-value / np.maximum(deviation, 1e-12)))

@@ -1,0 +1,164 @@
+"""A radial basis function through values and gradients: r^3 with a linear trend, or a compact correction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.bodies.kernels import gradients, gram, values
+from geofit.data.errors import FitError
+from geofit.data.messages import said
+
+__all__ = ["Rbf", "Saddle"]
+
+Floats = NDArray[np.float64]
+NONE = np.zeros((0, 3))
+
+
+@dataclass(frozen=True, eq=False)
+class Rbf:
+    """The function ``sum w_j k(|x - c_j|) + sum v_k . grad_c k(|x - g_k|) + trend . (1, x)``; C2 everywhere.
+
+    Parameters
+    ----------
+    centres, weights : (m, 3), (m,) arrays
+        Places of values and their weights.
+    dipoles, moments : (k, 3), (k, 3) arrays
+        Places of gradients and their weights.
+    trend : (4,) array
+        Constant and slopes.
+    reach : float
+        Radius of the compact kernel, which has no trend; 0 for r^3.
+    """
+
+    centres: Floats
+    weights: Floats
+    dipoles: Floats
+    moments: Floats
+    trend: Floats
+    reach: float = 0.0
+
+    def value(self, x: Floats) -> Floats:
+        """Return the values (n,) at (n, 3) places."""
+        sums = values(x, self.centres, self.weights, self.dipoles, self.moments, self.reach)
+        return np.asarray(sums + self.trend[0] + x @ self.trend[1:])
+
+    def gradient(self, x: Floats) -> Floats:
+        """Return the gradients (n, 3) at (n, 3) places."""
+        return gradients(x, self.centres, self.weights, self.dipoles, self.moments, self.reach) + self.trend[1:]
+
+
+class Saddle:
+    """The factorised system of given functionals: solved for any values, and the kriging covariance given them.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Where values are given; no two may coincide.
+    oriented : (k, 3) array
+        Where gradients are given.
+    reach : float
+        Radius of the compact kernel; 0 for r^3 with a linear trend.
+
+    Raises
+    ------
+    FitError
+        If the places leave a linear function free (all on one plane, or fewer than four).
+    """
+
+    def __init__(self, points: Floats, oriented: Floats = NONE, reach: float = 0.0) -> None:
+        from scipy.linalg import get_lapack_funcs
+
+        self.points, self.oriented, self.reach = points, oriented, reach
+        side = _trend(points, oriented) if reach == 0.0 else np.zeros((len(points) + 3 * len(oriented), 0))
+        if reach == 0.0 and np.linalg.matrix_rank(side, tol=1e-9 * max(len(side), 4)) < 4:
+            raise FitError(
+                said(
+                    "{count} places lie on one plane or fewer than four are given: they leave the trend of the field "
+                    "free. Add contacts, or samples inside and outside, off that plane.",
+                    count=len(points) + len(oriented),
+                )
+            )
+        size, self._trends = side.shape
+        matrix = np.zeros((size + self._trends, size + self._trends), order="F")
+        matrix[:size, :size] = gram(points, oriented, points, oriented, reach)
+        matrix[:size, size:] = side
+        matrix[size:, :size] = side.T
+        if not len(matrix):
+            return
+        sytrf, self._sytrs, work = get_lapack_funcs(("sytrf", "sytrs", "sytrf_lwork"), (matrix,))
+        length = int(work(len(matrix), lower=1)[0])
+        self._factor, self._pivots, info = sytrf(matrix, lower=1, lwork=length, overwrite_a=1)
+        if info:
+            raise FitError(
+                said("The system of {count} conditions is singular: two of them coincide. Merge them.", count=size)
+            )
+
+    def solve(self, right: Floats) -> Floats:
+        """Return the weights for right-hand sides (n + 3k,) or (n + 3k, m), the trend's four rows last."""
+        whole = np.zeros((len(right) + self._trends, *right.shape[1:]), order="F")
+        whole[: len(right)] = right
+        return self._solved(whole)
+
+    def interpolate(self, values_: Floats, gradients_: Floats = NONE) -> Rbf:
+        """Return the function with these values (n,) and gradients (k, 3); one step of refinement."""
+        right = np.concatenate([values_, gradients_.ravel()])
+        solution = self.solve(right)
+        rbf = self._function(solution)
+        rest = np.concatenate([values_ - rbf.value(self.points), (gradients_ - rbf.gradient(self.oriented)).ravel()])
+        return self._function(solution + self.solve(rest))
+
+    def _function(self, solution: Floats) -> Rbf:
+        n, size = len(self.points), len(self.points) + 3 * len(self.oriented)
+        trend = solution[size:] if self._trends else np.zeros(4)
+        moments = solution[n:size].reshape(-1, 3)
+        return Rbf(self.points, solution[:n], self.oriented, moments, trend, self.reach)
+
+    def rows(self, x: Floats) -> Floats:
+        """Return the rows (m, n + 3k, and 4 of the trend) that give values at x when multiplied with the weights."""
+        rows = gram(x, NONE, self.points, self.oriented, self.reach)
+        return np.hstack([rows, np.ones((len(x), 1)), x]) if self._trends else rows
+
+    def covariance(self, x: Floats) -> Floats:
+        """Return the (m, m) covariance of the field's values at x, given those of the system, for a unit field.
+
+        The dual view of kriging: an intrinsic random field of order one with generalised covariance r^3
+        (Matheron, "The intrinsic random functions", Adv. Appl. Prob. 5, 1973).
+        """
+        rows = self.rows(x)
+        whole = gram(x, NONE, x, NONE, self.reach) - rows @ self.solve_rows(rows)
+        return np.asarray((whole + whole.T) / 2)
+
+    def variance(self, x: Floats) -> Floats:
+        """Return the (m,) diagonal of :meth:`covariance`; never below zero."""
+        parts = []
+        for block in np.array_split(x, max(1, len(x) // 2000)):
+            rows = self.rows(block)
+            own = 1.0 if self.reach else 0.0
+            parts.append(own - np.einsum("ij,ji->i", rows, self.solve_rows(rows)))
+        return np.maximum(np.concatenate(parts), 0.0)
+
+    def weights_at(self, x: Floats) -> Floats:
+        """Return the (m, n + 3k) kriging weights: values at x per unit of each given value."""
+        return np.asarray(self.solve_rows(self.rows(x))[: len(self.points) + 3 * len(self.oriented)].T)
+
+    def precision(self) -> Floats:
+        """Return the diagonal (n + 3k,) of the inverse: one over the variance of each value left out."""
+        size = len(self.points) + 3 * len(self.oriented)
+        return np.array([self.solve(np.eye(1, size, k)[0])[k] for k in range(size)])
+
+    def solve_rows(self, rows: Floats) -> Floats:
+        """Return the inverse of the system times rows (m, ...) of :meth:`rows`, as columns."""
+        return self._solved(np.asfortranarray(rows.T))
+
+    def _solved(self, right: Floats) -> Floats:
+        # LAPACK takes no empty system.
+        return np.asarray(self._sytrs(self._factor, self._pivots, right, lower=1)[0]) if right.size else right
+
+
+def _trend(points: Floats, oriented: Floats) -> Floats:
+    """Return the (n + 3k, 4) values and gradients of 1, x, y, z."""
+    slopes = np.tile(np.hstack([np.zeros((3, 1)), np.eye(3)]), (len(oriented), 1))
+    return np.vstack([np.hstack([np.ones((len(points), 1)), points]), slopes])

@@ -1,0 +1,122 @@
+"""Settings of a body's fit: frozen, keyword-only, validated."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from geofit.data.errors import SettingsError
+from geofit.data.messages import said
+
+__all__ = ["BodySettings"]
+
+Corner = tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodySettings:
+    """How a body is fitted and judged.
+
+    Parameters
+    ----------
+    epsilon : float
+        Control error in metres: the fit passes when the sigma of its contacts is below it.
+    step : float or None
+        Distance in metres between samples along intervals; None: a quarter of the median interval's length, between
+        0.1 m and a quarter of the distance between holes.
+    closed : bool
+        Whether ground farther than ``reach`` from the nearest contact or inside sample counts as outside. Without it
+        the body may go on through ground where there are no data.
+    reach : float or None
+        That distance in metres; None: 1.5 times the typical distance between holes, as the samples show it.
+    box : pair of corners or None
+        Lower and upper corner (map coordinates) at which the body is cut; None: the box of contacts and inside samples,
+        enlarged by 1.5 times the reach.
+    ranges : (float, float, float)
+        Anisotropy: how far data act along the major, the middle and the minor axis, relative to each other.
+    azimuth, dip, rake : float
+        Direction of those axes in degrees: the plane of the major and middle axis dips by ``dip`` towards ``azimuth``
+        (clockwise from grid north); the major axis lies in that plane, turned by ``rake`` from the line of steepest
+        descent, clockwise seen from above.
+    coincidence_distance : float
+        Points nearer to each other than this many metres are one point.
+    dense : int
+        Largest number of conditions that are solved at once; more are solved in overlapping parts.
+    realizations : int
+        Number of conditional simulations behind the volumes.
+    seed : int
+        Of those simulations.
+
+    Raises
+    ------
+    SettingsError
+        If a value is out of its range.
+
+    Examples
+    --------
+    >>> BodySettings(epsilon=0.2, ranges=(3, 3, 1), dip=30, azimuth=90).ranges
+    (3.0, 3.0, 1.0)
+    """
+
+    epsilon: float = 0.5
+    step: float | None = None
+    closed: bool = True
+    reach: float | None = None
+    box: tuple[Corner, Corner] | None = None
+    ranges: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    azimuth: float = 0.0
+    dip: float = 0.0
+    rake: float = 0.0
+    coincidence_distance: float = 1e-6
+    dense: int = 600
+    realizations: int = 100
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name in ("epsilon", "coincidence_distance", "step", "reach"):
+            value = getattr(self, name)
+            if value is None and name in ("step", "reach"):
+                continue
+            if not _number(value) or value <= 0:
+                raise SettingsError(
+                    said("{setting} is {value}; a finite number of metres above 0 is needed.", setting=name,
+                         value=repr(value))
+                )  # fmt: skip
+        for name in ("azimuth", "dip", "rake"):
+            if not _number(getattr(self, name)):
+                raise SettingsError(
+                    said("{setting} is {value}; a finite angle in degrees is needed.", setting=name,
+                         value=repr(getattr(self, name)))
+                )  # fmt: skip
+        for name, least in (("dense", 50), ("realizations", 10), ("seed", 0)):
+            value = getattr(self, name)
+            if not isinstance(value, int) or isinstance(value, bool) or value < least:
+                raise SettingsError(
+                    said("{setting} is {value}; a whole number of at least {least} is needed.", setting=name,
+                         value=repr(value), least=least)
+                )  # fmt: skip
+        if not isinstance(self.closed, bool):
+            raise SettingsError(
+                said("{setting} is {value}; true or false is needed.", setting="closed", value=repr(self.closed))
+            )
+        ranges = np.asarray(self.ranges, float)
+        if ranges.shape != (3,) or not (np.isfinite(ranges).all() and (ranges > 0).all()):
+            raise SettingsError(
+                said("ranges is {value}; three finite numbers above 0 are needed.", value=repr(self.ranges))
+            )
+        object.__setattr__(self, "ranges", tuple(ranges.tolist()))
+        if self.box is not None:
+            box = np.asarray(self.box, float)
+            if box.shape != (2, 3) or not np.isfinite(box).all() or not (box[0] < box[1]).all():
+                raise SettingsError(
+                    said("box is {value}; a lower and an upper corner in map coordinates are needed.",
+                         value=repr(self.box))
+                )  # fmt: skip
+            object.__setattr__(self, "box", tuple(tuple(corner) for corner in box.tolist()))
+
+
+def _number(value: Any) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)

@@ -1,0 +1,283 @@
+"""The body of surveyed passages: a swept section along each shot, sharp within a branch, blended where branches meet.
+
+The section is made of four quarter ellipses, with semi-axes left, right, up and down, linear from one end of a shot to
+the other. In caves up and down are measured vertically, so across a shot of inclination i they count with cos i; along
+shots steeper than 60 degrees they lie along the passage, and the mean of left and right replaces them. Where a shot
+ends, half an ellipsoid closes it, which also fills the outer side of bends.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.caves.adjust import AdjustedSurvey, adjust
+from geofit.caves.sections import Sections, sections
+from geofit.caves.survey import Survey
+from geofit.data.errors import SettingsError
+from geofit.data.messages import said
+
+if TYPE_CHECKING:
+    from geofit.caves.columns import Columns
+    from geofit.caves.sweep_loops import SweepCells
+    from geofit.implicit.mesh import TriangleMesh
+
+__all__ = ["Ends", "PassageBody", "Sweeps", "centreline_body"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Ends = Literal["round", "flat"]
+
+#: Steeper shots are shafts: up and down lie along them, degrees.
+STEEP = 60.0
+#: A wall is no nearer than this, so that a station at a wall leaves a body, metres.
+THIN = 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Sweeps:
+    """One swept section a shot, as arrays for the compiled loops.
+
+    Parameters
+    ----------
+    origin, along, right, up : (k, 3) array
+        Start of each shot and its orthonormal frame.
+    length : (k,) array
+        Lengths, metres.
+    walls : (k, 2, 4) array
+        Semi-axes left, right, up and down across the shot at start and end, metres.
+    cap : (k, 2) array
+        Semi-axis of the ellipsoid along the shot at start and end; 0 for a flat end.
+    branch : (k,) array of int
+        Branch of each shot: a chain of shots between junctions and ends.
+    """
+
+    origin: Floats
+    along: Floats
+    right: Floats
+    up: Floats
+    length: Floats
+    walls: Floats
+    cap: Floats
+    branch: Ints
+
+    @property
+    def volumes(self) -> Floats:
+        """Volume (k,) of each sweep without its caps, cubic metres."""
+        return swept_volumes(self.length, self.walls)
+
+
+def swept_volumes(length: Floats, walls: Floats) -> Floats:
+    """Return the volumes (k,) of sections that are linear between walls (k, 2, 4), exactly (Simpson's rule)."""
+    area = [_area(walls[:, 0]), _area(walls.mean(axis=1)), _area(walls[:, 1])]
+    return np.asarray(length * (area[0] + 4 * area[1] + area[2]) / 6)
+
+
+def _area(walls: Floats) -> Floats:
+    return np.asarray(np.pi / 4 * (walls[:, 0] + walls[:, 1]) * (walls[:, 2] + walls[:, 3]))
+
+
+@dataclass(frozen=True, eq=False)
+class PassageBody:
+    """The body of the passages of a survey; a field in the sense of :class:`geofit.implicit.Field`.
+
+    Parameters
+    ----------
+    adjusted : AdjustedSurvey
+        The survey with the coordinates of its stations and its loops.
+    sections : Sections
+        Walls at the ends of the shots, those that were filled among them.
+    sweeps : Sweeps
+        The swept sections.
+    blend : float
+        Radius of the smooth union where branches meet, metres: the body swells by a quarter of it at most.
+    """
+
+    adjusted: AdjustedSurvey
+    sections: Sections
+    sweeps: Sweeps
+    blend: float
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Corners of a box that contains the body, (3,) each, metres."""
+        low, high = self.boxes
+        return low.min(axis=0), high.max(axis=0)
+
+    @cached_property
+    def boxes(self) -> tuple[Floats, Floats]:
+        """Corners (k, 3), (k, 3) of a box round each sweep, metres."""
+        s = self.sweeps
+        far = np.maximum(s.walls.max(axis=(1, 2)), s.cap.max(axis=1))[:, None] + self.blend / 4
+        end = s.origin + s.length[:, None] * s.along
+        return np.minimum(s.origin, end) - far, np.maximum(s.origin, end) + far
+
+    @property
+    def lipschitz(self) -> float:
+        """Infinite: flat sections have steep fields. :meth:`range_in` bounds the values instead."""
+        return np.inf
+
+    def value(self, xyz: ArrayLike) -> Floats:
+        """Return the field (n,) at points (n, 3), metres: negative inside; a distance where sections are round."""
+        return self._cells.values(_points(xyz))
+
+    def gradient(self, xyz: ArrayLike) -> Floats:
+        """Return the gradients (n, 3) at points (n, 3), by central differences over 0.1 mm."""
+        points, step = _points(xyz), 5e-5 * np.eye(3)
+        return np.stack([(self.value(points + s) - self.value(points - s)) / 1e-4 for s in step], axis=1)
+
+    def range_in(self, lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
+        """Return bounds (k,), (k,) of the field in boxes with corners (k, 3)."""
+        from geofit.caves.sweep_loops import ranges
+
+        return ranges(self.sweeps, self.blend, np.asarray(lower, float), np.asarray(upper, float))
+
+    def triangulate(self, spacing: float) -> TriangleMesh:
+        """Return the closed surface as triangles, from a lattice of this spacing (metres).
+
+        Passages thinner than the spacing may break or be lost: see :meth:`thinner_than`.
+        """
+        from geofit.implicit.isosurface import isosurface
+        from geofit.implicit.lattice import Lattice
+
+        low, high = self.bounds
+        shape = np.ceil((high - low) / _spacing(spacing)).astype(int) + 3
+        return isosurface(self, Lattice(low - spacing, spacing, (int(shape[0]), int(shape[1]), int(shape[2]))))
+
+    def thinner_than(self, spacing: float) -> tuple[tuple[str, str], ...]:
+        """Return the shots whose section is somewhere thinner than a spacing: triangles and volumes may lose them."""
+        walls, survey = self.sweeps.walls, self.adjusted.survey
+        thin = np.minimum(walls[..., 0] + walls[..., 1], walls[..., 2] + walls[..., 3]).min(axis=1) < spacing
+        return tuple(
+            (survey.stations[survey.start[shot]], survey.stations[survey.end[shot]])
+            for shot in self.sections.shot[thin].tolist()
+        )
+
+    def columns(self, spacing: float | None = None) -> Columns:
+        """Return the body as vertical intervals on a grid in plan, for volumes (:mod:`geofit.caves.columns`)."""
+        from geofit.caves.columns import columns
+
+        return columns(self, _spacing(spacing if spacing is not None else self.fine))
+
+    def volume(self, spacing: float | None = None) -> float:
+        """Return the volume in cubic metres; overlaps of passages count once."""
+        return self.columns(spacing).volume
+
+    @cached_property
+    def _cells(self) -> SweepCells:
+        from geofit.caves.sweep_loops import SweepCells
+
+        return SweepCells(self.sweeps, self.blend, self.bounds)
+
+    @property
+    def length(self) -> float:
+        """Sum of the adjusted lengths of the passages that count, metres."""
+        counted = self.adjusted.survey.counted[self.sections.shot]
+        return float(self.sweeps.length[counted].sum())
+
+    @property
+    def fine(self) -> float:
+        """A spacing that resolves most sections: an eighth of the median diameter, metres."""
+        walls = self.sweeps.walls
+        return float(np.median(np.minimum(walls[..., 0] + walls[..., 1], walls[..., 2] + walls[..., 3]))) / 8
+
+
+def centreline_body(
+    survey: Survey | AdjustedSurvey,
+    *,
+    radius: float | None = None,
+    ends: Ends = "round",
+    blend: float | None = None,
+) -> PassageBody:
+    """Return the body of the passages of a survey.
+
+    Parameters
+    ----------
+    survey : Survey or AdjustedSurvey
+        A survey is adjusted with its default errors.
+    radius : float, optional
+        Distance of the walls where a survey has none at all, metres.
+    ends : {"round", "flat"}
+        How a passage ends at its last station: half an ellipsoid beyond it, or a plane through it (tunnels).
+    blend : float, optional
+        Radius of the smooth union where branches meet, metres; by default half of the median wall distance.
+
+    Raises
+    ------
+    SurveyError
+        If stations are unconnected, or passages have no size.
+    SettingsError
+        If a setting is out of its range.
+    """
+    if ends not in ("round", "flat"):
+        raise SettingsError(said("The ends '{ends}' are unknown; give 'round' or 'flat'.", ends=ends))
+    if (blend is not None and not blend >= 0) or (radius is not None and not radius > 0):
+        raise SettingsError("The blend must be 0 or more, the radius above 0, in metres.")
+    adjusted = adjust(survey) if isinstance(survey, Survey) else survey
+    found = sections(adjusted, radius)
+    sweeps = _sweeps(adjusted, found, ends)
+    return PassageBody(adjusted, found, sweeps, float(np.median(sweeps.walls)) / 2 if blend is None else float(blend))
+
+
+def _sweeps(adjusted: AdjustedSurvey, found: Sections, ends: Ends) -> Sweeps:
+    survey = adjusted.survey
+    start, end = survey.start[found.shot], survey.end[found.shot]
+    vector = adjusted.xyz[end] - adjusted.xyz[start]
+    length = np.linalg.norm(vector, axis=1)
+    along = vector / length[:, None]
+    flat = np.hypot(along[:, 0], along[:, 1])
+    # A vertical shot has no right hand: east, as good as any.
+    right = np.where(
+        flat[:, None] > 1e-6, np.column_stack([along[:, 1], -along[:, 0], np.zeros(len(along))]), [1.0, 0, 0]
+    )
+    right /= np.linalg.norm(right, axis=1)[:, None]
+    walls = np.maximum(found.walls, THIN) if survey.across else across(found.walls, flat)
+    degree = np.bincount(np.r_[start, end], minlength=len(survey.stations))
+    # A lone round section ends in half a ball.
+    cap = (walls[..., 0] + walls[..., 1] + walls[..., 2] + walls[..., 3]) / 4
+    if ends == "flat":
+        cap = np.where(np.column_stack([degree[start], degree[end]]) == 1, 0.0, cap)
+    return Sweeps(
+        adjusted.xyz[start], along, right, np.cross(right, along), length, walls, cap, _branches(start, end, degree)
+    )
+
+
+def across(walls: Floats, cosine: Floats) -> Floats:
+    """Return the semi-axes (k, 2, 4) across shots from walls as they were measured and cosines of inclination (k,)."""
+    steep = cosine < np.cos(np.radians(STEEP))
+    mean = walls[..., :2].mean(axis=2, keepdims=True)
+    vertical = np.where(steep[:, None, None], mean, walls[..., 2:] * cosine[:, None, None])
+    return np.asarray(np.maximum(np.concatenate([walls[..., :2], vertical], axis=2), THIN))
+
+
+def _branches(start: Ints, end: Ints, degree: Ints) -> Ints:
+    """Return the branch (k,) of each shot: shots that meet at a station of two shots share it."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    count = len(start)
+    first: dict[int, int] = {}
+    pairs = []
+    for shot, ends in enumerate(zip(start.tolist(), end.tolist(), strict=True)):
+        for station in ends:
+            if degree[station] == 2:
+                pairs.append((first.setdefault(station, shot), shot))
+    links = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+
+
+def _points(xyz: ArrayLike) -> Floats:
+    from geofit.implicit.field import points_of
+
+    return points_of(xyz)
+
+
+def _spacing(spacing: float) -> float:
+    if not (np.isfinite(spacing) and spacing > 0):
+        raise SettingsError(said("The spacing is {spacing}; give metres above 0.", spacing=spacing))
+    return float(spacing)

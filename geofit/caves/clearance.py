@@ -1,0 +1,145 @@
+"""Distance of passages from a planned excavation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.caves.body import PassageBody
+from geofit.data.errors import SettingsError
+from geofit.data.messages import said
+
+__all__ = ["Clearance", "clearance"]
+
+Floats = NDArray[np.float64]
+
+#: Triangles nearest by their centres that are measured exactly.
+_NEAREST = 24
+
+
+@dataclass(frozen=True, eq=False)
+class Clearance:
+    """Distance of each point of an excavation from the nearest passage wall.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points of the excavation, metres; of a polyline, points along it.
+    distance : (n,) array
+        Distance from the wall, metres, less the radius of the excavation; below 0 inside a passage.
+    wall : (n, 3) array
+        The nearest point of a wall.
+    station : tuple of str
+        The station of the survey nearest to that wall.
+    sigma : (n,) array
+        Standard deviation of that station's position, metres: the length of its three components.
+    """
+
+    points: Floats
+    distance: Floats
+    wall: Floats
+    station: tuple[str, ...]
+    sigma: Floats
+
+    @property
+    def nearest(self) -> int:
+        """Index of the point that is nearest to a passage, or deepest inside one."""
+        return int(np.argmin(self.distance))
+
+    @property
+    def least(self) -> float:
+        """The smallest distance, metres."""
+        return float(self.distance[self.nearest])
+
+
+def clearance(
+    body: PassageBody,
+    excavation: ArrayLike,
+    *,
+    polyline: bool = True,
+    radius: float = 0.0,
+    step: float = 1.0,
+    spacing: float | None = None,
+) -> Clearance:
+    """Return the distance of an excavation from the walls of passages.
+
+    Parameters
+    ----------
+    body : PassageBody
+        The passages.
+    excavation : (n, 3) array
+        Corners of the excavation's axis, or points of it, metres.
+    polyline : bool
+        Whether they are corners, to be joined, or single points.
+    radius : float
+        Radius of the excavation about these points, metres.
+    step : float
+        Distance of the points along a polyline at most, metres.
+    spacing : float, optional
+        Lattice of the triangles of the walls, metres; by default :attr:`PassageBody.fine` times 2.
+
+    Raises
+    ------
+    SettingsError
+        If the excavation is no array of points, or a length is out of its range.
+    """
+    corners = np.asarray(excavation, dtype=np.float64)
+    if corners.ndim != 2 or corners.shape[1:] != (3,) or not len(corners) or not np.isfinite(corners).all():
+        raise SettingsError(
+            said("The excavation has shape {shape}; give finite points (n, 3) in metres.", shape=corners.shape)
+        )
+    if not (radius >= 0 and step > 0):
+        raise SettingsError("The radius must be 0 or more and the step above 0, in metres.")
+    from scipy.spatial import cKDTree
+
+    points = _along(corners, step) if polyline and len(corners) > 1 else corners
+    mesh = body.triangulate(spacing if spacing is not None else 2 * body.fine)
+    triangles = mesh.vertices[mesh.triangles]
+    near = cKDTree(triangles.mean(axis=1)).query(points, k=min(_NEAREST, len(triangles)))[1].reshape(len(points), -1)
+    foot = _nearest_on_triangles(points, triangles, near)
+    inside = body.value(points) < 0
+    distance = np.linalg.norm(points - foot, axis=1) * np.where(inside, -1.0, 1.0) - radius
+    adjusted = body.adjusted
+    stations = np.unique([adjusted.survey.start[body.sections.shot], adjusted.survey.end[body.sections.shot]])
+    closest = stations[cKDTree(adjusted.xyz[stations]).query(foot)[1]]
+    return Clearance(
+        points,
+        distance,
+        foot,
+        tuple(adjusted.survey.stations[i] for i in closest.tolist()),
+        np.linalg.norm(adjusted.sigma, axis=1)[closest],
+    )
+
+
+def _along(corners: Floats, step: float) -> Floats:
+    """Return points along a polyline, its corners among them, no farther apart than a step."""
+    parts = []
+    for a, b in pairwise(corners):
+        count = max(int(np.ceil(np.linalg.norm(b - a) / step)), 1)
+        parts.append(a + (b - a) * (np.arange(count) / count)[:, None])
+    return np.vstack([*parts, corners[-1:]])
+
+
+def _nearest_on_triangles(points: Floats, triangles: Floats, near: NDArray[np.int64]) -> Floats:
+    """Return the nearest point (n, 3) on the triangles (m, 3, 3) that are candidates (n, k) of each point."""
+    p = np.repeat(points, near.shape[1], axis=0)
+    a, b, c = (triangles[near.ravel(), corner] for corner in range(3))
+    normal = np.cross(b - a, c - a)
+    square = np.maximum((normal**2).sum(axis=1), 1e-300)
+    # The foot on the plane by barycentric coordinates; outside the triangle the nearest of its edges.
+    u = (np.cross(p - a, c - a) * normal).sum(axis=1) / square
+    v = (np.cross(b - a, p - a) * normal).sum(axis=1) / square
+    best = a + u[:, None] * (b - a) + v[:, None] * (c - a)
+    away = np.where((u >= 0) & (v >= 0) & (u + v <= 1), np.linalg.norm(p - best, axis=1), np.inf)
+    for start, end in ((a, b), (b, c), (c, a)):
+        edge = end - start
+        t = np.clip(((p - start) * edge).sum(axis=1) / np.maximum((edge**2).sum(axis=1), 1e-300), 0, 1)
+        foot = start + t[:, None] * edge
+        distance = np.linalg.norm(p - foot, axis=1)
+        nearer = distance < away
+        best[nearer], away = foot[nearer], np.minimum(away, distance)
+    choice = away.reshape(near.shape).argmin(axis=1)
+    return np.asarray(best.reshape(*near.shape, 3)[np.arange(len(points)), choice])

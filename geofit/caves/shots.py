@@ -1,0 +1,77 @@
+"""Shots collected one by one while a file is read, then frozen as a survey."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.caves.survey import Survey
+from geofit.data.site import ImportIssue, TableCount
+
+__all__ = ["ShotList", "polar"]
+
+
+def polar(length: float, azimuth: float, inclination: float) -> NDArray[np.float64]:
+    """Return the vector (3,) of a length at an azimuth from north and an inclination upwards, degrees."""
+    a, i = np.radians(azimuth), np.radians(inclination)
+    return length * np.array([np.sin(a) * np.cos(i), np.cos(a) * np.cos(i), np.sin(i)])
+
+
+@dataclass
+class ShotList:
+    """Stations, shots and walls in the order in which a reader finds them."""
+
+    stations: dict[str, int] = field(default_factory=dict)
+    shots: list[tuple[int, int, NDArray[np.float64], bool, bool, bool, int]] = field(default_factory=list)
+    walls: list[tuple[int, int, Sequence[float]]] = field(default_factory=list)
+    fixed: dict[str, tuple[float, float, float]] = field(default_factory=dict)
+    across: bool = False
+
+    def station(self, name: str) -> int:
+        """Return the number of a station, a new one for a new name."""
+        return self.stations.setdefault(name, len(self.stations))
+
+    def add(
+        self,
+        start: str,
+        end: str,
+        offset: NDArray[np.float64],
+        row: int,
+        *,
+        counted: bool = True,
+        passage: bool = True,
+        rigid: bool = False,
+    ) -> int:
+        """Add a shot and return its number."""
+        self.shots.append((self.station(start), self.station(end), offset, counted, passage, rigid, row))
+        return len(self.shots) - 1
+
+    def add_walls(self, station: str, shot: int, walls: Sequence[float]) -> None:
+        """Add left, right, upper and lower wall of a station, along a shot; nan where one is missing."""
+        self.walls.append((self.station(station), shot, walls))
+
+    def survey(self, name: str, issues: Sequence[ImportIssue] = (), counts: Sequence[TableCount] = ()) -> Survey:
+        """Return what was collected."""
+        start, end, offset, counted, passage, rigid, row = zip(*self.shots, strict=True) if self.shots else ([],) * 7
+        station, shot, walls = zip(*self.walls, strict=True) if self.walls else ([],) * 3
+        return Survey(
+            name=name,
+            stations=tuple(self.stations),
+            start=np.array(start),
+            end=np.array(end),
+            offset=np.array(offset),
+            counted=np.array(counted),
+            passage=np.array(passage),
+            rigid=np.array(rigid),
+            wall_station=np.array(station),
+            wall_shot=np.array(shot),
+            walls=np.array(walls),
+            across=self.across,
+            fixed=self.fixed,
+            row=np.array(row),
+            issues=tuple(issues),
+            counts=tuple(counts),
+        )

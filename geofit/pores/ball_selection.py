@@ -1,0 +1,106 @@
+"""Which balls are kept: the exact decision by look-up tables, and the article's comparison of radii."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from geofit.pores.ball_tables import DIRECTIONS, inclusion_table, signed_directions
+from geofit.pores.distance import sums_of_squares
+
+__all__ = ["exact", "paper"]
+
+
+def exact(reach2: NDArray[Any]) -> NDArray[np.int64]:
+    """Return the flat indices of the maximal balls of a squared distance map of cubic voxels, in ascending order."""
+    largest = int(reach2.max(initial=0))
+    # A ball up to F² can be included in a ball with a larger one, so the directions go by the largest ball present.
+    needed = [entry[:3] for entry in DIRECTIONS if entry[3] <= largest]
+    generators = np.array(needed or [(1, 0, 0)], dtype=np.int64)
+    tables = np.array([inclusion_table(*generator, limit=largest) for generator in generators], dtype=np.int32)
+    directions, source = signed_directions(generators)
+    # The nearest directions include a ball most often; asking them first ends most searches early.
+    order = np.argsort((directions**2).sum(axis=1), kind="stable")
+    return _maximal(reach2, directions[order], source[order], tables)
+
+
+@njit(cache=True)
+def _maximal(
+    reach2: NDArray[Any], directions: NDArray[np.int64], source: NDArray[np.int64], tables: NDArray[np.int32]
+) -> NDArray[np.int64]:
+    n0, n1, n2 = reach2.shape
+    flat = reach2.ravel()
+    steps = directions[:, 0] * (n1 * n2) + directions[:, 1] * n2 + directions[:, 2]
+    margin = np.abs(directions).max()
+    kept = np.empty(1024, np.int64)
+    count = 0
+    for i in range(n0):
+        for j in range(n1):
+            row_inside = margin <= i < n0 - margin and margin <= j < n1 - margin
+            for k in range(n2):
+                here = (i * n1 + j) * n2 + k
+                own = flat[here]
+                if own == 0:
+                    continue
+                inside = row_inside and margin <= k < n2 - margin
+                included = False
+                for d in range(len(steps)):
+                    if not inside:
+                        a, b, c = i + directions[d, 0], j + directions[d, 1], k + directions[d, 2]
+                        if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
+                            continue
+                    other = flat[here + steps[d]]
+                    if other > own and other >= tables[source[d], own]:
+                        included = True
+                        break
+                if included:
+                    continue
+                if count == len(kept):
+                    grown = np.empty(2 * count, np.int64)
+                    grown[:count] = kept
+                    kept = grown
+                kept[count] = here
+                count += 1
+    return kept[:count].copy()
+
+
+def paper(reach2: NDArray[Any]) -> NDArray[np.int64]:
+    """Return the flat indices of the balls that the article's step 2 keeps, in ascending order.
+
+    From large to small, ball 1 deletes each ball 2 within R1 with R2 + distance <= L1, where L1² = F1² + 1 is the
+    article's upper limit of the radius. It stops at R² = 0.
+    """
+    flat = reach2.ravel()
+    alive = flat > 0
+    ranked = np.flatnonzero(alive)
+    ranked = ranked[np.argsort(-flat[ranked], kind="stable")]
+    _delete_by_radius(reach2, sums_of_squares(int(flat.max(initial=0))), ranked, alive.reshape(reach2.shape))
+    return np.flatnonzero(alive)
+
+
+@njit(cache=True)
+def _delete_by_radius(
+    reach2: NDArray[Any], radius2: NDArray[np.int32], ranked: NDArray[np.int64], alive: NDArray[np.bool_]
+) -> None:
+    n0, n1, n2 = reach2.shape
+    for here in ranked:
+        i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
+        square = radius2[reach2[i, j, k]]
+        if square == 0:
+            return
+        if not alive[i, j, k]:
+            continue
+        limit = np.sqrt(reach2[i, j, k] + 1)
+        reach = int(np.sqrt(square))
+        for a in range(max(i - reach, 0), min(i + reach + 1, n0)):
+            for b in range(max(j - reach, 0), min(j + reach + 1, n1)):
+                for c in range(max(k - reach, 0), min(k + reach + 1, n2)):
+                    gap = (a - i) ** 2 + (b - j) ** 2 + (c - k) ** 2
+                    smaller = alive[a, b, c] and reach2[a, b, c] < reach2[i, j, k]
+                    if not smaller or gap == 0 or gap > square:
+                        continue
+                    if np.sqrt(radius2[reach2[a, b, c]]) + np.sqrt(gap) <= limit + 1e-12:
+                        alive[a, b, c] = False

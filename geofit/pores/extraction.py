@@ -1,0 +1,202 @@
+"""From a rock volume to its pore network (step 3 of Huang et al. 2007, with a merge tree in place of the slaves)."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.messages import said
+from geofit.data.progress import Progress, tell
+from geofit.pores.balls import MaximalBalls, maximal_balls
+from geofit.pores.distance import Border, border_walls, squared_distance
+from geofit.pores.memory import check_memory
+from geofit.pores.network import FaceThroats, PoreNetwork, Pores, Throats
+from geofit.pores.volume import RockVolume, VolumeError
+
+__all__ = ["DEFAULT_R_MIN", "DEFAULT_TAU", "Hierarchy", "pore_network"]
+
+Hierarchy = Literal["merge-tree", "paper"]
+
+#: Settled on Berea sandstone: they give the counts and radii of its published maximal-ball network.
+DEFAULT_R_MIN = 1.25
+DEFAULT_TAU = 0.85
+
+#: Memory that a network needs for each voxel of the volume: distances, labels, order of flooding, windows.
+_BYTES = 16
+
+
+def pore_network(
+    volume: RockVolume,
+    balls: MaximalBalls | None = None,
+    *,
+    r_min: float = DEFAULT_R_MIN,
+    tau: float = DEFAULT_TAU,
+    border: Border = "open",
+    hierarchy: Hierarchy = "merge-tree",
+    progress: Progress | None = None,
+) -> PoreNetwork:
+    """Return the pores and throats of a rock volume.
+
+    Parameters
+    ----------
+    volume : RockVolume
+    balls : MaximalBalls, optional
+        Of this volume with this border. Only ``hierarchy="paper"`` needs them, and computes them if they are absent;
+        the merge tree works on the distance map that they come from.
+    r_min : float
+        Radius in voxels of the smallest ball that may be a pore, unless it is alone.
+    tau : float
+        A wider place than ``tau`` times the narrower pore's radius is no throat: the two are one pore.
+    border : "closed", "open" or three of them
+        Whether the sample's faces stop a ball. Open by default: the rock goes on there, and so do its pores.
+    hierarchy : {"merge-tree", "paper"}
+        The article's super balls and slaves, or the merge tree of the narrow places.
+    progress : callable, optional
+
+    Returns
+    -------
+    PoreNetwork
+        If any pore is connected to a face of the sample, those that are not are listed in ``dropped``.
+
+    Raises
+    ------
+    VolumeError
+        If a parameter is out of its range.
+
+    Examples
+    --------
+    >>> grains = np.ones((9, 9, 20))
+    >>> grains[1:8, 1:8, 1:8] = grains[1:8, 1:8, 12:19] = grains[4, 4] = 0
+    >>> network = pore_network(RockVolume(grains, pore=0, voxel=1e-6))
+    >>> len(network.pores), len(network.throats), network.percolates
+    (2, 1, (False, False, True))
+    """
+    from geofit.pores import basins, merge_tree
+
+    if not (r_min >= 0 and 0 < tau <= 2):
+        raise VolumeError(
+            said(
+                "r_min={r_min} and tau={tau} are not usable. r_min is a radius in voxels and not negative; tau is a "
+                "ratio between 0 and 2.",
+                r_min=r_min,
+                tau=tau,
+            )
+        )
+    if hierarchy not in ("merge-tree", "paper"):
+        raise VolumeError(said("hierarchy={name} is unknown. Give 'merge-tree' or 'paper'.", name=repr(hierarchy)))
+    border_walls(border)
+    check_memory(_BYTES * volume.pore.size, said("The network of {count} voxels", count=volume.pore.size))
+    if volume.pore.all():
+        border = "closed"
+    tell(progress, "distance", 0.0)
+    levels, values, by_edges, by_corners = basins.levels_of(
+        squared_distance(volume.pore, border, volume.edges), volume.edges
+    )
+    radius_at = np.sqrt(values.astype(np.float64)) - 0.5
+    tell(progress, "basins", 0.2)
+    label, peaks = basins.flood(levels, by_edges, by_corners)
+    radius = radius_at[levels.ravel()[peaks]]
+    tell(progress, "merging", 0.7)
+    if hierarchy == "paper":
+        from geofit.pores.paper_hierarchy import super_balls
+
+        if balls is None:
+            balls = maximal_balls(volume, border=border)
+        pore = super_balls(balls, label, len(peaks))
+    else:
+        pairs, saddle = merge_tree.saddles(levels, label, len(peaks), by_edges, by_corners, basins.OFFSETS)
+        pore = merge_tree.merge(pairs - 1, radius_at[saddle], radius, r_min, tau)
+    first = np.full(int(pore.max()) + 1, len(pore))
+    np.minimum.at(first, pore, np.arange(len(pore)))
+    label[...] = np.concatenate([[0], pore + 1]).astype(np.int32)[label]
+    tell(progress, "throats", 0.8)
+    settings = {"r_min": r_min, "tau": tau, "border": border, "hierarchy": hierarchy}
+    return _assembled(volume, label, levels, radius_at, peaks[first], settings)
+
+
+def _assembled(
+    volume: RockVolume,
+    pore_of: NDArray[np.int32],
+    levels: NDArray[np.int32],
+    radius_at: NDArray[np.float64],
+    peaks: NDArray[np.int64],
+    settings: dict[str, Any],
+) -> PoreNetwork:
+    """Measure pores and windows, and leave out what no face of the sample reaches."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    from geofit.pores.sections import measure
+    from geofit.pores.spots import own_saddle, widest_balls
+    from geofit.pores.windows import inner_windows, outer_windows
+
+    count = len(peaks)
+    inner, outer = inner_windows(pore_of, levels, count), outer_windows(pore_of, levels)
+    own = own_saddle(inner, pore_of, levels, radius_at)
+    faces = np.zeros((count, 6), dtype=bool)
+    faces[outer.first, outer.second] = True
+    links = coo_array((np.ones(len(inner.first)), (inner.first, inner.second)), shape=(count, count))
+    parts, part = connected_components(links, directed=False)
+    part_faces = np.zeros((parts, 6), dtype=bool)
+    for face in range(6):
+        part_faces[part[faces[:, face]], face] = True
+    percolates = tuple(bool((part_faces[:, 2 * a] & part_faces[:, 2 * a + 1]).any()) for a in range(3))
+    kept = part_faces.any(axis=1)[part]
+    if not kept.any():
+        kept[:] = True
+
+    edges = np.array(volume.edges)
+    centre = np.stack(np.unravel_index(peaks, volume.shape), axis=1).astype(np.int32)
+    size = np.bincount(pore_of.ravel(), minlength=count + 1)[1:] * edges.prod()
+    radius = radius_at[levels.ravel()[peaks]]
+    number = np.cumsum(kept) - 1
+    pore_of[...] = np.concatenate([[0], np.where(kept, number + 1, 0)]).astype(np.int32)[pore_of]
+
+    free = np.zeros((count, 3))
+    inscribed = np.maximum(widest_balls(peaks, free, volume.pore, edges, centre.astype(float)) - 0.5, radius)
+    sections = measure(inner, volume, radius_at, in_faces=False)
+    use = kept[inner.first] & own
+    to_centre = np.stack(
+        [np.linalg.norm((sections.middle - centre[end]) * edges, axis=1) for end in (inner.first, inner.second)], axis=1
+    )
+    throats = Throats(
+        np.stack([number[inner.first], number[inner.second]], axis=1)[use].astype(np.int32),
+        *(column[use] for column in (sections.radius, sections.inscribed, sections.area, sections.perimeter)),
+        to_centre[use],
+        sections.middle[use],
+        sections.conductance[use],
+    )
+    sections = measure(outer, volume, radius_at, in_faces=True)
+    to_face = np.linalg.norm((sections.middle - centre[outer.first]) * edges, axis=1)
+    use = kept[outer.first]
+    face_throats = FaceThroats(
+        number[outer.first][use].astype(np.int32),
+        outer.second[use].astype(np.int32),
+        *(column[use] for column in (sections.radius, sections.inscribed, sections.area, sections.perimeter)),
+        to_face[use],
+        sections.middle[use],
+        sections.conductance[use],
+    )
+    for table in (throats, face_throats):
+        for array in vars(table).values():
+            array.flags.writeable = False
+    return PoreNetwork(
+        _pores((centre, radius, inscribed, size, faces), kept),
+        throats,
+        face_throats,
+        _pores((centre, radius, inscribed, size, faces), ~kept),
+        (percolates[0], percolates[1], percolates[2]),
+        volume.shape,
+        volume.voxel,
+        settings,
+        pore_of,
+    )
+
+
+def _pores(columns: tuple[NDArray[Any], ...], kept: NDArray[np.bool_]) -> Pores:
+    chosen = [column[kept] for column in columns]
+    for column in chosen:
+        column.flags.writeable = False
+    return Pores(*chosen)

@@ -1,0 +1,178 @@
+"""Places finer than the grid: the widest ball near a voxel, and windows that have no widest place of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from geofit.pores.windows import Windows
+
+__all__ = ["own_saddle", "widest_balls"]
+
+#: A centre may move this far from its voxel, in voxels along each axis.
+_MOVE = 0.75
+#: A window with less than this share of the area of its own ball's section is a strip between other windows.
+_STRIP = 0.5
+
+
+@njit(cache=True)
+def widest_balls(
+    voxel: NDArray[np.int64],
+    normal: NDArray[np.float64],
+    pore: NDArray[np.bool_],
+    edges: NDArray[np.float64],
+    start_at: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return the distance to the nearest rock voxel's centre from the best place near each start.
+
+    Parameters
+    ----------
+    voxel : ndarray of int64, shape (n,)
+        Flat index of the voxel in which the distance to the rock is known to be large.
+    normal : ndarray of float, shape (n, 3)
+        The centre moves only across this direction; zero: it moves freely.
+    pore : ndarray of bool, shape (n0, n1, n2)
+    edges : ndarray of float, shape (3,)
+    start_at : ndarray of float, shape (n, 3)
+        Place from which the search starts, in indices; within a voxel of ``voxel``.
+    """
+    n0, n1, n2 = pore.shape
+    out = np.zeros(len(voxel))
+    for row in range(len(voxel)):
+        here = voxel[row]
+        i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
+        # The nearest rock voxel bounds which others can matter: those within its distance and twice the move.
+        reach = 1
+        nearest = np.inf
+        rocks = np.empty((64, 3))
+        count = 0
+        while reach <= n0 + n1 + n2:
+            limit = nearest + 4.0 * _MOVE * edges.max()
+            if reach * edges.min() > limit + edges.max():
+                break
+            for a in range(max(i - reach, 0), min(i + reach + 1, n0)):
+                for b in range(max(j - reach, 0), min(j + reach + 1, n1)):
+                    shell = abs(a - i) == reach or abs(b - j) == reach
+                    step = 1 if shell else max(2 * reach, 1)
+                    for c in range(k - reach, k + reach + 1, step):
+                        if c < 0 or c >= n2 or pore[a, b, c]:
+                            continue
+                        x, y, z = (a - i) * edges[0], (b - j) * edges[1], (c - k) * edges[2]
+                        gap = np.sqrt(x * x + y * y + z * z)
+                        nearest = min(nearest, gap)
+                        if gap <= nearest + 4.0 * _MOVE * edges.max():
+                            if count == len(rocks):
+                                grown = np.empty((2 * count, 3))
+                                grown[:count] = rocks
+                                rocks = grown
+                            rocks[count, 0], rocks[count, 1], rocks[count, 2] = x, y, z
+                            count += 1
+            reach += 1
+        if count == 0:
+            out[row] = np.inf
+            continue
+        place = np.array(
+            [(start_at[row, 0] - i) * edges[0], (start_at[row, 1] - j) * edges[1], (start_at[row, 2] - k) * edges[2]]
+        )
+        best = _nearest(rocks, count, place)
+        origin = _nearest(rocks, count, np.zeros(3))
+        if origin > best and not np.any(normal[row]):
+            place, best = np.zeros(3), origin
+        stride = 0.5
+        while stride > 0.02:
+            moved = False
+            for a in range(-1, 2):
+                for b in range(-1, 2):
+                    for c in range(-1, 2):
+                        step_to = np.array([a * stride * edges[0], b * stride * edges[1], c * stride * edges[2]])
+                        step_to -= normal[row] * (step_to * normal[row]).sum()
+                        trial = place + step_to
+                        if np.any(np.abs(trial) > _MOVE * edges + 0.5 * edges):
+                            continue
+                        distance = _nearest(rocks, count, trial)
+                        if distance > best + 1e-9:
+                            best, place, moved = distance, trial, True
+            if not moved:
+                stride *= 0.5
+        out[row] = best
+    return out
+
+
+@njit(cache=True)
+def _nearest(rocks: NDArray[np.float64], count: int, place: NDArray[np.float64]) -> float:
+    best = np.inf
+    for r in range(count):
+        x, y, z = rocks[r, 0] - place[0], rocks[r, 1] - place[1], rocks[r, 2] - place[2]
+        best = min(best, x * x + y * y + z * z)
+    return np.sqrt(best)
+
+
+def own_saddle(
+    windows: Windows, pore_of: NDArray[np.int32], levels: NDArray[np.int32], radius_at: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """Return which windows are throats of their own.
+
+    Where three or more pores meet, two of them may touch in a strip that is widest at the edge of a third, or too thin
+    for its own ball. The way through the third pore is wider: the window is left out if that pore has windows to both.
+    """
+    if not len(windows.first):
+        return np.zeros(0, dtype=bool)
+    begin = windows.start[:-1]
+    area2 = sum(
+        np.add.reduceat(np.where(windows.axis == a, windows.sign, 0).astype(float), begin) ** 2 for a in range(3)
+    )
+    strip = np.sqrt(area2) < _STRIP * np.pi * radius_at[np.maximum.reduceat(windows.level, begin)] ** 2
+    third = _wider_third(
+        windows.start, windows.voxel, windows.axis, windows.level, windows.first, windows.second, pore_of, levels, strip
+    )
+    widest = np.maximum.reduceat(windows.level, begin)
+    kept = np.ones(len(third), dtype=bool)
+    present: dict[tuple[int, int], int] = {}
+    pairs = list(zip(windows.first.tolist(), windows.second.tolist(), strict=True))
+    for pair in pairs:
+        present[pair] = present.get(pair, 0) + 1
+    for window in np.lexsort((windows.second, windows.first, widest)):
+        c = int(third[window])
+        if c < 0:
+            continue
+        a, b = pairs[window]
+        if present.get((min(a, c), max(a, c)), 0) and present.get((min(b, c), max(b, c)), 0):
+            kept[window] = False
+            present[a, b] -= 1
+    return kept
+
+
+@njit(cache=True)
+def _wider_third(
+    start: NDArray[np.int64],
+    voxel: NDArray[np.int64],
+    axis: NDArray[np.int8],
+    level: NDArray[np.int32],
+    first: NDArray[np.int64],
+    second: NDArray[np.int64],
+    pore_of: NDArray[np.int32],
+    levels: NDArray[np.int32],
+    strip: NDArray[np.bool_],
+) -> NDArray[np.int64]:
+    """Return the third pore that is wider at the widest place of each window, or -1."""
+    n0, n1, n2 = levels.shape
+    out = np.full(len(start) - 1, -1, np.int64)
+    for window in range(len(start) - 1):
+        top = level[start[window] : start[window + 1]].max()
+        best = 0 if strip[window] else top
+        for row in range(start[window], start[window + 1]):
+            if level[row] < top:
+                continue
+            i, j, k = voxel[row] // (n1 * n2), voxel[row] // n2 % n1, voxel[row] % n2
+            p, q, r = i + (axis[row] == 0), j + (axis[row] == 1), k + (axis[row] == 2)
+            for a in range(max(i - 1, 0), min(p + 2, n0)):
+                for b in range(max(j - 1, 0), min(q + 2, n1)):
+                    for c in range(max(k - 1, 0), min(r + 2, n2)):
+                        other = pore_of[a, b, c] - 1
+                        if other < 0 or other == first[window] or other == second[window]:
+                            continue
+                        wider = levels[a, b, c]
+                        if wider > best or (wider == best and 0 <= other < out[window]):
+                            best, out[window] = wider, other
+    return out

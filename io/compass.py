@@ -1,0 +1,221 @@
+"""Compass cave surveys (.dat): shots with left, up, down and right.
+
+The file is stored in fixed units whatever its FORMAT says: decimal feet and degrees, walls in the order left, up, down,
+right. FORMAT matters for two things: whether redundant backsights follow the walls, and whether the walls belong to the
+first or the second station of a shot. (Fountain Computer Products, "Survey data format".)
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from geofit.caves.shots import ShotList, polar
+from geofit.caves.survey import Survey
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, said
+from geofit.io.journal import Journal
+from geofit.io.source import Source, as_source
+from geofit.io.units import METRES
+
+__all__ = ["read_compass"]
+
+FEET = METRES["ft"]
+#: Readings from here on, either sign, are marks for "not measured"; so are walls below 0.
+_MISSING = 990.0
+#: A backsight may differ from its foresight by this much before it is listed, degrees.
+_BACKSIGHT = 5.0
+_NUMBER = r"[-+]?\d*\.?\d+"
+
+
+@dataclass(frozen=True)
+class _Header:
+    """What the head of one survey says about its shots."""
+
+    declination: float = 0.0
+    corrections: tuple[float, ...] = (0.0, 0.0, 0.0)
+    backsight_corrections: tuple[float, ...] = (0.0, 0.0)
+    backsights: bool = False
+    walls_at_end: bool = False
+
+
+def read_compass(source: Source | str | Path, journal: Journal | None = None) -> Survey:
+    """Read a Compass survey file.
+
+    Parameters
+    ----------
+    source : Source, str or Path
+        The file.
+    journal : Journal, optional
+        Receives the rows that are not used and what was assumed; the survey holds them too.
+
+    Returns
+    -------
+    Survey
+        In metres. No station is fixed: coordinates are in the project file (.mak), not in this one. A wall of 0 is a
+        station at the wall; four walls of 0 were not measured.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, or has no survey.
+    """
+    source, journal = as_source(source), journal if journal is not None else Journal()
+    first_issue, first_count = len(journal.issues), len(journal.counts)
+    text = journal.read(source).decode(source.encoding or "cp1252", errors="replace")
+    # Ctrl-Z ends the file for the programs that write it.
+    lines = text.replace("\r\n", "\n").replace("\r", "\n").split("\x1a")[0].split("\n")
+    shots = ShotList()
+    header, in_shots, read, used, surveys, untouched = _Header(), False, 0, 0, 0, 0
+    for row, line in enumerate(lines, 1):
+        if "\f" in line:
+            in_shots, line = False, line.split("\f")[-1]
+        if not line.strip():
+            continue
+        if line.startswith("DECLINATION:"):
+            header = _header(line)
+        elif re.match(r"\s*FROM\s+TO\s+LEN", line):
+            in_shots, surveys = True, surveys + 1
+        elif in_shots:
+            read += 1
+            found = _shot(line, row, header, shots, source.name, journal)
+            used += found > 0
+            untouched += found == 2
+    if not surveys:
+        raise InputError(
+            "The file has no line FROM TO LENGTH: it is not a Compass survey",
+            "Give a .dat file of Compass; other surveys are read from .svx or from a table.",
+            file=source.name,
+        )
+    if untouched:
+        journal.add(
+            "note",
+            source.name,
+            said("Shots with four walls of 0, which are taken as not measured: {count}", count=untouched),
+            "They are interpolated along the passage.",
+        )
+    journal.count(source.name, read, read - used)
+    return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
+
+
+def _header(line: str) -> _Header:
+    def numbers(word: str, count: int) -> tuple[float, ...]:
+        found = re.search(word + r":\s*((?:" + _NUMBER + r"\s*)+)", line)
+        values = [float(v) for v in found.group(1).split()] if found else []
+        return tuple((values + [0.0] * count)[:count])
+
+    form = re.search(r"FORMAT:\s*(\w+)", line)
+    letters = form.group(1) if form else ""
+    # 11 letters; then whether there are backsights; then at which station the walls are; 15 with their order.
+    tail = letters[13:] if len(letters) >= 15 else letters[11:]
+    return _Header(
+        numbers("DECLINATION", 1)[0],
+        numbers("CORRECTIONS", 3),
+        numbers("CORRECTIONS2", 2),
+        tail[:1] == "B",
+        tail[1:2] == "T",
+    )
+
+
+def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, journal: Journal) -> int:
+    """Add the shot of a line: 0 if it is not used, 2 if its walls are all 0, else 1."""
+    flags = re.search(r"#\|([A-Za-z ]*)#", line)
+    cells = (line[: flags.start()] if flags else line).split()
+    needed = 11 if header.backsights else 9
+    try:
+        start, end = cells[:2]
+        values = [float(cell) for cell in cells[2:needed]]
+        if len(values) < needed - 2 or not np.isfinite(values).all():
+            raise ValueError
+    except ValueError:
+        journal.add(
+            "error",
+            file,
+            said("The line is not a shot: two stations and {count} numbers are needed", count=needed - 2),
+            "Correct the line in the survey editor.",
+            row=row,
+            value=line.strip()[:120],
+        )
+        return 0
+    marks = flags.group(1).upper() if flags else ""
+    if "X" in marks:
+        journal.add(
+            "note", file, "The shot is flagged X: excluded from all processing", row=row, value=f"{start} {end}"
+        )
+        return 0
+    length, bearing, inclination = values[0], values[1], values[2]
+    back = values[7:9] if header.backsights else [-999.0, -999.0]
+    bearing = _angle(bearing, back[0], header.corrections[0], header.backsight_corrections[0], True, row, file, journal)
+    inclination = _angle(
+        inclination, back[1], header.corrections[1], header.backsight_corrections[1], False, row, file, journal
+    )
+    if np.isnan(bearing) and abs(inclination) > 89.9:
+        bearing = 0.0
+    if length < 0 or np.isnan(bearing) or np.isnan(inclination) or abs(inclination) > 90.0:
+        journal.add(
+            "error",
+            file,
+            "The shot has no length, bearing and inclination that can be used",
+            "Complete its readings.",
+            row=row,
+            value=f"{start} {end}",
+        )
+        return 0
+    left, up, down, right = (np.nan if v < 0 or v >= _MISSING else v * FEET for v in values[3:7])
+    walls = [left, right, up, down]
+    untouched = walls == [0.0] * 4
+    if untouched:
+        walls = [np.nan] * 4
+    # A line of length 0 from a station to itself carries the walls of the last station.
+    repeated = start == end
+    if repeated and length > 0:
+        journal.add(
+            "error",
+            file,
+            said("The shot leads from station {station} to itself", station=Verbatim(start)),
+            "Correct one of the names.",
+            row=row,
+            value=f"{start} {end}",
+        )
+        return 0
+    offset = polar((length + header.corrections[2]) * FEET, bearing + header.declination, inclination)
+    shot = -1
+    if not repeated:
+        shot = shots.add(
+            start,
+            end,
+            offset,
+            row,
+            counted="L" not in marks,
+            passage="P" not in marks and "S" not in marks,
+            rigid="C" in marks,
+        )
+    else:
+        place = shots.station(start)
+        shot = next((n for n in reversed(range(len(shots.shots))) if place in shots.shots[n][:2]), -1)
+    shots.add_walls(end if header.walls_at_end else start, shot, walls)
+    return 2 if untouched else 1
+
+
+def _angle(
+    fore: float, back: float, correct: float, correct_back: float, circular: bool, row: int, file: str, journal: Journal
+) -> float:
+    """Return the mean of foresight and backsight, corrected; nan if both are missing."""
+    fore = fore + correct if abs(fore) < _MISSING else np.nan
+    back = back + correct_back if abs(back) < _MISSING else np.nan
+    back = (back + 180.0 if circular else -back) if back == back else np.nan
+    if fore != fore or back != back:
+        return fore if fore == fore else back
+    difference = (back - fore + 180.0) % 360.0 - 180.0 if circular else back - fore
+    if abs(difference) > _BACKSIGHT:
+        journal.add(
+            "warning",
+            file,
+            said("Foresight and backsight differ by {angle:.1f} degrees; their mean is used", angle=abs(difference)),
+            "Check both readings.",
+            row=row,
+        )
+    return fore + difference / 2

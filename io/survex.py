@@ -1,0 +1,310 @@
+"""Survex cave surveys (.svx): the commands that surveys of passages use; all others are listed.
+
+Read are begin, end, include, data normal and data passage (one line a shot or station), data ignore, calibrate, units,
+declination with a value, equate, fix, flags, infer and case. Commands that do not change geometry are counted in one
+note. (Survex manual, "Survex data files".)
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from geofit.caves.shots import ShotList, polar
+from geofit.caves.survey import Survey
+from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, said
+from geofit.io.journal import Journal, Severity
+from geofit.io.source import Source, as_source
+from geofit.io.survex_settings import QUANTITIES, Settings, unit_of
+
+__all__ = ["read_survex"]
+
+#: Commands that name people, dates and places.
+_REMARKS = frozenset(["copyright", "date", "entrance", "export", "instrument", "ref", "require", "sd", "team", "title"])
+_PLUMBS = {"u": 90.0, "up": 90.0, "+v": 90.0, "d": -90.0, "down": -90.0, "-v": -90.0, "h": 0.0, "level": 0.0}
+_DEEPEST = 32
+
+
+class _Reader:
+    """Everything that lasts from the first line to the last, over included files."""
+
+    def __init__(self, source: Source, journal: Journal) -> None:
+        self.source, self.journal = source, journal
+        self.shots: list[tuple[str, str, np.ndarray, int, bool, bool]] = []
+        self.tubes: list[list[tuple[str, tuple[float, ...]]]] = [[]]
+        self.same: dict[str, str] = {}
+        self.fixed: list[tuple[str, tuple[float, float, float], int]] = []
+        self.read = self.used = self.anonymous = 0
+        self.remarks: dict[str, int] = {}
+
+    def list_(self, severity: Severity, reason: str, remedy: str, file: str, row: int, value: str) -> None:
+        self.journal.add(severity, file, reason, remedy, row=row, value=value)
+
+    def root(self, name: str) -> str:
+        """Return the station that a name is equated to."""
+        while name in self.same:
+            name = self.same[name]
+        return name
+
+    def file(self, source: Source, settings: Settings, depth: int = 0) -> None:
+        """Read one file and those that it includes."""
+        text = self.journal.read(source).decode(source.encoding or "utf-8", errors="replace")
+        stack: list[tuple[str, Settings]] = []
+        for row, line in enumerate(text.replace("\r\n", "\n").replace("\r", "\n").split("\n"), 1):
+            cells = line.split(";")[0].replace(",", " ").split()
+            if not cells:
+                continue
+            if not cells[0].startswith("*"):
+                self.data(cells, settings, source.name, row)
+                continue
+            word = (cells[0][1:] or (cells[1] if len(cells) > 1 else "")).casefold()
+            rest = cells[1:] if cells[0] != "*" else cells[2:]
+            if word == "begin":
+                stack.append((rest[0] if rest else "", settings))
+                name = settings.cased(rest[0]) if rest else ""
+                settings = replace(settings, prefix=(*settings.prefix, name) if name else settings.prefix)
+            elif word == "end":
+                if not stack:
+                    raise InputError(
+                        "*end without *begin",
+                        "Remove it, or add *begin.",
+                        file=source.name,
+                        row=row,
+                        value=line.strip(),
+                    )
+                settings = stack.pop()[1]
+            elif word == "include":
+                self.include(line, source, settings, depth, row)
+            else:
+                settings = self.command(word, rest, settings, source.name, row, line.strip())
+        if stack:
+            raise InputError(
+                said("*begin {name} is not closed", name=Verbatim(stack[-1][0])),
+                "Add *end: lines may be missing from the file.",
+                file=source.name,
+            )
+
+    def include(self, line: str, source: Source, settings: Settings, depth: int, row: int) -> None:
+        name = line.split(";")[0].split(None, 1)[1].strip().strip('"').replace("\\", "/")
+        path = source.path.parent / name
+        if not path.exists() and path.with_name(path.name + ".svx").exists():
+            path = path.with_name(path.name + ".svx")
+        if depth >= _DEEPEST or not path.exists():
+            raise InputError(
+                said("The included file {name} cannot be read", name=Verbatim(name)),
+                "Put it into the folder of the file that includes it; files must not include each other.",
+                file=source.name,
+                row=row,
+            )
+        self.file(replace(source, path=path, name=path.name), settings, depth + 1)
+
+    def command(self, word: str, rest: list[str], settings: Settings, file: str, row: int, line: str) -> Settings:
+        """Return the settings after a command."""
+        try:
+            match word:
+                case "data":
+                    style = rest[0].casefold() if rest else settings.style
+                    if style == "passage" or not rest:
+                        self.tubes.append([])
+                    changed = settings.with_data([cell.casefold() for cell in rest])
+                    if changed.style not in ("normal", "passage", "ignore"):
+                        self.list_(
+                            "error",
+                            said("Data of this style are not read: {style}", style=Verbatim(" ".join(rest))),
+                            "Write one line a shot with *data normal from to tape compass clino.",
+                            file,
+                            row,
+                            line,
+                        )
+                    return changed
+                case "units":
+                    return settings.with_units(rest)
+                case "calibrate":
+                    return settings.with_calibration(rest)
+                case "declination":
+                    return replace(settings, declination=float(rest[0]) * unit_of(rest[1])[1])
+                case "infer":
+                    return settings.with_inference(rest[0].casefold(), rest[1].casefold() == "on")
+                case "flags":
+                    return settings.with_flags([cell.casefold() for cell in rest])
+                case "case":
+                    return replace(settings, case=rest[0].casefold())
+                case "equate":
+                    first, *others = (settings.full(name) for name in rest)
+                    for other in others:
+                        if self.root(other) != self.root(first):
+                            self.same[self.root(other)] = self.root(first)
+                    return settings
+                case "fix":
+                    numbers = [cell for cell in rest[1:] if cell.casefold() != "reference"]
+                    x, y, z = (float(cell) for cell in numbers[:3]) if numbers else (0.0, 0.0, 0.0)
+                    self.fixed.append((settings.full(rest[0]), (x, y, z), row))
+                    return settings
+                case _ if word in _REMARKS:
+                    self.remarks[word] = self.remarks.get(word, 0) + 1
+                    return settings
+        except (ValueError, IndexError, KeyError):
+            self.list_(
+                "error",
+                said("The command *{word} cannot be read", word=Verbatim(word)),
+                "Correct its arguments.",
+                file,
+                row,
+                line,
+            )
+            return settings
+        self.list_(
+            "warning",
+            said("The command *{word} is not read", word=Verbatim(word)),
+            "Check that it does not change the shots.",
+            file,
+            row,
+            line,
+        )
+        return settings
+
+    def data(self, cells: list[str], settings: Settings, file: str, row: int) -> None:
+        """Read one line of data."""
+        self.read += 1
+        if settings.style == "ignore":
+            self.list_("note", "The line is in a block of data that is ignored", "", file, row, " ".join(cells))
+            return
+        order = settings.order
+        if settings.style in ("normal", "passage"):
+            try:
+                readings = dict(zip(order, cells, strict=False))
+                if len(cells) < len([name for name in order if name != "ignoreall"]):
+                    raise ValueError
+                if settings.style == "normal":
+                    self.shot(readings, settings, row)
+                else:
+                    walls = tuple(settings.reading(name, readings.get(name, "-")) for name in QUANTITIES["walls"])
+                    self.tubes[-1].append((settings.full(readings["station"]), walls))
+                self.used += 1
+                return
+            except (ValueError, KeyError):
+                pass
+        self.list_(
+            "error",
+            said("The line is not data in the order {order}", order=Verbatim(" ".join(order) or settings.style)),
+            "Correct the line or the *data command.",
+            file,
+            row,
+            " ".join(cells),
+        )
+
+    def shot(self, readings: dict[str, str], settings: Settings, row: int) -> None:
+        names = []
+        splay = settings.splay
+        for role in ("from", "to"):
+            if set(readings[role]) <= {".", "-"}:
+                splay, self.anonymous = True, self.anonymous + 1
+                names.append(f"({self.anonymous})")
+            else:
+                names.append(settings.full(readings[role]))
+        tape, back_tape = (settings.reading(name, readings.get(name, "-")) for name in ("tape", "backtape"))
+        tape = float(np.nanmean([tape, back_tape]))
+        if tape == 0.0 and settings.infer_equates:
+            if self.root(names[1]) != self.root(names[0]):
+                self.same[self.root(names[1])] = self.root(names[0])
+            return
+        plumb = _PLUMBS.get(readings.get("clino", "").casefold())
+        clino = plumb if plumb is not None else settings.reading("clino", readings.get("clino", "-"))
+        if plumb is None and settings.infer_plumbs and readings.get("clino", "").lstrip("+-") in ("90", "90.0"):
+            clino = float(readings["clino"])
+        back = settings.reading("backclino", readings.get("backclino", "-"))
+        clino = float(np.nanmean([clino, -back])) if clino == clino or back == back else 0.0
+        compass = settings.reading("compass", readings.get("compass", "-"))
+        back = settings.reading("backcompass", readings.get("backcompass", "-")) + 180.0
+        if compass == compass and back == back:
+            compass += ((back - compass + 180.0) % 360.0 - 180.0) / 2
+        compass = compass if compass == compass else back
+        if compass != compass and abs(clino) == 90.0:
+            compass = 0.0
+        if tape != tape or compass != compass or abs(clino) > 90.0:
+            raise ValueError
+        offset = polar(tape, compass + settings.declination, clino)
+        counted = not (splay or settings.duplicate or settings.surface)
+        self.shots.append((names[0], names[1], offset, row, counted, not (splay or settings.surface)))
+
+    def survey(self) -> Survey:
+        """Return what was read, equated stations under one name."""
+        found = ShotList()
+        between: dict[tuple[str, str], int] = {}
+        for start, end, offset, row, counted, passage in self.shots:
+            a, b = self.root(start), self.root(end)
+            if a == b:
+                self.list_(
+                    "error", "The shot joins two names of one station", "Check *equate.", self.source.name, row, a
+                )
+                continue
+            number = found.add(a, b, offset, row, counted=counted, passage=passage)
+            if passage:
+                between.setdefault((a, b), number)
+        for tube in self.tubes:
+            self.walls(tube, between, found)
+        for name, xyz, row in self.fixed:
+            if self.root(name) in found.stations:
+                found.fixed[self.root(name)] = xyz
+            else:
+                self.list_(
+                    "warning", "The fixed station is not in any shot", "Check its name.", self.source.name, row, name
+                )
+        return found.survey(self.source.name)
+
+    def walls(
+        self, tube: list[tuple[str, tuple[float, ...]]], between: dict[tuple[str, str], int], found: ShotList
+    ) -> None:
+        """Add the walls of a tube, each along the shot to the next station; the last along the one before."""
+        names = [self.root(name) for name, _ in tube]
+        for i, (_, walls) in enumerate(tube):
+            if names[i] not in found.stations:
+                self.list_("warning", "The walls are at a station without a shot", "", self.source.name, 0, names[i])
+                continue
+            ways = [(names[j], names[j + 1]) for j in (i, i - 1) if 0 <= j < len(names) - 1]
+            left, right, up, down = walls
+            for a, b in ways:
+                if (a, b) in between:
+                    found.add_walls(names[i], between[a, b], (left, right, up, down))
+                    break
+                if (b, a) in between:
+                    found.add_walls(names[i], between[b, a], (right, left, up, down))
+                    break
+            else:
+                shots = (n for pair, n in between.items() if names[i] in pair)
+                found.add_walls(names[i], next(shots, -1), (left, right, up, down))
+
+
+def read_survex(source: Source | str | Path, journal: Journal | None = None) -> Survey:
+    """Read a Survex survey file and the files that it includes.
+
+    Parameters
+    ----------
+    source : Source, str or Path
+        The file.
+    journal : Journal, optional
+        Receives lines and commands that are not used; the survey holds them too.
+
+    Returns
+    -------
+    Survey
+        In metres; names are lower case unless the file says ``*case``, with the names of their surveys before them.
+
+    Raises
+    ------
+    InputError
+        If a file is missing, or ``*begin`` and ``*end`` do not match.
+    """
+    source, journal = as_source(source), journal if journal is not None else Journal()
+    first_issue, first_count = len(journal.issues), len(journal.counts)
+    reader = _Reader(source, journal)
+    reader.file(source, Settings())
+    survey = reader.survey()
+    if reader.remarks:
+        names = ", ".join(f"*{name} ({count})" for name, count in sorted(reader.remarks.items()))
+        journal.add("note", source.name, said("Commands that do not change geometry: {names}", names=Verbatim(names)))
+    journal.count(source.name, reader.read, reader.read - reader.used)
+    return replace(survey, issues=tuple(journal.issues[first_issue:]), counts=tuple(journal.counts[first_count:]))

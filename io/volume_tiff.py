@@ -1,0 +1,83 @@
+"""Volumes in TIFF files: one file with many pages, or a folder with one slice a file."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+
+__all__ = ["read_tiff", "read_tiff_folder"]
+
+
+def read_tiff(source: Any, name: str) -> NDArray[Any]:
+    """Return the pages of a TIFF file as slices along axis 0.
+
+    Raises
+    ------
+    InputError
+        If pages differ in size, are in colour, or a single page states that it holds a whole stack.
+    """
+    from PIL import Image
+
+    # A large slice is no attack: the size of a scan is what the user has asked for.
+    limit, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None
+    try:
+        with Image.open(source) as image:
+            count = getattr(image, "n_frames", 1)
+            first = _page(image, name)
+            stated = re.search(r"images=(\d+)", str(image.tag_v2.get(270, ""))) if hasattr(image, "tag_v2") else None
+            if count == 1 and stated is not None and int(stated[1]) > 1:
+                raise InputError(
+                    said("it states {count} slices, but lists only the first one", count=int(stated[1])),
+                    said("Save the stack as a TIFF with one page a slice, or as raw."),
+                    file=name,
+                )
+            out = np.empty((count, *first.shape), first.dtype)
+            for page in range(count):
+                image.seek(page)
+                slice_ = _page(image, name)
+                if slice_.shape != first.shape:
+                    raise InputError(
+                        said("page {page} has {size} pixels, the first has {first}", page=page + 1,
+                             size=" x ".join(map(str, slice_.shape)), first=" x ".join(map(str, first.shape))),
+                        said("Export all slices with the same size."),
+                        file=name,
+                    )  # fmt: skip
+                out[page] = slice_
+            return out
+    finally:
+        Image.MAX_IMAGE_PIXELS = limit
+
+
+def _page(image: Any, name: str) -> NDArray[Any]:
+    values = np.asarray(image)
+    if values.ndim != 2:
+        raise InputError(
+            said("it is a colour image"), said("Export the labels or grey values as one channel."), file=name
+        )
+    return values
+
+
+def read_tiff_folder(path: Path) -> NDArray[Any]:
+    """Return the TIFF files of a folder as slices along axis 0, in the order of the numbers in their names."""
+    files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff")]
+    if not files:
+        raise InputError(
+            said("the folder has no TIFF slice"), said("Name a folder of .tif files, or a file."), file=str(path)
+        )
+    files.sort(key=lambda file: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name)])
+    slices = [read_tiff(file, file.name) for file in files]
+    odd = next((file for file, slice_ in zip(files, slices, strict=True) if slice_.shape != slices[0].shape), None)
+    if odd is not None:
+        raise InputError(
+            said("its size differs from that of the first slice, {first}", first=files[0].name),
+            said("Export all slices with the same size."),
+            file=str(odd),
+        )
+    return np.concatenate(slices)

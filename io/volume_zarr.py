@@ -1,0 +1,33 @@
+"""Volumes in zarr stores (extra ``volumes``)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.io.extra import need
+
+__all__ = ["read_zarr"]
+
+
+def read_zarr(path: Path, name: str | None) -> NDArray[Any]:
+    """Return an array of a zarr store; ``name`` is its place in a group, such as "0" in OME-Zarr."""
+    zarr = need("zarr", "volumes", said("Reading the zarr store {file}", file=path.name))
+    node = zarr.open(str(path), mode="r")
+    if name is not None:
+        node = node[name]
+    if not hasattr(node, "shape"):
+        names = sorted(node.array_keys())
+        if len(names) != 1:
+            raise InputError(
+                said("it has {count} arrays: {names}", count=len(names), names=", ".join(names[:8])),
+                said("State which one: name='...'."),
+                file=str(path),
+            )
+        node = node[names[0]]
+    return np.asarray(node[...])

@@ -1,0 +1,187 @@
+"""Rock volumes from files: raw with a header or a shape in the name, TIFF, npy, npz, zarr; also inside gz and zip.
+
+Which value is pore and how large a voxel is are never guessed; a MetaImage header may state the voxel.
+"""
+
+from __future__ import annotations
+
+import gzip
+import zipfile
+from collections.abc import Collection, Sequence
+from io import BytesIO
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.errors import InputError
+from geofit.data.messages import said
+from geofit.io.volume_raw import read_meta_image, shape_and_type
+from geofit.io.volume_tiff import read_tiff, read_tiff_folder
+from geofit.pores.memory import check_memory
+from geofit.pores.volume import RockVolume, VolumeError
+
+__all__ = ["read_volume", "read_voxels"]
+
+TIFF = (".tif", ".tiff")
+RAW = (".raw", ".bin", ".dat")
+#: What can be read, for messages.
+KINDS = "raw, mhd, mha, tif, npy, npz, zarr, also as .gz or in a .zip"
+
+
+def read_volume(
+    path: str | PathLike[str],
+    *,
+    pore: Any | Collection[Any] | None = None,
+    voxel: float | Sequence[float] | None = None,
+    shape: Sequence[int] | None = None,
+    dtype: str | None = None,
+    name: str | None = None,
+) -> RockVolume:
+    """Read a rock volume.
+
+    Parameters
+    ----------
+    path : path
+        A file, a folder of TIFF slices, or a zarr store.
+    pore : value or collection of values
+        Which voxels are pore; see :class:`geofit.pores.volume.RockVolume`.
+    voxel : float or three floats
+        Edge length of a voxel in metres, in the order of the axes of the array. May be left out if the header states it
+        (MetaImage: in millimetres).
+    shape : three int, optional
+        Voxels along each axis, the slowest first; for raw files whose name does not end like ``_128x128x128``.
+    dtype : str, optional
+        Type of a raw file's values, such as "uint8" or "<u2"; by default what the file's size gives for the shape.
+    name : str, optional
+        Which array of an npz or zarr file, or which file of a zip archive, if there are several.
+
+    Returns
+    -------
+    RockVolume
+
+    Raises
+    ------
+    InputError
+        If the file is missing, damaged, of an unknown kind, or its shape is unknown.
+    VolumeError
+        If the label or the voxel size is missing, or the labels leave a doubt; the message lists labels and shares.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "rock_2x3x4.raw").write_bytes(bytes(range(2)) * 12)
+    ...     read_volume(Path(folder) / "rock_2x3x4.raw", pore=0, voxel=5e-6).porosity
+    0.5
+    """
+    values, stated = read_voxels(path, shape=shape, dtype=dtype, name=name)
+    try:
+        return RockVolume(values, pore=pore, voxel=stated if voxel is None else voxel)
+    except VolumeError as error:
+        raise VolumeError(said("{file}: {reason}", file=Path(path).name, reason=error.args[0])) from None
+
+
+def read_voxels(
+    path: str | PathLike[str],
+    *,
+    shape: Sequence[int] | None = None,
+    dtype: str | None = None,
+    name: str | None = None,
+) -> tuple[NDArray[Any], tuple[float, float, float] | None]:
+    """Return the values of a volume's voxels as stored, and the voxel edges in metres if the file states them."""
+    path = Path(path)
+    if not path.exists():
+        raise InputError(said("there is no such file or folder"), said("Check the path."), file=str(path))
+    try:
+        if path.is_dir():
+            return _read_folder(path, name), None
+        check_memory(path.stat().st_size, said("Reading {file}", file=path.name))
+        return _read_bytes(path, path.name, None, shape, dtype, name)
+    except (OSError, EOFError, ValueError, zipfile.BadZipFile) as error:
+        if isinstance(error, VolumeError):
+            raise
+        raise InputError(
+            said("the file is damaged or incomplete ({error})", error=str(error)),
+            said("Copy or export it again."),
+            file=str(path),
+        ) from None
+
+
+def _read_folder(path: Path, name: str | None) -> NDArray[Any]:
+    if (
+        path.suffix == ".zarr"
+        or (path / ".zarray").exists()
+        or (path / "zarr.json").exists()
+        or (path / ".zgroup").exists()
+    ):
+        from geofit.io.volume_zarr import read_zarr
+
+        return read_zarr(path, name)
+    return read_tiff_folder(path)
+
+
+def _read_bytes(
+    path: Path,
+    file: str,
+    data: bytes | None,
+    shape: Sequence[int] | None,
+    dtype: str | None,
+    name: str | None,
+) -> tuple[NDArray[Any], tuple[float, float, float] | None]:
+    """Read the file ``file``, which is ``path`` itself or ``data`` unpacked from it."""
+    kind = Path(file).suffix.lower()
+    if kind == ".gz":
+        with gzip.open(path if data is None else BytesIO(data)) as stream:
+            return _read_bytes(path, file[:-3], stream.read(), shape, dtype, name)
+    if kind == ".zip":
+        return _read_zip(path, data, shape, dtype, name)
+    source: Any = path if data is None else BytesIO(data)
+    if kind in TIFF:
+        return read_tiff(source, path.name), None
+    if kind == ".npy":
+        return np.load(source, allow_pickle=False), None
+    if kind == ".npz":
+        with np.load(source, allow_pickle=False) as arrays:
+            return arrays[_one_of(list(arrays.files), name, path)], None
+    if kind in (".mhd", ".mha"):
+        return read_meta_image(path, data)
+    if kind in RAW:
+        raw = np.frombuffer(data, np.uint8) if data is not None else np.fromfile(path, np.uint8)
+        found, stored = shape_and_type(file, raw.size, shape, dtype, path)
+        return raw.view(stored).reshape(found), None
+    raise InputError(
+        said("files ending in '{ending}' cannot be read as a rock volume", ending=kind),
+        said("Export the volume as one of: {kinds}.", kinds=KINDS),
+        file=str(path),
+    )
+
+
+def _read_zip(
+    path: Path, data: bytes | None, shape: Sequence[int] | None, dtype: str | None, name: str | None
+) -> tuple[NDArray[Any], tuple[float, float, float] | None]:
+    with zipfile.ZipFile(path if data is None else BytesIO(data)) as archive:
+        known = (*TIFF, *RAW, ".npy", ".npz", ".gz", ".mha")
+        files = [entry for entry in archive.namelist() if Path(entry).suffix.lower() in known]
+        chosen = _one_of(files, name, path)
+        check_memory(archive.getinfo(chosen).file_size, said("Reading {file}", file=path.name))
+        return _read_bytes(path, chosen, archive.read(chosen), shape, dtype, name)
+
+
+def _one_of(names: list[str], wanted: str | None, path: Path) -> str:
+    """Return the only name, or the wanted one."""
+    if wanted is not None and wanted in names:
+        return wanted
+    if wanted is None and len(names) == 1:
+        return names[0]
+    if not names:
+        raise InputError(
+            said("it has no volume that can be read"), said("Known kinds: {kinds}.", kinds=KINDS), file=str(path)
+        )
+    raise InputError(
+        said("it has {count} volumes: {names}", count=len(names), names=", ".join(sorted(names)[:8])),
+        said("State which one: name='{example}'.", example=sorted(names)[0]),
+        file=str(path),
+    )

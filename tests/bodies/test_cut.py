@@ -1,0 +1,60 @@
+"""Pieces of a cut body are closed and add up, and share their cut faces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bodies.planted import ORIGIN
+from geofit.bodies.body import ImplicitBody
+from geofit.data.errors import FitError
+
+
+class Plane:
+    """z = z0 + slope * (x - x0), in map coordinates."""
+
+    def __init__(self, name: str, height: float, slope: float, wave: float = 0.0, end: float = np.inf) -> None:
+        self.name, self.height, self.slope, self.wave, self.end = name, height, slope, wave, end
+
+    def elevation(self, x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        along = np.asarray(x) - ORIGIN[0]
+        z = ORIGIN[2] + self.height + self.slope * along + self.wave * np.sin((np.asarray(y) - ORIGIN[1]) / 15)
+        return np.where(along > self.end, np.nan, z)
+
+
+def test_pieces_are_closed_and_add_up(ring: ImplicitBody) -> None:
+    surfaces = [Plane("top", 3, 0.1, 3), Plane("base", -6, 0), Plane("fault", 0, 3)]
+    pieces = ring.cut(surfaces)
+    assert len(pieces) == 7
+    for piece in pieces:
+        assert piece.mesh.is_closed
+        assert piece.mesh.is_manifold
+        x, y, z = piece.mesh.vertices.T
+        for surface in surfaces:
+            off = z - surface.elevation(x, y)
+            # Later cuts cross the triangles of earlier cut faces, up to their sagitta off the waved surface.
+            assert (off > -0.3).all() if piece.sides[surface.name] == "above" else (off < 0.3).all()
+    assert sum(piece.volume for piece in pieces) == pytest.approx(ring.triangulate().volume, rel=1e-9)
+
+
+def test_two_sides_share_their_cut_face(ring: ImplicitBody) -> None:
+    above, below = ring.cut({"h": Plane("", 2, 0.05)})
+
+    def face(mesh: object) -> set[tuple[float, ...]]:
+        v = mesh.vertices  # type: ignore[attr-defined]
+        on = np.abs(v[:, 2] - Plane("", 2, 0.05).elevation(v[:, 0], v[:, 1])) < 1e-7
+        return {tuple(row) for row in v[on].tolist()}
+
+    assert face(above.mesh) == face(below.mesh)
+    assert len(face(above.mesh)) > 50
+
+
+def test_a_surface_beyond_the_body_leaves_it_whole(ring: ImplicitBody) -> None:
+    (piece,) = ring.cut([Plane("ground", 300, 0)])
+    assert piece.sides == {"ground": "below"}
+    assert piece.volume == pytest.approx(ring.triangulate().volume)
+
+
+def test_a_surface_that_ends_within_the_body(ring: ImplicitBody) -> None:
+    with pytest.raises(FitError, match="does not reach"):
+        ring.cut([Plane("short", 0, 0, end=10)])

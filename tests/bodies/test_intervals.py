@@ -1,0 +1,70 @@
+"""Logged intervals to contacts, samples and listed issues."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from geofit.bodies.data import BodyData, prepare
+from geofit.bodies.intervals import from_intervals
+from geofit.data.errors import SettingsError
+
+
+class Vertical:
+    def __init__(self, x: float) -> None:
+        self.x = x
+
+    def at(self, depth: np.ndarray) -> np.ndarray:
+        return np.column_stack([np.full(len(depth), self.x), np.zeros(len(depth)), -np.asarray(depth)])
+
+
+def holes(*rows: tuple[str, float, float, str]) -> SimpleNamespace:
+    hole, top, base, code = (np.array(column) for column in zip(*rows, strict=True))
+    log = SimpleNamespace(hole=hole, top=top, base=base, code=code)
+    return SimpleNamespace(logs=(log,), paths={"A": Vertical(0.0), "B": Vertical(50.0)})
+
+
+def test_contacts_lie_where_sides_meet_and_not_at_gaps() -> None:
+    source = holes(("A", 0, 10, "X"), ("A", 10, 20, "ORE"), ("A", 20, 25, "ORE2"), ("A", 25, 40, "X"),
+                   ("B", 0, 10, "X"), ("B", 12, 20, "ORE"))  # fmt: skip
+    data = from_intervals(source, ["ORE", "ORE2"], step=2.5)
+    np.testing.assert_allclose(data.contacts, [[0, 0, -10], [0, 0, -25]])
+    assert data.inside_length.sum() == pytest.approx(23)
+    assert data.outside_length.sum() == pytest.approx(35)
+    assert [issue.kind for issue in data.issues] == ["gap"]
+
+
+def test_overlap_of_both_sides_is_unknown_and_listed() -> None:
+    data = from_intervals(holes(("A", 0, 10, "X"), ("A", 8, 20, "ORE")), "ORE", step=1)
+    assert [issue.kind for issue in data.issues] == ["contradiction"]
+    assert not ((data.inside[:, 2] < -8) & (data.inside[:, 2] > -10)).any()
+    assert not len(data.contacts)
+
+
+def test_unknown_code() -> None:
+    with pytest.raises(SettingsError, match=r"does not occur.*X \(1\)"):
+        from_intervals(holes(("A", 0, 10, "X")), "ORE")
+
+
+def test_coincident_contacts_with_opposite_normals_are_listed() -> None:
+    data = BodyData(
+        contacts=[[0, 0, 0], [0, 0, 1e-9], [5, 0, 0], [0, 5, 0], [0, 0, 5]],
+        inside=[[1, 1, 1]],
+        outside=[[9, 9, 9]],
+        normals=[[0, 0, 1], [0, 0, -1], [1, 0, 0], [np.nan] * 3, [np.nan] * 3],
+    )
+    found = prepare(data, 1e-6)
+    assert len(found.contacts) == 4
+    assert found.member.tolist() == [0, 0, 1, 2, 3]
+    assert np.isfinite(found.normals[:, 0]).tolist() == [False, True, False, False]
+    assert {issue.kind for issue in found.issues} == {"coincident", "normal"}
+
+
+def test_samples_that_contradict_each_other_are_listed_and_left_out() -> None:
+    data = BodyData([[0, 0, 0], [5, 0, 0], [0, 5, 0]], inside=[[1, 1, 1], [2, 2, 2]], outside=[[2, 2, 2], [9, 9, 9]])
+    found = prepare(data, 1e-6)
+    assert found.inside_used.tolist() == [True, False]
+    assert found.outside_used.tolist() == [False, True]
+    assert [issue.kind for issue in found.issues] == ["contradiction"]

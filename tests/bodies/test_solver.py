@@ -1,0 +1,70 @@
+"""The field's kernels, its system and its inequalities, against plain numpy and brute force."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geofit.bodies.active import complementarity
+from geofit.bodies.body import ImplicitBody
+from geofit.bodies.kernels import gradients, gram, values
+from geofit.bodies.rbf import Saddle
+
+
+@pytest.mark.parametrize("reach", [0.0, 2.5])
+def test_kernels_against_plain_numpy(reach: float) -> None:
+    rng = np.random.default_rng(0)
+    x, c, w = rng.normal(size=(7, 3)), rng.normal(size=(5, 3)), rng.normal(size=5)
+    g, v = rng.normal(size=(4, 3)), rng.normal(size=(4, 3))
+
+    def kernel(r: np.ndarray) -> np.ndarray:
+        q = r / reach if reach else r
+        return np.where(q < 1, (1 - q) ** 4 * (4 * q + 1), 0.0) if reach else r**3
+
+    def plain(x: np.ndarray) -> np.ndarray:
+        total = kernel(np.linalg.norm(x[:, None] - c, axis=2)) @ w
+        e = 1e-5
+        for k in range(3):
+            d = e * np.eye(3)[k]
+            for sign in (1, -1):
+                total += sign * kernel(np.linalg.norm(x[:, None] - g - sign * d, axis=2)) @ v[:, k] / (2 * e)
+        return total
+
+    np.testing.assert_allclose(values(x, c, w, g, v, reach), plain(x), atol=1e-6)
+    for k in range(3):
+        d = 1e-4 * np.eye(3)[k]
+        np.testing.assert_allclose(
+            gradients(x, c, w, g, v, reach)[:, k], (plain(x + d) - plain(x - d)) / 2e-4, rtol=1e-4, atol=2e-4
+        )
+    whole = gram(c, g, c, g, reach)
+    np.testing.assert_allclose(whole, whole.T, atol=1e-12)
+    np.testing.assert_allclose(gram(x, x[:0], c, g, reach) @ np.concatenate([w, v.ravel()]), plain(x), atol=1e-6)
+
+
+def test_values_and_gradients_are_met() -> None:
+    rng = np.random.default_rng(1)
+    x, g = rng.uniform(-1, 1, (40, 3)), rng.uniform(-1, 1, (10, 3))
+    f, slopes = rng.normal(size=40), rng.normal(size=(10, 3))
+    rbf = Saddle(x, g).interpolate(f, slopes)
+    np.testing.assert_allclose(rbf.value(x), f, atol=1e-10)
+    np.testing.assert_allclose(rbf.gradient(g), slopes, atol=1e-10)
+
+
+def test_complementarity_against_all_subsets() -> None:
+    rng = np.random.default_rng(2)
+    for _ in range(30):
+        a = rng.normal(size=(5, 5))
+        matrix, wanted = a @ a.T + 0.1 * np.eye(5), rng.normal(size=5)
+        x = complementarity(matrix, wanted, np.zeros(5), np.zeros(5, bool))
+        rest = matrix @ x - wanted
+        assert (x >= 0).all()
+        assert (rest > -1e-7).all()
+        assert abs(x @ rest) < 1e-7
+
+
+def test_volumes_hold_the_truth(ring: ImplicitBody) -> None:
+    volumes = ring.volumes()
+    assert volumes.p10 < volumes.p50 < volumes.p90
+    assert volumes.p10 < 2 * np.pi**2 * 0.55 * 0.22**2 * 1e6 < volumes.p90
+    assert len(volumes.values) == 100
+    assert ring.volumes().values.tobytes() == volumes.values.tobytes()

@@ -1,0 +1,165 @@
+"""Bodies of passages against closed forms and a plain reference."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from cave_surveys import chain, network
+
+from geofit.caves.body import PassageBody, centreline_body
+from geofit.caves.shots import ShotList
+from geofit.data.errors import SettingsError
+from geofit.implicit.field import Field, RangedField
+
+LINE = np.array([[0, 0, 0], [20, 5, 3], [40, 10, 6]], float)
+LENGTH = float(np.linalg.norm(LINE[-1]))
+
+
+def plain(body: PassageBody, points):
+    """The union, sweep by sweep in numpy, the two nearest branches blended."""
+    s, values = body.sweeps, []
+    for n in range(len(s.length)):
+        q = points - s.origin[n]
+        x, v, w = q @ s.along[n], q @ s.right[n], q @ s.up[n]
+        t = np.clip(x / s.length[n], 0, 1)[:, None]
+        axes = (1 - t) * s.walls[n, 0] + t * s.walls[n, 1]
+        a, b = np.where(v >= 0, axes[:, 1], axes[:, 0]), np.where(w >= 0, axes[:, 2], axes[:, 3])
+        over = np.maximum(np.maximum(-x, x - s.length[n]), 0)
+        cap = np.where(x < 0, s.cap[n, 0], s.cap[n, 1])
+        plane = np.maximum(-x if s.cap[n, 0] == 0 else -np.inf, x - s.length[n] if s.cap[n, 1] == 0 else -np.inf)
+        over = np.where(cap == 0, 0, over)
+        away = np.sqrt(v**2 + w**2 + over**2)
+        rho = np.sqrt((v / a) ** 2 + (w / b) ** 2 + (over / np.where(cap == 0, 1, cap)) ** 2)
+        values.append(np.maximum(away - away / rho, plane))
+    values = np.array(values)
+    by_branch = np.array([values[s.branch == k].min(axis=0) for k in np.unique(s.branch)])
+    by_branch.sort(axis=0)
+    if len(by_branch) == 1 or body.blend == 0:
+        return by_branch[0]
+    gap = np.maximum(body.blend - (by_branch[1] - by_branch[0]), 0)
+    return by_branch[0] - gap**2 / (4 * body.blend)
+
+
+def branching(seed):
+    _, survey = network(seed, stations=14, extra=3, noise=0.0)
+    rng = np.random.default_rng(seed)
+    shots = ShotList(fixed={"0": (0.0, 0.0, 0.0)})
+    for k in range(len(survey.start)):
+        a, b = survey.stations[survey.start[k]], survey.stations[survey.end[k]]
+        shots.add_walls(a, shots.add(a, b, survey.offset[k], k), rng.uniform(0.3, 3, 4).tolist())
+    return shots.survey("branching"), rng
+
+
+@pytest.mark.parametrize("ends", ["round", "flat"])
+@pytest.mark.parametrize("seed", range(4))
+def test_values_equal_plain_numpy(seed, ends):
+    survey, rng = branching(seed)
+    body = centreline_body(survey, ends=ends)
+    assert isinstance(body, Field)
+    assert isinstance(body, RangedField)
+    low, high = body.bounds
+    points = rng.uniform(low - 5, high + 5, (3000, 3))
+    np.testing.assert_allclose(body.value(points), plain(body, points), atol=1e-9)
+
+
+@pytest.mark.parametrize("ends", ["round", "flat"])
+def test_ranges_contain_the_values(ends):
+    survey, rng = branching(5)
+    body = centreline_body(survey, ends=ends)
+    low = rng.uniform(*body.bounds, (100, 3))
+    high = low + rng.uniform(0.2, 8, (100, 3))
+    least, most = body.range_in(low, high)
+    for k in range(100):
+        values = body.value(rng.uniform(low[k], high[k], (100, 3)))
+        assert least[k] - 1e-9 <= values.min()
+        assert values.max() <= most[k] + 1e-9
+
+
+@pytest.mark.parametrize("radius", [0.8, 2.0, 5.0])
+def test_a_straight_tube_has_its_volume(radius):
+    tube = np.pi * radius**2 * LENGTH
+    flat = centreline_body(chain(LINE, radius), ends="flat")
+    assert flat.volume(radius / 12) == pytest.approx(tube, rel=0.003)
+    assert flat.sweeps.volumes.sum() == pytest.approx(tube, rel=1e-12)
+    round_ = centreline_body(chain(LINE, radius))
+    capsule = tube + 4 / 3 * np.pi * radius**3
+    assert round_.volume(radius / 12) == pytest.approx(capsule, rel=0.003)
+    mesh = round_.triangulate(radius / 5)
+    assert mesh.is_closed
+    assert mesh.euler == 2
+    assert mesh.volume == pytest.approx(capsule, rel=0.015)
+
+
+def test_the_distance_of_a_round_tube_is_exact():
+    body = centreline_body(chain(LINE, 2.0))
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-10, 50, (1000, 3))
+    t = np.clip(points @ LINE[-1] / LENGTH**2, 0, 1)
+    np.testing.assert_allclose(
+        body.value(points), np.linalg.norm(points - t[:, None] * LINE[-1], axis=1) - 2, atol=1e-9
+    )
+    np.testing.assert_allclose(np.linalg.norm(body.gradient(points), axis=1), 1, atol=1e-5)
+
+
+def test_a_ring_of_stations_is_a_torus():
+    angle = np.linspace(0, 2 * np.pi, 97)[:-1]
+    ring = np.column_stack([30 * np.cos(angle), 30 * np.sin(angle), 0 * angle])
+    body = centreline_body(chain(ring, 3.0, closed=True))
+    assert body.volume(0.25) == pytest.approx(2 * np.pi**2 * 30 * 9, rel=0.005)
+    assert body.triangulate(1.0).euler == 0
+    assert body.adjusted.loops[0].distance < 1e-9
+
+
+def test_sections_of_four_quarter_ellipses_and_a_taper():
+    shots = ShotList(across=True)
+    shot = shots.add("a", "b", np.array([30.0, 0, 0]), 0)
+    shots.add_walls("a", shot, [1, 2, 3, 0.5])
+    shots.add_walls("b", shot, [2, 3, 1, 1.5])
+    body = centreline_body(shots.survey("lens"), ends="flat")
+    x = np.linspace(0, 30, 100_001)
+    width, height = 3 + 2 * x / 30, 3.5 - x / 30
+    assert body.sweeps.volumes[0] == pytest.approx(np.trapezoid(np.pi / 4 * width * height, x), rel=1e-8)
+    assert body.volume(0.1) == pytest.approx(body.sweeps.volumes[0], rel=0.004)
+    # North is left of a shot to the east.
+    on = np.array([[0.0, 1, 0], [0, -2, 0], [0, 0, 3], [30, 2, 0], [30, -3, 0], [30, 0, -1.5]])
+    np.testing.assert_allclose(body.value(on), 0, atol=1e-9)
+
+
+def test_vertical_walls_of_a_sloping_cave_passage():
+    """Sections in vertical planes: the volume is their area times the horizontal length."""
+    survey = chain([[0, 0, 0], [20, 0, 20]], 2.0, across=False)
+    body = centreline_body(survey, ends="flat")
+    assert body.sweeps.volumes.sum() == pytest.approx(np.pi * 4 * 20, rel=1e-9)
+    shaft = centreline_body(chain([[0, 0, 0], [0, 0, -20]], 2.0, across=False), ends="flat")
+    assert shaft.sweeps.volumes.sum() == pytest.approx(np.pi * 4 * 20, rel=1e-9)
+
+
+def test_a_junction_swells_by_no_more_than_the_blend_allows():
+    shots = ShotList(across=True)
+    for row, end in enumerate(([20.0, 0, 0], [-10, 17, 0], [-10, -17, 0])):
+        shots.add_walls(f"{row}", shots.add("j", f"{row}", np.array(end), row), [2.0] * 4)
+    shots.add_walls("j", 0, [2.0] * 4)
+    survey = shots.survey("Y")
+    sharp, smooth = centreline_body(survey, blend=0.0), centreline_body(survey, blend=1.0)
+    points = np.random.default_rng(0).uniform(-20, 20, (4000, 3))
+    sunk = sharp.value(points) - smooth.value(points)
+    assert sunk.min() >= 0
+    assert sunk.max() <= 0.25 + 1e-12
+    assert 1.0 < smooth.volume(0.25) / sharp.volume(0.25) < 1.02
+    assert len(np.unique(sharp.sweeps.branch)) == 3
+
+
+def test_thin_passages_are_named():
+    body = centreline_body(chain([[0, 0, 0], [9, 0, 0], [18, 0, 0], [27, 0, 0]], [2.0, 2.0, 0.2, 2.0]))
+    assert body.thinner_than(0.5) == (("1", "2"), ("2", "3"))
+    assert body.thinner_than(0.3) == ()
+
+
+def test_settings_are_checked():
+    survey = chain(LINE, 1.0)
+    with pytest.raises(SettingsError, match="'round' or 'flat'"):
+        centreline_body(survey, ends="open")
+    with pytest.raises(SettingsError, match="blend"):
+        centreline_body(survey, blend=-1)
+    with pytest.raises(SettingsError, match="spacing"):
+        centreline_body(survey).volume(0.0)

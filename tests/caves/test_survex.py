@@ -1,0 +1,133 @@
+"""Survex files: one rule of the format a test; what is not read is listed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geofit.caves.adjust import adjust
+from geofit.data.errors import InputError
+from geofit.io.survex import read_survex
+
+
+@pytest.fixture
+def svx(tmp_path):
+    def read(text, name="cave.svx"):
+        path = tmp_path / name
+        path.write_text(text, encoding="utf-8")
+        return read_survex(path)
+
+    return read
+
+
+def angles(offset):
+    return np.degrees(np.arctan2(offset[:, 0], offset[:, 1])) % 360, np.degrees(
+        np.arcsin(offset[:, 2] / np.linalg.norm(offset, axis=1))
+    )
+
+
+def test_names_are_lower_case_with_their_surveys_and_settings_end_with_the_block(svx):
+    found = svx("*begin Cave\n*begin Up\n*calibrate tape 1\nA B 11 0 0\n*end Up\nA B 10 0 0\n*end Cave\n")
+    assert found.stations == ("cave.up.a", "cave.up.b", "cave.a", "cave.b")
+    np.testing.assert_allclose(found.offset[:, 1], [10, 10])
+    assert svx("*case preserve\nA a 1 0 0\n").stations == ("A", "a")
+
+
+def test_order_units_and_comments(svx):
+    found = svx(
+        "*units tape feet\n*units compass grads\n*units clino percent\n"
+        "*data normal from to compass clino tape ignoreall\n"
+        "1 2 100 100 10 a remark ; comment\n"
+    )
+    bearing, inclination = angles(found.offset)
+    assert (bearing[0], inclination[0]) == pytest.approx((90, 45))
+    assert np.linalg.norm(found.offset) == pytest.approx(3.048)
+
+
+@pytest.mark.parametrize(
+    ("line", "length"),
+    [
+        ("*calibrate tape +0.3", 9.7),
+        ("*calibrate tape 0.3 0.9", 9.7 * 0.9),
+        ("*calibrate tape 1 feet", 10 - 0.3048),
+        ("*calibrate length 1 feet 0.9", 9 - 0.3048),
+        ("*units tape 2 metres", 20.0),
+    ],
+)
+def test_calibrations(svx, line, length):
+    """Value = (reading - zero error) scale; a zero error with a unit is not scaled."""
+    assert np.linalg.norm(svx(f"{line}\n1 2 10 0 0\n").offset) == pytest.approx(length)
+
+
+def test_declination_in_both_spellings(svx):
+    assert angles(svx("*declination 4 degrees\n1 2 10 86 0\n").offset)[0][0] == pytest.approx(90)
+    assert angles(svx("*calibrate declination -4\n1 2 10 86 0\n").offset)[0][0] == pytest.approx(90)
+
+
+def test_plumbs_equates_and_fixes(svx):
+    found = svx(
+        "1 2 5 - UP\n2 3 5 - -V\n*infer plumbs on\n*calibrate clino 3\n3 4 5 0 -90\n*infer equates on\n4 5 0 0 0\n"
+        "*equate 5 6 7\n7 8 5 90 3\n*fix 1 100 200 300\n*fix nowhere 0 0 0\n"
+    )
+    np.testing.assert_allclose(found.offset, [[0, 0, 5], [0, 0, -5], [0, 0, -5], [5, 0, 0]], atol=1e-12)
+    assert found.stations == ("1", "2", "3", "4", "8")
+    adjusted = adjust(found)
+    np.testing.assert_allclose(adjusted.xyz[-1], [105, 200, 295])
+    assert [issue.value for issue in found.issues] == ["nowhere"]
+
+
+def test_backsights_and_omitted_readings(svx):
+    found = svx(
+        "*data normal from to tape compass backcompass clino backclino\n1 2 10 359 181 10 -12\n2 3 10 - 270 - -\n"
+    )
+    bearing, inclination = angles(found.offset)
+    np.testing.assert_allclose(np.sin(np.radians(bearing)), [0, 1], atol=1e-9)
+    np.testing.assert_allclose(inclination, [11, 0], atol=1e-9)
+
+
+def test_flags_and_splays(svx):
+    found = svx(
+        "*flags duplicate surface\n1 2 1 0 0\n*flags not surface\n2 3 1 0 0\n"
+        "*flags not duplicate\n3 . 1 0 0\n3 4 1 0 0\n"
+    )
+    assert found.passage.tolist() == [False, True, False, True]
+    assert found.counted.tolist() == [False, False, False, True]
+
+
+def test_passage_data_follow_the_tube(svx):
+    found = svx(
+        "1 2 10 90 0\n3 2 10 270 0\n2 4 5 0 0\n*data passage station left right up down ignoreall\n"
+        "1 1 2 3 4 first\n2 1 2 3 -\n3 1 2 3 4\n*data\n2 5 6 7 8\n4 5 6 7 8\n"
+    )
+    # The shot from 3 to 2 is against the tube: left and right change places.
+    assert found.wall_shot.tolist() == [0, 1, 1, 2, 2]
+    np.testing.assert_allclose(found.walls[:3, :2], [[1, 2], [2, 1], [2, 1]])
+    assert np.isnan(found.walls[1, 3])
+
+
+def test_what_is_not_read_is_listed(svx):
+    found = svx(
+        "*title x\n*team y\n*team z\n1 2 10 0 0\n*cartesian grid\n*data diving from to tape compass fromdepth todepth\n"
+        "2 3 1 0 0 0\n*data ignore\n4 5 6 7 8\n*data default\n2 3 oops 0 0\n*calibrate moon 3\n"
+    )
+    listed = [(issue.severity, issue.row) for issue in found.issues]
+    assert ("warning", 5) in listed
+    assert {row for severity, row in listed if severity == "error"} == {6, 7, 11, 12}
+    assert ("note", 9) in listed
+    assert any("*team (2), *title (1)" in issue.reason for issue in found.issues)
+    (count,) = found.counts
+    assert (count.read, count.used, count.listed) == (4, 1, 3)
+
+
+def test_included_files_keep_the_settings(svx, tmp_path):
+    (tmp_path / "part.svx").write_text("2 3 10 90 0\n")
+    found = svx("*calibrate tape 1\n1 2 10 90 0\n*include part\n")
+    np.testing.assert_allclose(found.offset[:, 0], [9, 9])
+    with pytest.raises(InputError, match="cannot be read"):
+        svx("*include nothing\n")
+
+
+@pytest.mark.parametrize("text", ["*begin a\n1 2 1 0 0\n", "1 2 1 0 0\n*end\n"])
+def test_blocks_must_match(svx, text):
+    with pytest.raises(InputError, match="begin"):
+        svx(text)

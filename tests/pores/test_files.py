@@ -1,0 +1,120 @@
+"""Volumes read from every kind of file; networks written and read again."""
+
+import gzip
+import json
+import zipfile
+
+import numpy as np
+import pytest
+from shapes import pack
+
+from geofit.data.errors import InputError
+from geofit.io.export.network import (
+    openpnm_dictionary,
+    read_statoil,
+    write_network_csv,
+    write_network_vtp,
+    write_openpnm_csv,
+    write_openpnm_json,
+    write_statoil,
+)
+from geofit.io.volumes import read_volume
+from geofit.pores import RockVolume, VolumeError, pore_network
+
+ARRAY = (np.random.default_rng(0).random((4, 5, 6)) < 0.3).astype(np.uint8)
+
+
+def written(kind, folder):
+    from PIL import Image
+
+    path = folder / f"rock_4x5x6.{kind}"
+    if kind == "raw":
+        path.write_bytes(ARRAY.tobytes())
+    elif kind == "raw.gz":
+        path.write_bytes(gzip.compress(ARRAY.tobytes()))
+    elif kind == "npy":
+        np.save(path, ARRAY)
+    elif kind == "npz":
+        np.savez(path, im=ARRAY)
+    elif kind in ("tif", "zip"):
+        first, *others = [Image.fromarray(slice_) for slice_ in ARRAY]
+        stack = folder / "stack.tif"
+        first.save(stack, save_all=True, append_images=others)
+        if kind == "tif":
+            return stack
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.write(stack, "stack.tif")
+    elif kind == "mha":
+        header = "NDims = 3\nDimSize = 6 5 4\nElementType = MET_UCHAR\nElementSpacing = 0.001 0.002 0.003\n"
+        path.write_bytes((header + "ElementDataFile = LOCAL\n").encode() + ARRAY.tobytes())
+    else:
+        path = folder / "slices"
+        path.mkdir()
+        for number, slice_ in enumerate(ARRAY):
+            Image.fromarray(slice_).save(path / f"s{number + 8}.tif")
+    return path
+
+
+@pytest.mark.parametrize("kind", ["raw", "raw.gz", "npy", "npz", "tif", "zip", "mha", "folder"])
+def test_every_kind_gives_the_same_volume(kind, tmp_path):
+    volume = read_volume(written(kind, tmp_path), pore=1, voxel=2e-6)
+    np.testing.assert_array_equal(volume.pore, ARRAY == 1)
+    assert volume.voxel == (2e-6,) * 3
+
+
+def test_a_header_may_state_the_voxel(tmp_path):
+    assert read_volume(written("mha", tmp_path), pore=1).voxel == pytest.approx((3e-6, 2e-6, 1e-6))
+
+
+def test_unclear_files_are_errors_with_a_remedy(tmp_path):
+    path = written("npy", tmp_path)
+    with pytest.raises(VolumeError, match=r"rock_4x5x6.npy.*pore="):
+        read_volume(path, voxel=1e-6)
+    with pytest.raises(VolumeError, match="metres"):
+        read_volume(path, pore=1)
+    (tmp_path / "a.raw").write_bytes(bytes(7))
+    with pytest.raises(InputError, match=r"shape=\(n0"):
+        read_volume(tmp_path / "a.raw", pore=1, voxel=1e-6)
+    with pytest.raises(InputError, match="bytes"):
+        read_volume(tmp_path / "a.raw", pore=1, voxel=1e-6, shape=(2, 2, 2))
+    with pytest.raises(InputError, match="no such file"):
+        read_volume(tmp_path / "b.raw", pore=1, voxel=1e-6)
+    (tmp_path / "broken.npz").write_bytes(b"PK")
+    with pytest.raises(InputError, match="damaged"):
+        read_volume(tmp_path / "broken.npz", pore=1, voxel=1e-6)
+
+
+@pytest.fixture(scope="module")
+def network():
+    return pore_network(RockVolume(pack("sc", 20, 2), pore=True, voxel=5e-6))
+
+
+def test_statoil_files_read_back(network, tmp_path):
+    write_statoil(network, tmp_path, "rock", axis=2)
+    read = read_statoil(tmp_path, "rock")
+    np.testing.assert_allclose(read.pore_radius, network.pores.inscribed * 5e-6, rtol=1e-6)
+    np.testing.assert_allclose(read.centre, network.centre[:, [2, 0, 1]], rtol=1e-6)
+    assert len(read.pores) == len(network.throats) + 8
+    np.testing.assert_allclose(read.total_length, read.pore_length.sum(axis=1) + read.throat_length, rtol=1e-5)
+
+
+def test_the_published_network_of_berea(pore_data):
+    read = read_statoil(pore_data / "icl_berea", "Berea")
+    assert (len(read.centre), len(read.pores)) == (6298, 12545)
+    assert read.pore_radius.mean() == pytest.approx(15.36e-6, rel=1e-3)
+
+
+def test_other_files(network, tmp_path):
+    import pyvista
+
+    write_openpnm_json(network, tmp_path / "a.json")
+    content = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
+    assert np.array(content["throat"]["conns"]).shape == (12, 2)
+    assert set(openpnm_dictionary(network)) == {f"{e}.{p}" for e, part in content.items() for p in part}
+    write_openpnm_csv(network, tmp_path / "a.csv")
+    assert (tmp_path / "a.csv").read_text(encoding="utf-8").startswith("pore.coords[0],pore.coords[1]")
+    assert len(write_network_csv(network, tmp_path)) == 4
+    write_network_vtp(network, tmp_path / "a.vtp")
+    read = pyvista.read(tmp_path / "a.vtp")
+    assert (read.n_points, read.n_lines) == (8, 12)
+    assert not list(tmp_path.glob("*.part*"))

@@ -1,0 +1,132 @@
+"""Permeability of ducts and packs against closed forms; the article's table from its formula."""
+
+import numpy as np
+import pytest
+from shapes import pack
+
+from geofit.pores import (
+    RockVolume,
+    kozeny_permeability,
+    kozeny_ratio,
+    laplace_permeability,
+    network_permeability,
+    pore_network,
+)
+from geofit.pores.duct import OUTSIDE, duct_conductance
+
+
+def volume_of(pore):
+    return RockVolume(pore, pore=True, voxel=1.0)
+
+
+def network_k(pore):
+    return network_permeability(pore_network(volume_of(pore))).square_metres
+
+
+def disc(radius, offset):
+    x = np.arange(-radius - 3, radius + 4) + offset
+    return x[:, None] ** 2 + x**2 <= radius**2
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("radius", [8, 12])
+def test_tubes(radius, offset):
+    """The circle of the same area: A^2 / (8 pi)."""
+    section = disc(radius, offset)
+    truth = section.sum() ** 2 / (8 * np.pi) / section.size
+    tube = np.repeat(section[None], 20, axis=0)
+    found = network_k(tube)
+    assert found[0] == pytest.approx(truth, rel=0.01)
+    assert found[1:] == (0.0, 0.0)
+    assert laplace_permeability(volume_of(tube)).square_metres[0] == pytest.approx(truth, rel=0.03)
+
+
+def test_a_bundle_of_tubes_adds_up():
+    section = disc(8, 0.5)
+    bundle = np.tile(np.repeat(section[None], 20, axis=0), (1, 2, 3))
+    assert network_k(bundle)[0] == pytest.approx(section.sum() ** 2 / (8 * np.pi) / section.size, rel=0.01)
+
+
+@pytest.mark.parametrize("side", [2, 3, 5, 8, 16, 31])
+def test_square_ducts(side):
+    section = np.pad(np.ones((20, side, side), bool), ((0, 0), (3, 3), (3, 3)))
+    assert network_k(section)[0] == pytest.approx(0.035144 * side**4 / (side + 6) ** 2, rel=0.04 if side < 4 else 0.02)
+
+
+@pytest.mark.parametrize("height", [1, 2, 3, 7, 8, 16])
+def test_slits(height):
+    slit = np.pad(np.ones((20, height, 12), bool), ((0, 0), (3, 3), (0, 0)))
+    truth = height**3 / 12 / (height + 6)
+    found = network_k(slit)
+    assert found[0] == pytest.approx(truth, rel=0.01)
+    assert found[1] == 0
+    if height > 6:
+        assert laplace_permeability(volume_of(slit)).square_metres[0] == pytest.approx(truth, rel=0.05)
+
+
+def test_an_ellipse_and_a_triangle():
+    i, j = np.ogrid[-30:31, -30:31]
+    a, b = 24.0, 12.0
+    ellipse = ((i / a) ** 2 + (j / b) ** 2 <= 1).astype(np.uint8)
+    assert duct_conductance(ellipse, 1.0, 1.0) == pytest.approx(np.pi * a**3 * b**3 / (4 * (a * a + b * b)), rel=0.04)
+    side = 50.0
+    triangle = (
+        (j + 25 >= 0) & (j + 25 <= side) & (i + 20 >= 0) & (i + 20 <= np.sqrt(3) * np.minimum(j + 25, side - j - 25))
+    )
+    area = triangle.sum()
+    assert duct_conductance(triangle.astype(np.uint8), 1.0, 1.0) == pytest.approx(0.02887 * area**2, rel=0.05)
+
+
+def test_a_section_mirrored_at_the_samples_face():
+    whole = np.pad(np.ones((9, 14), np.uint8), 1)
+    half = whole[:, :9].copy()
+    half[:, 8] = OUTSIDE
+    assert 2 * duct_conductance(half, 1.0, 1.0) == pytest.approx(duct_conductance(whole, 1.0, 1.0), rel=0.01)
+
+
+#: Solid fraction and drag coefficient of simple cubic packs (Zick & Homsy 1982).
+DRAG = {0.125: 4.292, 0.216: 7.442, 0.343: 15.4, 0.45: 28.1, 0.5236: 42.1}
+
+
+@pytest.mark.parametrize("solid", [0.343, 0.45, 0.5236])
+def test_simple_cubic_packs(solid):
+    radius = (3 * solid / (4 * np.pi)) ** (1 / 3)
+    truth = 2 * radius**2 / (9 * solid * DRAG[solid]) * 20**2
+    pore = pack("sc", 20, 2, radius=radius)
+    found = network_k(pore)
+    # Half a pore as a tube is too narrow where spheres stand apart: 26 % at a solid fraction of 0.343.
+    assert found[0] == pytest.approx(truth, rel=0.25 if solid > 0.4 else 0.3)
+    assert found == pytest.approx((found[0],) * 3, rel=3e-3)
+    assert laplace_permeability(volume_of(pore)).square_metres[0] == pytest.approx(truth, rel=0.25)
+
+
+def test_no_path_is_zero_with_a_message_and_no_error():
+    pore = np.zeros((12, 10, 10), bool)
+    pore[:5, 3:7, 3:7] = True
+    for found in (network_permeability(pore_network(volume_of(pore))), laplace_permeability(volume_of(pore))):
+        assert found.square_metres == (0.0, 0.0, 0.0)
+        assert len(found.messages) == 3
+        assert "axis 0" in found.messages[0]
+
+
+def test_the_articles_table():
+    """Table 1: 0.178 -> 0.171 and 0.075 -> 0.066 um^2; the printed digits leave 0.0637 to 0.0671."""
+    after = 0.075 * kozeny_ratio(0.178, 0.171)
+    assert after == pytest.approx(0.0654, abs=5e-5)
+    assert 0.0637 < after < 0.0671
+    assert kozeny_permeability(0.178, 40.2e-6) == pytest.approx(0.075e-12, rel=2e-3)
+
+
+def test_kozeny_is_an_upper_bound_on_rock(rock):
+    from geofit.pores import pore_surface
+    from geofit.pores.table import before_after
+
+    volume = rock("berea_110")
+    network = pore_network(volume)
+    table = before_after(volume, network, pore_surface(volume, network))
+    assert max(table.before.network.square_metres) < table.before.kozeny
+    assert -0.05 < table.after.connectivity.connected / table.before.connectivity.porosity - 1 < 0
+    assert table.dropped == pytest.approx(volume.porosity - network.porosity)
+    assert table.kozeny_ratio == pytest.approx(
+        kozeny_ratio(table.before.connectivity.connected, table.after.connectivity.connected)
+    )
