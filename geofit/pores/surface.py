@@ -2,7 +2,8 @@
 
 Two constructions with one interface. ``contact`` uses the points where maximal balls touch the rock as control
 points, as the article proposes for large volumes; it keeps the volume. ``blend`` adds the potentials of the balls: with
-e^-t the exponent n of the article and the decay are one parameter, and the sum is a soft minimum. For the fewest balls see :mod:`geofit.medial`.
+e^-t the exponent n of the article and the decay are one parameter, and the sum is a soft minimum. For the fewest balls
+see :mod:`geofit.medial`.
 
 Coordinates are metres from the low corner of the sample, along the axes of the array.
 """
@@ -224,7 +225,8 @@ def pore_surface(
     if construction not in ("contact", "blend"):
         raise VolumeError(
             said(
-                "construction={name} is unknown. Give 'contact' or 'blend'; geofit.metaballs covers the pores with few balls.",
+                "construction={name} is unknown. Give 'contact' or 'blend'; geofit.metaballs covers the pores with few "
+                "balls.",
                 name=repr(construction),
             )
         )
