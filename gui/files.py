@@ -9,6 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
 
+from geofit.data.messages import Verbatim, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.gui.activity import Activity
@@ -187,7 +188,13 @@ class Files(QObject):
         self._fitting.make_missing()
         self.told.emit(self.tr("Brought back, {count} steps.").format(count=count))
         for name in self._document.lost():
-            _LOG.warning("The data of %s have changed since: its surface cannot be made again as it was. Fit it.", name)
+            _LOG.warning(
+                message(
+                    "log.data-changed",
+                    "The data of {name} have changed since: its surface cannot be made again as it was. Fit it.",
+                    name=Verbatim(name),
+                )
+            )
 
     def _opened(self, path: Path, found: Site | Opened) -> None:
         self._preferences.opened(path)
@@ -198,7 +205,14 @@ class Files(QObject):
             site = found.site
             self._session.begin(site, found.site_file, found.state, path)
             for file, what in found.changed.items():
-                _LOG.warning("%s: %s since the project was saved.", file, what)
+                _LOG.warning(
+                    message(
+                        "log.file-changed",
+                        "{file}: {change} since the project was saved.",
+                        file=Verbatim(file),
+                        change=what,
+                    )
+                )
             if found.state.recipes:
                 title = self.tr("Read the surfaces of {name}").format(name=path.name)
                 parted = self._document.site
@@ -209,7 +223,14 @@ class Files(QObject):
         text = self.tr("{name}: {horizons} horizons, {errors} rows not used.")
         self.told.emit(text.format(name=site.name, horizons=len(site.horizons), errors=errors))
         _LOG.info(
-            "Opened %s: %d horizons, %d holes, %d rows not used", path, len(site.horizons), len(site.holes), errors
+            message(
+                "log.opened",
+                "Opened {path}: {horizons} horizons, {holes} holes, {rows} rows not used",
+                path=str(path),
+                horizons=len(site.horizons),
+                holes=len(site.holes),
+                rows=errors,
+            )
         )
 
     def _surfaces_read(self, surfaces: dict[Recipe, HorizonSurface]) -> None:
@@ -222,7 +243,7 @@ class Files(QObject):
         self._session.saved(written.path, written.state)
         self._preferences.opened(written.path)
         self.told.emit(self.tr("Saved {name}.").format(name=written.path.name))
-        _LOG.info("Saved %s", written.path)
+        _LOG.info(message("log.saved", "Saved {path}", path=str(written.path)))
         then, self._after_saving = self._after_saving, None
         if then is not None and not self._document.dirty:
             then()

@@ -6,6 +6,7 @@ import hashlib
 from dataclasses import dataclass, field
 from typing import Literal
 
+from geofit.data.messages import EMPTY, Message
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.source import Source
 
@@ -18,13 +19,13 @@ Severity = Literal["error", "warning", "note"]
 class Journal:
     """One list for all files of one reading; handed down to every reader, which appends to it.
 
-    ``refused`` says of holes whose collar was not used where that row stands.
+    ``refused`` gives file and row of each collar that was not used, by the name of its hole.
     """
 
     issues: list[ImportIssue] = field(default_factory=list)
     counts: list[TableCount] = field(default_factory=list)
     inputs: dict[str, str] = field(default_factory=dict)
-    refused: dict[str, str] = field(default_factory=dict)
+    refused: dict[str, tuple[Message | str, ...]] = field(default_factory=dict)
 
     def read(self, source: Source) -> bytes:
         """Return the bytes of a file and keep their SHA-256."""
@@ -36,8 +37,8 @@ class Journal:
         self,
         severity: Severity,
         file: str,
-        reason: str,
-        remedy: str = "",
+        reason: Message,
+        remedy: Message = EMPTY,
         *,
         row: int = 0,
         column: str = "",

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ENDINGS", "is_surface_file", "read_surface_file"]
@@ -41,8 +41,12 @@ def read_surface_file(path: str | Path) -> Mapping[str, HorizonSurface]:
             return read_tsurf(path)
         case ending:
             raise InputError(
-                said("A surface is not read from a file that ends in '{ending}'", ending=ending),
-                said("Give a file that ends in {names}.", names=", ".join(ENDINGS)),
+                message(
+                    "import.surface-not-read-file",
+                    "A surface is not read from a file that ends in '{ending}'",
+                    ending=ending,
+                ),
+                message("import.give-file-ends", "Give a file that ends in {names}.", names=", ".join(ENDINGS)),
                 file=str(path),
             )
     return read(path)

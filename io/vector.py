@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.cells import number_text, table_of
 from geofit.io.extra import need
 from geofit.io.journal import Journal
@@ -24,7 +24,7 @@ RING = "ring"
 def layer_names(source: Source) -> tuple[str, ...]:
     """Return the layers of a file that have a geometry."""
     source.read()
-    pyogrio = need("pyogrio", "gis", said("Reading the map {file}", file=source.name))
+    pyogrio = need("pyogrio", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
     try:
         layers = pyogrio.list_layers(source.path)
     except (pyogrio.errors.DataSourceError, OSError, ValueError) as error:
@@ -43,7 +43,7 @@ def read_features(source: Source, journal: Journal) -> Table:
         If the file cannot be read, or the places are longitude and latitude and no target system is named.
     """
     journal.read(source)
-    pyogrio = need("pyogrio", "gis", said("Reading the map {file}", file=source.name))
+    pyogrio = need("pyogrio", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
     import shapely
 
     try:
@@ -57,7 +57,11 @@ def read_features(source: Source, journal: Journal) -> Table:
         raise _damaged(source, error) from None
     crs = str(meta.get("crs") or "")
     if crs:
-        journal.add("note", source.name, said("The coordinate system of the layer is {crs}", crs=crs[:120]))
+        journal.add(
+            "note",
+            source.name,
+            message("import.coordinate-system-layer", "The coordinate system of the layer is {crs}", crs=crs[:120]),
+        )
     if crs and not source.crs and not source.target:
         _refuse_degrees(source, crs)
     attributes = [str(name) for name in meta["fields"]]
@@ -69,7 +73,13 @@ def read_features(source: Source, journal: Journal) -> Table:
         lines = [] if shape is None else _rings(shape)
         if not any(len(line) for line in lines):
             malformed += 1
-            journal.add("error", source.name, "The feature has no place", "Draw it again.", row=i + 1)
+            journal.add(
+                "error",
+                source.name,
+                message("import.feature-no-place", "The feature has no place"),
+                message("import.draw-again", "Draw it again."),
+                row=i + 1,
+            )
         for line in lines:
             rings += 1
             for vertex in line:
@@ -105,25 +115,30 @@ def _text(value: Any) -> str:
 
 
 def _refuse_degrees(source: Source, crs: str) -> None:
-    pyproj = need("pyproj", "gis", said("Reading the map {file}", file=source.name))
+    pyproj = need("pyproj", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
     try:
         degrees = pyproj.CRS.from_user_input(crs).is_geographic
     except pyproj.exceptions.CRSError:
         return
     if degrees:
         raise InputError(
-            said(
-                "The places are longitude and latitude ({crs}); easting and northing in metres are needed", crs=crs[:60]
+            message(
+                "import.places-longitude-latitude-easting",
+                "The places are longitude and latitude ({crs}); easting and northing in metres are needed",
+                crs=crs[:60],
             ),
-            'Project the layer to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
-            "(geofit import: --crs).",
+            message(
+                "import.project-layer-site-grid",
+                'Project the layer to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
+                "(geofit import: --crs).",
+            ),
             file=source.name,
         )
 
 
 def _damaged(source: Source, error: Exception) -> InputError:
     return InputError(
-        said("The map cannot be read: {error}", error=str(error)),
-        "Open it in a GIS and save it as GeoPackage.",
+        message("import.map-cannot-read", "The map cannot be read: {error}", error=error),
+        message("import.open-gis-save-geopackage", "Open it in a GIS and save it as GeoPackage."),
         file=source.name,
     )

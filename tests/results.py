@@ -9,7 +9,7 @@ import numpy as np
 from geofit import FitSettings, PointSet, Site
 from geofit.checks.storage import equal_accuracy
 from geofit.data.accuracy import Accuracy, Check, Conflict, Group, ReadBack, Seam
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
 from geofit.data.site import Hole, ImportIssue, Section, TableCount
 from geofit.report.result import HorizonResult
@@ -85,7 +85,12 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
                 0.0,
                 0.0,
                 "places",
-                said("{count} of {total} places folded or degenerate", count=0, total=90),
+                message(
+                    "check.places-folded-degenerate",
+                    "{count} of {total} places folded or degenerate",
+                    count=0,
+                    total=90,
+                ),
             ),
             Check("above ground", None, float("nan"), float("nan"), "m", "no ground surface was given"),
         ),
@@ -111,8 +116,16 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         holes=(Hole("ZK1", "borehole", np.array([0.0, 80]), np.add(ORIGIN, [[0.0, 0, 90], [10, 0, 10]])),),
         sections=(Section("S1", boundary[:2]),),
         issues=(
-            ImportIssue("picks.csv", 7, "z", "abc", "error", "no number", "write metres"),
-            ImportIssue("picks.csv", 0, "", "", "note", "separator ';' was guessed"),
+            ImportIssue(
+                "picks.csv",
+                7,
+                "z",
+                "abc",
+                "error",
+                message("test.text", "no number"),
+                message("test.text", "write metres"),
+            ),
+            ImportIssue("picks.csv", 0, "", "", "note", message("test.text", "separator ';' was guessed")),
         ),
         counts=(TableCount("picks.csv", 201, 200, 1),),
         crs="CGCS2000 / 3-degree 105E",
@@ -148,6 +161,12 @@ def examined(result: HorizonResult) -> HorizonResult:
         field,
         holes,
         (Outlier(150, 0.91, 0.2, 4.5),),
-        (said("without {failed} of the sections no surface can be laid", failed=2),),
+        (
+            message(
+                "prediction.without-sections-no-surface",
+                "without {failed} of the sections no surface can be laid",
+                failed=2,
+            ),
+        ),
     )
     return replace(result, offdata=found)

@@ -16,6 +16,7 @@ from typing import Any
 from geofit.cad.faces import faces_of
 from geofit.cad.imported import FileShape, document, products, quiet, surface_of, unique_name
 from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["read_brep", "read_iges"]
@@ -47,8 +48,16 @@ def read_iges(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
         done = reader.ReadFile(str(source)) == IFSelect_RetDone and reader.Transfer(found)
     shapes = list(products(found, source.stem)) if done else []
     if not shapes:
-        what = "The file holds no face" if done else "The file cannot be read as IGES"
-        raise InputError(what, "Export the surface as IGES 5.3 or as STEP again.", file=str(source))
+        what = (
+            message("import.file-without-faces", "The file holds no face")
+            if done
+            else message("import.not-iges", "The file cannot be read as IGES")
+        )
+        raise InputError(
+            what,
+            message("import.export-surface-iges-step", "Export the surface as IGES 5.3 or as STEP again."),
+            file=str(source),
+        )
     return {shape.name: surface_of(_sewn(shape)) for shape in _joined(shapes, source.stem)}
 
 
@@ -74,8 +83,16 @@ def read_brep(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
     with quiet():
         done = BRepTools.Read_s(whole, str(source), BRep_Builder()) and not whole.IsNull()
     if not done or not faces_of(whole):
-        what = "The file holds no face" if done else "The file cannot be read as BREP"
-        raise InputError(what, "Export the surface as BREP or as STEP again.", file=str(source))
+        what = (
+            message("import.file-without-faces", "The file holds no face")
+            if done
+            else message("import.not-brep", "The file cannot be read as BREP")
+        )
+        raise InputError(
+            what,
+            message("import.export-surface-brep-step", "Export the surface as BREP or as STEP again."),
+            file=str(source),
+        )
     parts = []
     if whole.ShapeType() == TopAbs_COMPOUND:
         walk = TopoDS_Iterator(whole)
@@ -101,7 +118,11 @@ def read_brep(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
 def _existing(path: str | PathLike[str]) -> Path:
     source = Path(path)
     if not source.is_file():
-        raise InputError("There is no such file", "Check the path.", file=str(source))
+        raise InputError(
+            message("import.file-missing", "There is no such file"),
+            message("import.check-path", "Check the path."),
+            file=str(source),
+        )
     return source
 
 

@@ -25,7 +25,7 @@ from geofit.cad.sewing import shell
 from geofit.cad.step_text import canonical
 from geofit.data.accuracy import ReadBack
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.splines.patch import Patch
 from geofit.surfaces.surface import HorizonSurface
 
@@ -95,11 +95,15 @@ def store_step(
     """
     target = Path(path)
     if not surfaces:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(target))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(target),
+        )
     if unit not in UNITS:
         raise InputError(
-            said("A STEP file in '{unit}' is unknown", unit=unit),
-            said("Choose {names}.", names=" or ".join(UNITS)),
+            message("export.step-file-unknown", "A STEP file in '{unit}' is unknown", unit=unit),
+            message("export.known-names", "Choose {names}.", names=" or ".join(UNITS)),
             file=str(target),
         )
     shells = {name: shell(surface) for name, surface in surfaces.items()}
@@ -144,7 +148,11 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
 
     source = Path(path)
     if not source.is_file():
-        raise InputError("There is no such file", "Check the path.", file=str(source))
+        raise InputError(
+            message("import.file-missing", "There is no such file"),
+            message("import.check-path", "Check the path."),
+            file=str(source),
+        )
     with _parameters(), quiet():
         found = document()
         reader = STEPCAFControl_Reader()
@@ -152,8 +160,16 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
         done = reader.ReadFile(str(source)) == IFSelect_RetDone and reader.Transfer(found)
     shapes = list(products(found, source.stem)) if done else []
     if not shapes:
-        what = "The file holds no face" if done else "The file cannot be read as STEP"
-        raise InputError(what, "Export the surface as STEP (AP203, AP214 or AP242) again.", file=str(source))
+        what = (
+            message("import.file-without-faces", "The file holds no face")
+            if done
+            else message("import.not-step", "The file cannot be read as STEP")
+        )
+        raise InputError(
+            what,
+            message("export.export-surface-step-ap203", "Export the surface as STEP (AP203, AP214 or AP242) again."),
+            file=str(source),
+        )
     return shapes
 
 
@@ -234,8 +250,10 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
         handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=".step")
     except OSError as error:
         raise InputError(
-            said("The file cannot be written: {error}", error=error.strerror or str(error)),
-            "Make the folder, or name another.",
+            message(
+                "export.file-cannot-written", "The file cannot be written: {error}", error=error.strerror or str(error)
+            ),
+            message("project.folder-name", "Make the folder, or name another."),
             file=str(target),
         ) from None
     os.close(handle)
@@ -253,7 +271,11 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
             header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
             done = writer.Write(temporary) == IFSelect_RetDone
         if not done:
-            raise InputError("OpenCASCADE cannot write the file", "Check the disk.", file=str(target))
+            raise InputError(
+                message("export.opencascade-cannot-write-file", "OpenCASCADE cannot write the file"),
+                message("export.check-disk", "Check the disk."),
+                file=str(target),
+            )
         Path(temporary).write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
         os.chmod(temporary, 0o644)
         os.replace(temporary, target)

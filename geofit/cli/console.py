@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 import typer
 
 from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.messages import Message
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
 
@@ -107,9 +108,9 @@ def _system_library(message: str) -> str | None:
     return f"The system library {library} is missing. Install it (Debian and Ubuntu: apt-get install {package})."
 
 
-def say(text: str) -> None:
+def say(text: Message | str) -> None:
     """Write a line to stderr as it stands."""
-    sys.stderr.write(text + "\n")
+    sys.stderr.write(f"{text}\n")
 
 
 @contextmanager
@@ -117,8 +118,8 @@ def listening() -> Iterator[Progress]:
     """Show stages and the time left on a terminal; nothing in a pipe. Ctrl-C stops at the next stage at last."""
     with _interrupts() as stopped, _bars() as show:
 
-        def listen(stage: str, fraction: float, /) -> bool:
-            show(stage, fraction)
+        def listen(stage: str | Message, fraction: float, /) -> bool:
+            show(str(stage), fraction)
             return not stopped()
 
         yield listen
@@ -256,7 +257,7 @@ def _sentence(issue: ImportIssue) -> str:
     if issue.value:
         place.append(f"value '{issue.value}'")
     remedy = f" {issue.remedy}" if issue.remedy else ""
-    return f"{issue.severity}: {', '.join(place)}: {issue.reason.rstrip('.')}.{remedy}"
+    return f"{issue.severity}: {', '.join(place)}: {str(issue.reason).rstrip('.')}.{remedy}"
 
 
 def print_counts(counts: Sequence[TableCount]) -> None:

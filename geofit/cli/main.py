@@ -25,12 +25,13 @@ from geofit.cli.console import (
     say,
 )
 from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, message
 
 if TYPE_CHECKING:
+    from geofit.data.languages import Language
     from geofit.data.progress import Progress
     from geofit.data.settings import FitSettings
     from geofit.data.site import Site
-    from geofit.report.language import Language
 
 __all__ = ["app", "main"]
 
@@ -215,7 +216,7 @@ def report(
     as_json: _Json = False,
 ) -> int:
     """Fit every horizon of a site and write its accuracy report (HTML, PDF, JSON) with the surfaces it is about."""
-    from geofit.report.language import language
+    from geofit.data.languages import language
 
     with listening() as progress:
         return _deliver(_read(site, {}, None), out, (), {}, as_json, progress, language(lang.value), pdf=True)
@@ -444,8 +445,8 @@ def _deliver(
     bands: bool = False,
 ) -> int:
     from geofit.data.accuracy import plain
+    from geofit.data.languages import EN
     from geofit.project.run import deliver
-    from geofit.report.language import EN
     from geofit.report.result import horizon_data
 
     print_issues(site.issues, str(out / "import_issues.csv"))
@@ -461,7 +462,7 @@ def _deliver(
                 "orders": [plain(order) for order in delivery.orders],
                 "cuts": [plain(cut) for cut in delivery.cuts],
                 "contradictions": [plain(one) for one in delivery.contradictions],
-                "failures": dict(delivery.failures),
+                "failures": {name: reason.as_data() for name, reason in delivery.failures.items()},
             }
         )
     elif delivery.results:
@@ -505,7 +506,9 @@ def _read(source: Path, columns: dict[str, str | None], boundary: Path | None) -
         given = [f"--{name}" for name, value in columns.items() if value is not None]
         if given:
             raise InputError(
-                f"{given[0]} is for tables of points", "A site file names its own columns.", file=str(source)
+                message("cli.option-for-tables", "{option} is for tables of points", option=given[0]),
+                message("cli.site-file-names-columns", "A site file names its own columns."),
+                file=str(source),
             )
         site = read_site(source)
         return site if area is None else replace(site, boundary=area)
@@ -557,8 +560,18 @@ def _pick(kind: str, found: Mapping[str, Any], wanted: str | None, file: Path) -
         return next(iter(found.items()))
     if wanted is not None and wanted in found:
         return wanted, found[wanted]
-    reason = f"There is no {kind} '{wanted}'" if wanted else f"The file holds {len(found)} {kind}s"
-    raise InputError(reason, f"Choose with --horizon: {', '.join(found)}.", file=str(file))
+    reason = (
+        message("cli.not-in-file", "There is no {kind} '{name}'", kind=kind, name=Verbatim(wanted))
+        if wanted
+        else message(
+            "cli.several-in-file",
+            "Found in the file, where one is needed: {count} × {kind}",
+            count=len(found),
+            kind=kind,
+        )
+    )
+    remedy = message("cli.choose-with-horizon", "Choose with --horizon: {names}.", names=", ".join(found))
+    raise InputError(reason, remedy, file=str(file))
 
 
 def _summary(accuracy: dict[str, Any], name: str) -> dict[str, Any]:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from geofit.data.messages import Message
 
 __all__ = ["Accuracy", "Check", "Conflict", "Group", "ReadBack", "Seam", "plain"]
 
@@ -47,7 +50,7 @@ class Check:
     value: float
     limit: float
     unit: str
-    text: str
+    text: Message
     places: tuple[tuple[float, float, float], ...] = ()
 
 
@@ -58,7 +61,7 @@ class Conflict:
     kept: int
     dropped: int
     difference: float
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +91,7 @@ class Accuracy:
     seams: tuple[Seam, ...] = ()
     checks: tuple[Check, ...] = ()
     conflicts: tuple[Conflict, ...] = ()
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
 
     @property
     def verdict(self) -> str:
@@ -124,7 +127,9 @@ class ReadBack:
 
 
 def plain(value: Any) -> Any:
-    """Turn dataclasses, arrays and numbers into what JSON holds; nan and infinities become null."""
+    """Turn dataclasses, arrays and numbers into what JSON holds; nan and infinities become null, messages code, text and params."""
+    if isinstance(value, Message):
+        return plain(value.as_data())
     if is_dataclass(value) and not isinstance(value, type):
         return {f.name: plain(getattr(value, f.name)) for f in fields(value)}
     if isinstance(value, Mapping):
@@ -135,6 +140,8 @@ def plain(value: Any) -> Any:
         return [plain(v) for v in value]
     if isinstance(value, np.generic):
         return plain(value.item())
+    if isinstance(value, PurePath):
+        return str(value)
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value

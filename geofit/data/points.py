@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import PointsError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Message, Verbatim, message
 
 __all__ = ["KINDS", "PointSet"]
 
@@ -80,20 +80,27 @@ class PointSet:
             xyz = np.array(self.xyz, dtype=np.float64)
         except (TypeError, ValueError) as error:
             raise PointsError(
-                said("xyz must hold numbers: {error}. Give an (n, 3) array of metres.", error=str(error))
+                message(
+                    "points.xyz-hold-numbers-give",
+                    "xyz must hold numbers: {error}. Give an (n, 3) array of metres.",
+                    error=error,
+                )
             ) from None
         if xyz.size == 0:
             xyz = xyz.reshape(0, 3)
         if xyz.ndim != 2 or xyz.shape[1] != 3:
             raise PointsError(
-                said(
-                    "xyz has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.", shape=xyz.shape
+                message(
+                    "points.xyz-shape-array-easting",
+                    "xyz has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.",
+                    shape=xyz.shape,
                 )
             )
         bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         if bad.size:
             raise PointsError(
-                said(
+                message(
+                    "points.points-not-finite-first",
                     "{count} of {total} points are not finite, the first at index {index}: {place}. Remove or "
                     "complete them before fitting.",
                     count=bad.size,
@@ -111,7 +118,8 @@ class PointSet:
         wrong = np.flatnonzero((self.accuracy <= 0) | np.isinf(self.accuracy))
         if wrong.size:
             raise PointsError(
-                said(
+                message(
+                    "points.accuracy-standard-deviation-above",
                     "accuracy[{index}] is {value:g} m; one standard deviation must be above 0. Use nan where the "
                     "source states none.",
                     index=wrong[0],
@@ -144,14 +152,18 @@ class PointSet:
             return cls(np.empty((0, 3)))
         return cls(**{f.name: np.concatenate([getattr(s, f.name) for s in sets]) for f in fields(cls)})
 
-    def describe(self, index: int) -> str:
+    def describe(self, index: int) -> Message:
         """Name one point as a person would look it up: hole or section, file and row."""
         name, kind = str(self.hole[index] or self.section[index]), str(self.kind[index])
-        what = said("{kind} {name}", kind=kind, name=Verbatim(name)) if name else said("{kind}", kind=kind)
+        what = (
+            message("point.kind-name", "{kind} {name}", kind=kind, name=Verbatim(name))
+            if name
+            else message("point.kind", "{kind}", kind=kind)
+        )
         file, row = str(self.file[index]), int(self.row[index])
         if file:
-            return said("{point}, {file} row {row}", point=what, file=file, row=row)
-        return said("{point}, row {row}", point=what, row=row) if row else what
+            return message("point.in-file", "{point}, {file} row {row}", point=what, file=file, row=row)
+        return message("point.in-row", "{point}, row {row}", point=what, row=row) if row else what
 
 
 def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
@@ -159,13 +171,20 @@ def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
         array: NDArray[Any] = np.asarray(values, dtype=dtype)
     except (TypeError, ValueError) as error:
         raise PointsError(
-            said("{name} cannot be read as {type}: {error}.", name=name, type=dtype.__name__, error=str(error))
+            message(
+                "points.cannot-read",
+                "{name} cannot be read as {type}: {error}.",
+                name=name,
+                type=dtype.__name__,
+                error=error,
+            )
         ) from None
     if array.ndim == 0:
         return np.full(n, array, dtype=array.dtype)
     if array.shape != (n,):
         raise PointsError(
-            said(
+            message(
+                "points.shape-points-need-shape",
                 "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
                 name=name,
                 shape=array.shape,

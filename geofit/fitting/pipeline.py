@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import ExactnessError, FitError, PointsError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
@@ -117,7 +117,12 @@ def _fit_horizon(
         if settings.core != "auto":
             raise
         inside = np.zeros(len(points), bool)
-        reason = said("{reason}, but all points are approximated: {error}", reason=split.reason, error=error.args[0])
+        reason = message(
+            "fit.points-approximated",
+            "{reason}, but all points are approximated: {error}",
+            reason=split.reason,
+            error=error.args[0],
+        )
         model = replace(problem, split=Split(None, inside, reason)).fit(kept & chart.placed, clock.stage)
     if not chart.placed.all():
         model = _corrected(model, clock)
@@ -158,14 +163,23 @@ def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
         if accuracy.passed:
             if step:
                 surface = _with_note(
-                    surface, said("local adjustments until sigma came below epsilon: {step}", step=step)
+                    surface,
+                    message(
+                        "fit.local-adjustments-until-sigma",
+                        "local adjustments until sigma came below epsilon: {step}",
+                        step=step,
+                    ),
                 )
             break
         better = adjust(model.net, given.chart, given.kept & ~surface.core, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else tried.surface()
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
-            words = said("sigma stays above epsilon: no further local adjustment lowers it (made: {step})", step=step)
+            words = message(
+                "fit.sigma-stays-above-epsilon",
+                "sigma stays above epsilon: no further local adjustment lowers it (made: {step})",
+                step=step,
+            )
             surface = _with_note(surface, words)
             break
         assert tried is not None
@@ -173,7 +187,7 @@ def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
     return surface
 
 
-def _with_note(surface: HorizonSurface, note: str) -> HorizonSurface:
+def _with_note(surface: HorizonSurface, note: Message) -> HorizonSurface:
     assert surface.accuracy is not None
     return surface.with_(accuracy=replace(surface.accuracy, notes=(*surface.accuracy.notes, note)))
 
@@ -181,24 +195,30 @@ def _with_note(surface: HorizonSurface, note: str) -> HorizonSurface:
 def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     if len(points) < 3:
         given = (
-            said("{count} point given", count=1)
+            message("fit.given-point", "{count} point given", count=1)
             if len(points) == 1
-            else said("{count} points given", count=len(points))
+            else message("fit.given-points", "{count} points given", count=len(points))
         )
-        text = said(
+        text = message(
+            "fit.least-needed-lay-surface",
             "{given}; at least 3 are needed to lay a surface. Check the horizon's name and the filters of the import.",
             given=given,
         )
         raise PointsError(text)
     if all(np.ptp(axis) == 0 for axis in points.xyz.T):
         raise PointsError(
-            said("All {count} points stand at one place; at least 3 places are needed.", count=len(points))
+            message(
+                "fit.points-stand-place-least",
+                "All {count} points stand at one place; at least 3 places are needed.",
+                count=len(points),
+            )
         )
     if boundary is None:
         return None
     corners = np.asarray(boundary, float)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
-        text = said(
+        text = message(
+            "fit.boundary-shape-least-three",
             "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.",
             shape=corners.shape,
         )
@@ -210,15 +230,20 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> 
     """Split the points that are honoured; one that gave way is in no core."""
     plane = chart.plane[kept]
     if chart.parametric:
-        found = split_all(plane, chart.area, said("the section curves span the whole surface"))
+        found = split_all(
+            plane, chart.area, message("fit.section-curves-span-whole", "the section curves span the whole surface")
+        )
     elif settings.core == "all":
-        found = split_all(plane, chart.area, said("core='all': every point is interpolated"))
+        found = split_all(
+            plane, chart.area, message("fit.core-every-point-interpolated", "core='all': every point is interpolated")
+        )
     elif settings.core == "none":
-        found = split_none(plane, said("core='none': every point is approximated"))
+        found = split_none(plane, message("fit.core-none-every-point", "core='none': every point is approximated"))
     elif settings.core == "auto":
         found = split_auto(plane, chart.area)
     elif chart.frame.kind != "map":
-        text = said(
+        text = message(
+            "fit.core-polygon-map-coordinates",
             "core is a polygon of map coordinates, but the surface is fitted in the frame '{frame}'. Choose "
             "core='auto', 'all' or 'none', or frame='map'.",
             frame=chart.frame.kind,
@@ -230,10 +255,15 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> 
         high = np.minimum(corners.max(axis=0), (chart.area[1], chart.area[3]))
         if (high <= low).any():
             raise FitError(
-                said("The core's polygon lies outside the study area. Check its coordinates and their order.")
+                message(
+                    "fit.core-polygon-lies-outside",
+                    "The core's polygon lies outside the study area. Check its coordinates and their order.",
+                )
             )
         rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
-        found = split_rectangle(plane, rectangle, chart.area, said("the core's polygon as drawn"))
+        found = split_rectangle(
+            plane, rectangle, chart.area, message("fit.core-polygon-drawn", "the core's polygon as drawn")
+        )
     inside = np.zeros(len(kept), bool)
     inside[kept] = found.inside
     return Split(found.core, inside, found.reason)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.splines.patch import Patch
@@ -112,7 +112,13 @@ def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
     algorithms using bounds on derivatives"). Second derivatives of a cubic are largest at the ends of spans.
     """
     if not (tolerance > 0 and math.isfinite(tolerance)):
-        raise SettingsError(said("The chordal tolerance is {tolerance}; give metres above 0.", tolerance=tolerance))
+        raise SettingsError(
+            message(
+                "geometry.chordal-tolerance-give-metres",
+                "The chordal tolerance is {tolerance}; give metres above 0.",
+                tolerance=tolerance,
+            )
+        )
     from geofit.geometry.trim_loops import TrimmedSurface, trim
 
     if isinstance(surface, MeshSurface):

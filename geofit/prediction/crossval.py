@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import Said, said
+from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, Scheme
 from geofit.fitting.deletion import LinearFit, Prediction
 from geofit.fitting.model import Model
@@ -143,18 +143,19 @@ def left_out(model: Model, given: Posterior, fold: Fold, calibration: Calibratio
     )
 
 
-def about_the_hull(given: Posterior, fold: Fold) -> Said | None:
+def about_the_hull(given: Posterior, fold: Fold) -> Message | None:
     """Say how much of the error comes from points beyond the hull of the others, where every method extrapolates."""
     beyond = beyond_hull(given.plane, fold.groups) & np.isfinite(fold.predicted.error)
     within = ~beyond & np.isfinite(fold.predicted.error)
     if not beyond.any() or not within.any():
         return None
-    return said(
+    return message(
+        "prediction.points-left-lie-beyond",
         "{beyond} of {total} points left out by {scheme} lie beyond the hull of the others, where every method "
         "extrapolates: error {outer:.3g} m there, {inner:.3g} m within",
         beyond=int(beyond.sum()),
         total=int(beyond.sum() + within.sum()),
-        scheme=said(fold.scheme),
+        scheme=fold.scheme,
         outer=_rms(fold.predicted.error[beyond]),
         inner=_rms(fold.predicted.error[within]),
     )

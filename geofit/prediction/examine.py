@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, OffData, Outlier
 from geofit.data.progress import Progress, tell
 from geofit.fitting.deletion import linear_fit
@@ -56,18 +56,28 @@ def examine(surface: HorizonSurface, progress: Progress | None = None) -> OffDat
     """
     model = surface.model
     if model is None:
-        return _nothing(said("'{name}' was not fitted here: no point can be left out of it", name=surface.name))
+        return _nothing(
+            message(
+                "prediction.not-fitted-no-point",
+                "'{name}' was not fitted here: no point can be left out of it",
+                name=surface.name,
+            )
+        )
     with threadpool_limits(limits=1):
         if model.problem.chart.parametric:
             return sections_by_refit(surface, model, progress)
         try:
             return _examine(surface, model, progress)
         except FitError as error:
-            return _nothing(said("the error off the data cannot be told: {reason}", reason=str(error)))
+            return _nothing(
+                message(
+                    "prediction.error-off-data-cannot", "the error off the data cannot be told: {reason}", reason=error
+                )
+            )
 
 
 def _examine(surface: HorizonSurface, model: Model, progress: Progress | None) -> OffData:
-    notes: list[str] = []
+    notes: list[Message] = []
     tell(progress, "uncertainty", 0.0)
     given = posterior(model)
     grid = grid_over(surface)
@@ -78,7 +88,8 @@ def _examine(surface: HorizonSurface, model: Model, progress: Progress | None) -
     if many:
         folds = one_by_one(model, given)
         notes.append(
-            said(
+            message(
+                "prediction.points-too-many-leave",
                 "{count} points are too many to leave out in groups: each is left out alone, of the regional field, "
                 "and no other method is compared",
                 count=len(given.value),
@@ -91,9 +102,19 @@ def _examine(surface: HorizonSurface, model: Model, progress: Progress | None) -
         calibration = calibrated(fit, folds, grid.plane, Spread(model, given, calibration).variance(grid.plane))
         outliers = find_outliers(fit, calibration.at(given.plane))
         if not given.exact_net:
-            notes.append(said("so many control points: the regional field alone is left out, on a coarser net"))
+            notes.append(
+                message(
+                    "prediction.many-control-points-regional",
+                    "so many control points: the regional field alone is left out, on a coarser net",
+                )
+            )
     if model.net.lines is not None:
-        notes.append(said("the core is linear across its sections; its left-out errors are those of a cubic one"))
+        notes.append(
+            message(
+                "prediction.core-linear-across-sections",
+                "the core is linear across its sections; its left-out errors are those of a cubic one",
+            )
+        )
     tell(progress, "other methods", 0.65)
     plate = None if many else thin_plate_inverse(given.plane)
     results = []
@@ -110,20 +131,21 @@ def _examine(surface: HorizonSurface, model: Model, progress: Progress | None) -
     return OffData(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
 
 
-def _not_held(found: LeftOut) -> list[str]:
+def _not_held(found: LeftOut) -> list[Message]:
     low, high = HELD
     if not np.isfinite(found.inside) or low <= round(found.inside, 2) <= high:
         return []
     return [
-        said(
+        message(
+            "prediction.points-left-lie-inside",
             "{share:.0%} of the points left out by {scheme} lie inside the 90 % band ({raw:.0%} before it was held to "
             "the places between the data)",
             share=found.inside,
-            scheme=said(found.scheme),
+            scheme=found.scheme,
             raw=found.inside_raw,
         )
     ]
 
 
-def _nothing(note: str) -> OffData:
+def _nothing(note: Message) -> OffData:
     return OffData((), None, (), (), (note,))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.mesh import MeshSurface, triangulate
 from geofit.geometry.trim_loops import TrimmedSurface
 from geofit.sampling.contours import contours
@@ -105,10 +105,15 @@ def export(surfaces: Surfaces, to: str, out: Path, request: Request | None = Non
     """
     if to not in FORMATS:
         raise InputError(
-            said("There is no format '{to}'", to=to), said("Choose one of: {names}.", names=", ".join(FORMATS))
+            message("export.no-format", "There is no format '{to}'", to=to),
+            message("export.known-formats", "Choose one of: {names}.", names=", ".join(FORMATS)),
         )
     if not surfaces:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(out))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(out),
+        )
     chosen, wanted = FORMATS[to], request or Request()
     if chosen.takes in ("surfaces", "site"):
         _need_patches(surfaces, to, out)
@@ -153,7 +158,11 @@ def read_surfaces(files: Sequence[Path]) -> dict[str, HorizonSurface]:
         for name, surface in read_surface_file(file).items():
             unique = name if name not in found else f"{file.stem} {name}"
             if unique in found:
-                raise InputError("The file is given twice", "Name each file once.", file=str(file))
+                raise InputError(
+                    message("export.file-given-twice", "The file is given twice"),
+                    message("export.name-file-once", "Name each file once."),
+                    file=str(file),
+                )
             found[unique] = surface.with_(name=unique)
     return found
 
@@ -178,12 +187,13 @@ def section(
     cuts = {name: cut(surface, corners, tolerance=tolerance) for name, surface in surfaces.items()}
     if not any(cuts.values()):
         raise InputError(
-            said(
+            message(
+                "export.section-line-meets-no",
                 "The section line from {first} to {last} meets no horizon",
                 first=corners[0].tolist(),
                 last=corners[-1].tolist(),
             ),
-            "Give it in the surfaces' map coordinates, metres.",
+            message("export.give-surfaces-map-coordinates", "Give it in the surfaces' map coordinates, metres."),
         )
     out.mkdir(parents=True, exist_ok=True)
     files = [out / name for name in ("section.dxf", "section_3d.dxf", "section.csv", "section.png")]
@@ -209,8 +219,10 @@ def read_line(text: str) -> Floats:
         return _line_file(Path(text))
     if len(values) < 4 or len(values) % 2 or not all(map(math.isfinite, values)):
         raise InputError(
-            said("Numbers given for the section line: {count}", count=len(values)),
-            "Give x0,y0,x1,y1, metres; further corners add two numbers each.",
+            message(
+                "export.numbers-given-section-line", "Numbers given for the section line: {count}", count=len(values)
+            ),
+            message("export.give-x0-y0-x1", "Give x0,y0,x1,y1, metres; further corners add two numbers each."),
             value=text,
         )
     return np.array(values).reshape(-1, 2)
@@ -223,7 +235,11 @@ def _line_file(path: Path) -> Floats:
     from geofit.io.source import as_source
 
     if not path.is_file():
-        raise InputError("There is no such file", "Give a file with columns x and y, or x0,y0,x1,y1.", file=str(path))
+        raise InputError(
+            message("import.file-missing", "There is no such file"),
+            message("export.give-file-columns-x0", "Give a file with columns x and y, or x0,y0,x1,y1."),
+            file=str(path),
+        )
     journal = Journal()
     rows = read_rows(as_source(path), BOUNDARY, journal)
     corners = np.column_stack(rows.places())
@@ -251,12 +267,17 @@ def _need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
     if meshes:
         others = [name for name, one in FORMATS.items() if one.takes not in ("surfaces", "site")]
         raise InputError(
-            said(
+            message(
+                "export.triangle-mesh-holds-nurbs",
                 "'{name}' is a triangle mesh; {to} holds NURBS surfaces, which would have to be fitted",
                 name=meshes[0],
                 to=to,
             ),
-            said("Fit its vertices (geofit fit), or choose one of: {names}.", names=", ".join(others)),
+            message(
+                "export.fit-vertices-geofit-fit",
+                "Fit its vertices (geofit fit), or choose one of: {names}.",
+                names=", ".join(others),
+            ),
             file=str(out),
         )
 
@@ -280,8 +301,12 @@ def _grids(surfaces: Surfaces, out: Path, request: Request) -> list[tuple[Path, 
     if request.value == "thickness":
         if len(surfaces) != 2:
             raise InputError(
-                said("Thickness lies between two horizons; given: {count}", count=len(surfaces)),
-                "Name the upper one, then the lower.",
+                message(
+                    "export.thickness-lies-two-horizons",
+                    "Thickness lies between two horizons; given: {count}",
+                    count=len(surfaces),
+                ),
+                message("export.name-upper-lower", "Name the upper one, then the lower."),
             )
         upper, lower = surfaces.values()
         return [(out, thickness_grid(upper, lower, request.cell))]
@@ -290,10 +315,17 @@ def _grids(surfaces: Surfaces, out: Path, request: Request) -> list[tuple[Path, 
         return [(files[name], elevation_grid(surface, request.cell)) for name, surface in surfaces.items()]
     if request.value != "deviation":
         raise SettingsError(
-            said("A grid of '{kind}' is unknown; choose elevation, deviation or thickness.", kind=request.value)
+            message(
+                "export.grid-unknown-choose-elevation",
+                "A grid of '{kind}' is unknown; choose elevation, deviation or thickness.",
+                kind=request.value,
+            )
         )
     data = dict(_points(surfaces, request))
     missing = [name for name in surfaces if name not in data]
     if missing:
-        raise InputError(said("There are no points of '{name}'", name=missing[0]), "Give them with --points.")
+        raise InputError(
+            message("export.no-points", "There are no points of '{name}'", name=missing[0]),
+            message("export.give-points", "Give them with --points."),
+        )
     return [(files[name], deviation_grid(surfaces[name], data[name], request.cell)) for name in surfaces]

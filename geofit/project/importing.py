@@ -11,7 +11,8 @@ import numpy as np
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import Verbatim, listed, said
+from geofit.data.languages import EN, Language, translate
+from geofit.data.messages import Message, Verbatim, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, ImportIssue, Site, TableCount
 from geofit.io.boreholes import load_boreholes
@@ -24,8 +25,6 @@ from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
 from geofit.io.site_file import load_site
 from geofit.io.toml_text import toml_value
-from geofit.report.language import EN, Language
-from geofit.report.language import tell as in_words
 
 __all__ = ["Import", "import_files"]
 
@@ -95,7 +94,10 @@ def import_files(
     """
     site_file = Path(site_file)
     if not files:
-        raise InputError("No file is given", "Name the tables, drawings, maps and grids of the site.")
+        raise InputError(
+            message("import.no-file-given", "No file is given"),
+            message("import.name-tables-drawings-maps", "Name the tables, drawings, maps and grids of the site."),
+        )
     folder = site_file.parent
     folder.mkdir(parents=True, exist_ok=True)
     plan = Plan()
@@ -129,18 +131,34 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
     notes = []
     for part in (part for parts in plan.parts.values() for part in parts):
         preview, name = part.preview, part.source.name
-        others = listed(
-            said("{kind} {merit:.2f}", kind=kind, merit=merit) for kind, merit in list(preview.kinds.items())[1:4]
+        others = tuple(
+            message("import.kind-merit", "{kind} {merit:.2f}", kind=kind, merit=merit)
+            for kind, merit in list(preview.kinds.items())[1:4]
         )
-        reason = said("Taken as {kind}, confidence {confidence:.2f}", kind=preview.kind, confidence=preview.confidence)
+        reason = message(
+            "import.taken-confidence",
+            "Taken as {kind}, confidence {confidence:.2f}",
+            kind=preview.kind,
+            confidence=preview.confidence,
+        )
         if others:
-            reason = said("{text}; else {others}", text=reason, others=others)
-        notes.append(ImportIssue(name, 0, "", "", "note", reason, said("State another kind in the mapping file.")))
+            reason = message("import.table-alternatives", "{text}; else {others}", text=reason, others=others)
+        notes.append(
+            ImportIssue(
+                name,
+                0,
+                "",
+                "",
+                "note",
+                reason,
+                message("import.state-kind-mapping-file", "State another kind in the mapping file."),
+            )
+        )
         for guess in preview.roles:
             if guess.stated:
                 continue
-            remedy = said("Name another column in the mapping file.")
-            severity: Literal["note", "warning"] = "warning" if guess.reason.startswith("by its values") else "note"
+            remedy = message("import.name-column-mapping-file", "Name another column in the mapping file.")
+            severity: Literal["note", "warning"] = "warning" if guess.basis == "values" else "note"
             notes.append(ImportIssue(name, 0, guess.column, "", severity, taken_as(guess), remedy))
     return notes
 
@@ -168,7 +186,7 @@ def _horizons(
     for table in limits:
         # In the language that was asked for, unless another file uses the English name.
         if table["name"].casefold() not in named:
-            table["name"] = in_words(table["name"], language)
+            table["name"] = translate(table["name"], language)
     limited = {table["name"].casefold() for table in limits}
     return limits + [{"name": name} for name in others if name.casefold() not in limited]
 
@@ -216,13 +234,17 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
             "",
             "",
             "note",
-            said(
+            message(
+                "import.base-codes-fewer-contacts",
                 "The base of {count} codes has fewer than {least} contacts and makes no horizon: {names}",
                 count=len(few),
                 least=FEWEST_CONTACTS,
                 names=names,
             ),
-            "Add a [[horizon]] to the site file where one is wanted (--base, --top).",
+            message(
+                "import.add-horizon-site-file",
+                "Add a [[horizon]] to the site file where one is wanted (--base, --top).",
+            ),
         )
         if issue not in plan.issues:
             plan.issues.append(issue)
@@ -230,10 +252,10 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
     return [{"name": _name("base", code), "base": code} for code in ordered]
 
 
-def _name(limit: str, code: str) -> str:
+def _name(limit: str, code: str) -> Message:
     if limit == "top":
-        return said("top of {code}", code=Verbatim(code))
-    return said("base of {code}", code=Verbatim(code))
+        return message("import.top-of-stratum", "top of {code}", code=Verbatim(code))
+    return message("import.base-of-stratum", "base of {code}", code=Verbatim(code))
 
 
 def _write(
@@ -248,7 +270,7 @@ def _write(
     """Write the mapping and the site file that refers to it."""
     parts = [part for parts in plan.parts.values() for part in parts if part.preview.kind in SCHEMAS]
     remarks = {
-        (i, guess.role): guess.reason + (f", confidence {guess.confidence:.2f}" if not guess.stated else "")
+        (i, guess.role): str(guess.reason) + (f", confidence {guess.confidence:.2f}" if not guess.stated else "")
         for i, part in enumerate(parts)
         for guess in part.preview.roles
     }

@@ -16,6 +16,7 @@ from typing import Any
 
 from geofit.data.accuracy import plain
 from geofit.data.files import replacing
+from geofit.data.messages import Message
 
 __all__ = [
     "AccuracyReport",
@@ -84,7 +85,7 @@ class CheckLine:
     value: float | None
     limit: float | None
     unit: str
-    text: str
+    text: Message
     places: tuple[tuple[float, float, float], ...]
 
 
@@ -131,10 +132,10 @@ class FileCheck:
 class ConflictLine:
     """Two points that contradict each other: which stayed, which gave way, by how much (m), and why."""
 
-    kept: str
-    dropped: str
+    kept: Message
+    dropped: Message
     difference: float
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True)
@@ -191,7 +192,7 @@ class OffDataReport:
     sd_max: float | None
     suggestions: tuple[SuggestionLine, ...]
     outliers: tuple[OutlierLine, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 @dataclass(frozen=True)
@@ -210,7 +211,7 @@ class OrderLine:
     crossing_area: float
     crossing_volume: float
     deepest: tuple[float, float] | None
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True)
@@ -225,9 +226,9 @@ class ContradictionLine:
     x: float
     y: float
     lack: float
-    above: str
-    below: str
-    text: str
+    above: Message
+    below: Message
+    text: Message
 
 
 @dataclass(frozen=True)
@@ -257,7 +258,7 @@ class CutLine:
     throw_min: float
     throw_mean: float
     throw_max: float
-    text: str
+    text: Message
     places: tuple[CutPlace, ...]
 
 
@@ -286,8 +287,8 @@ class HorizonReport:
     within_interior: float | None
     tolerances: tuple[float, float, float]
     over: tuple[tuple[str, int], ...]
-    reason: str
-    notes: tuple[str, ...]
+    reason: Message
+    notes: tuple[Message, ...]
     groups: tuple[GroupLine, ...]
     worst: tuple[PointLine, ...]
     seams: tuple[SeamLine, ...]
@@ -334,8 +335,8 @@ class RejectedRow:
     row: int
     column: str
     value: str
-    reason: str
-    remedy: str
+    reason: Message
+    remedy: Message
 
 
 @dataclass(frozen=True)
@@ -353,7 +354,7 @@ class AccuracyReport:
     crs: str
     date: str
     horizons: tuple[HorizonReport, ...]
-    failures: Words
+    failures: tuple[tuple[str, Message], ...]
     orders: tuple[OrderLine, ...] | None
     contradictions: tuple[ContradictionLine, ...]
     cuts: tuple[CutLine, ...]

@@ -15,6 +15,7 @@ import geofit
 from geofit.checks.storage import Storage
 from geofit.data.accuracy import Accuracy, ReadBack, Seam, plain
 from geofit.data.files import replacing
+from geofit.data.messages import Message
 from geofit.data.prediction import OffData
 from geofit.data.site import ImportIssue, Site
 from geofit.surfaces.surface import HorizonSurface
@@ -71,7 +72,7 @@ class HorizonResult:
         return core if len(core) == self.accuracy.n else np.zeros(self.accuracy.n, bool)
 
     @property
-    def dropped(self) -> dict[int, str]:
+    def dropped(self) -> dict[int, Message]:
         """Points that were not fitted, and why (conflicts settled by accuracy)."""
         return {int(c.dropped): c.text for c in self.accuracy.conflicts}
 

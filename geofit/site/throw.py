@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import Said, said
+from geofit.data.messages import Message, message
 from geofit.site.fault import BEYOND_TRACE, HALVINGS, Fault, longer, size
 from geofit.site.height_field import Relief
 from geofit.surfaces.surface import HorizonSurface
@@ -50,10 +50,10 @@ class FaultCut:
     heave: Floats
 
     @property
-    def text(self) -> Said:
+    def text(self) -> Message:
         """The throw in words."""
-        return said(
-            "{fault} throws {horizon} down by {low:.2f} to {high:.2f} m, {mean:.2f} m on average over {length:.0f} m: "
+        return message(
+            "site.throws-down-average-lies", "{fault} throws {horizon} down by {low:.2f} to {high:.2f} m, {mean:.2f} m on average over {length:.0f} m: "
             "{up} lies above {down}",
             fault=self.fault, horizon=self.horizon, low=float(self.throw.min()), high=float(self.throw.max()),
             mean=float(self.throw.mean()), length=float(self.distance[-1]), up=self.up, down=self.down,

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.accuracy import Accuracy
+from geofit.data.messages import Message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.splines.patch import Patch
@@ -35,7 +36,7 @@ class Partition:
     corners: tuple[tuple[float, float], ...] | None
     core: int
     periphery: int
-    reason: str
+    reason: Message
 
 
 @dataclass(frozen=True, eq=False)

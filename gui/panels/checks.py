@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.data.accuracy import Accuracy, Check, ReadBack
+from geofit.data.messages import Message
 from geofit.data.prediction import OffData
 from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
@@ -208,7 +209,7 @@ class ChecksPanel(QWidget):
             rows.append(item)
         return rows
 
-    def _note(self, note: str) -> QTreeWidgetItem:
+    def _note(self, note: Message) -> QTreeWidgetItem:
         item = QTreeWidgetItem([spoken(note)])
         item.setFirstColumnSpanned(True)
         item.setToolTip(0, spoken(note))

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
 from geofit.io.extra import need
@@ -67,9 +67,13 @@ def write_geoh5(
     InputError
         If there is no surface.
     """
-    h5py = need("h5py", "geoh5", said("Writing {format}", format="geoh5"))
+    h5py = need("h5py", "geoh5", message("export.need-package", "Writing {format}", format="geoh5"))
     if not meshes:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(path),
+        )
     with replacing(path) as part, h5py.File(part, "w", track_order=False) as file:
         model = _Model(file.create_group("GEOSCIENCE"), h5py.string_dtype())
         for name, mesh in meshes.items():

@@ -14,7 +14,7 @@ from truth import paper_arrangement
 
 from geofit import FitSettings, fit_horizon
 from geofit.checks.check import check
-from geofit.data.messages import Said
+from geofit.data.messages import Message
 from geofit.data.site import Ground, Orientations
 from geofit.sample import horizon_truth
 from geofit.sample.truth import HORIZONS
@@ -80,7 +80,7 @@ def test_every_text_of_the_check_can_be_told_in_another_language(sample_surfaces
     for surface in sample_surfaces.values():
         accuracy = surface.accuracy
         texts = [one.text for one in accuracy.checks] + [*accuracy.notes, surface.partition.reason]
-        assert [text for text in texts if not isinstance(text, Said)] == []
+        assert [text for text in texts if not isinstance(text, Message)] == []
 
 
 # Residuals.

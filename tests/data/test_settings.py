@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 
 from geofit import FitSettings
 from geofit.data.errors import GeofitError, InputError, SettingsError
-from geofit.data.messages import said
+from geofit.data.languages import ZH, translate
+from geofit.data.messages import message
 from geofit.data.settings import LABELS
-from geofit.report.language import ZH, tell
 
 LENGTHS = ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance")
 
@@ -109,16 +109,26 @@ def test_a_bad_setting_is_told_in_chinese_by_its_name():
     with pytest.raises(SettingsError) as caught:
         FitSettings(epsilon=-1)
     assert str(caught.value) == "Control error (epsilon) is -1; a finite number above 0 is needed (metres)."
-    assert tell(str(caught.value), ZH) == "控制误差 ε（epsilon）为 -1；应为大于 0 的有限数（米）。"
+    assert translate(str(caught.value), ZH) == "控制误差 ε（epsilon）为 -1；应为大于 0 的有限数（米）。"
     assert set(LABELS) == {field.name for field in dataclasses.fields(FitSettings)}
 
 
 def test_an_input_error_is_told_in_chinese_and_crosses_to_another_process():
-    error = InputError(said("{reason}.", reason="a"), "b.", file="f.csv", row=3, column="x", value="7")
+    error = InputError(
+        message("error.reason", "{reason}.", reason="a"),
+        message("test.text", "b."),
+        file="f.csv",
+        row=3,
+        column="x",
+        value="7",
+    )
     copy = pickle.loads(pickle.dumps(error))
     assert str(copy) == str(error)
     assert (copy.file, copy.row, copy.column, copy.value) == ("f.csv", 3, "x", "7")
-    assert str(InputError("no such file", file="f.csv")) == "f.csv: no such file."
+    assert str(InputError(message("test.text", "no such file"), file="f.csv")) == "f.csv: no such file."
     assert (
-        tell(str(InputError("no such file", "look", file="f.csv", row=2)), ZH) == "f.csv，第 2 行：no such file。look"
+        translate(
+            str(InputError(message("test.text", "no such file"), message("test.text", "look"), file="f.csv", row=2)), ZH
+        )
+        == "f.csv，第 2 行：no such file。look"
     )

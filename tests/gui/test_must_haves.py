@@ -20,6 +20,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.project.commands import SetSurface
 
 NAME = "T3-T2"
@@ -343,7 +344,12 @@ def test_20_errors_say_what_to_do_and_the_dark_theme_reaches_the_view(shown, qtb
     from geofit.gui.dialogs.system_report import system_report
     from geofit.gui.theme import apply_theme
 
-    dialog = ErrorDialog("Open a.csv", InputError("The file is empty", "Choose another.", file="a.csv"))
+    dialog = ErrorDialog(
+        "Open a.csv",
+        InputError(
+            message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+        ),
+    )
     qtbot.addWidget(dialog)
     assert dialog.message.text().endswith("Choose another.")
     assert "OpenGL: " in system_report()

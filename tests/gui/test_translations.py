@@ -15,7 +15,7 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QDialogButtonBox, QLabel, QWidget
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.gui.language import apply_language
 from geofit.gui.panels.log import LogPanel
 from geofit.gui.words import spoken
@@ -68,8 +68,8 @@ def test_the_windows_own_words_and_those_of_qt_are_chinese(qtbot, chinese):
 
 
 def test_what_the_windows_model_refuses_and_logs_is_for_the_translators():
+    from geofit.data.languages import ZH
     from geofit.gui.sentences import SENTENCES
-    from geofit.report.language import ZH
 
     log = dict.fromkeys(("info", "warning", "error", "exception"), slice(0, 1))
     said = literals(["gui"], {**log, "tell": slice(1, 2)})
@@ -82,8 +82,20 @@ def test_errors_are_told_in_chinese_with_the_file(qtbot, chinese):
 
     dialogs = [
         ErrorDialog("保存", PermissionError(errno.EACCES, "Permission denied", "/data/site.geofit")),
-        ErrorDialog("打开", InputError("There is no such file", "Check the path.", file="site.toml")),
-        ErrorDialog("", DocumentError(said("'{name}' has no surface to adjust. Fit it first.", name="T1"))),
+        ErrorDialog(
+            "打开",
+            InputError(
+                message("import.file-missing", "There is no such file"),
+                message("import.check-path", "Check the path."),
+                file="site.toml",
+            ),
+        ),
+        ErrorDialog(
+            "",
+            DocumentError(
+                message("project.no-surface-adjust-fit", "'{name}' has no surface to adjust. Fit it first.", name="T1")
+            ),
+        ),
     ]
     for dialog in dialogs:
         qtbot.addWidget(dialog)
@@ -101,7 +113,15 @@ def test_the_log_speaks_chinese_and_leaves_other_libraries_alone(qtbot, chinese)
         log = logging.getLogger("geofit.gui.files")
         log.info("Saved %s", "dam.geofit")
         log.warning("There is no journal, so that a crash would lose unsaved work: %s", OSError(28, os.strerror(28)))
-        log.error("%s: %s", "拟合", InputError("The file is empty", "Export it again.", file="p.csv"))
+        log.error(
+            "%s: %s",
+            "拟合",
+            InputError(
+                message("import.file-empty", "The file is empty"),
+                message("import.export-again", "Export it again."),
+                file="p.csv",
+            ),
+        )
         logging.getLogger("vtk").error("bad %d", 3)
         lines = [line.split("  ", 1)[1] for line in panel.text.toPlainText().splitlines()]
     finally:
@@ -125,4 +145,4 @@ def test_a_stage_with_a_name_in_it_comes_through_a_task_as_a_sentence(qtbot, chi
 
 
 def _with_a_stage(progress):
-    progress(said("{name}: {stage}", name="T1", stage="fit"), 1.0)
+    progress(message("run.stage-of", "{name}: {stage}", name="T1", stage="fit"), 1.0)

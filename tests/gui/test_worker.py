@@ -10,6 +10,7 @@ import pytest
 from PySide6.QtCore import QObject
 
 from geofit.data.errors import FitError
+from geofit.data.messages import message
 from geofit.data.progress import tell
 from geofit.gui import worker
 
@@ -27,7 +28,7 @@ def endless(*, progress):
 
 
 def failing(*, progress):
-    raise FitError("These points cannot be fitted.")
+    raise FitError(message("test.text", "These points cannot be fitted."))
 
 
 def mistaken(*, progress):

@@ -170,7 +170,7 @@ def test_one_table_of_two_kinds_and_degrees(folder):
 def test_bases_are_named_and_issues_told_in_the_language_asked_for(folder):
     from chinese import english_left
 
-    from geofit.report.language import ZH
+    from geofit.data.languages import ZH
 
     found = import_files([folder / name for name in ("collar.csv", "log.csv")], folder / "s.toml", language=ZH)
     assert [name for name in found.site.horizons if name.endswith("底界")] == list(found.site.horizons)
@@ -180,7 +180,7 @@ def test_bases_are_named_and_issues_told_in_the_language_asked_for(folder):
 
 
 def test_a_name_that_another_file_uses_is_kept_in_every_language(folder):
-    from geofit.report.language import ZH
+    from geofit.data.languages import ZH
 
     found = import_files([folder / name for name in FILES], folder / "s.toml", language=ZH)
     assert "base of clay" in found.site.horizons

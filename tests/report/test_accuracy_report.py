@@ -12,13 +12,13 @@ import pytest
 from results import examined, horizon
 
 from geofit.data.errors import MissingDependencyError
+from geofit.data.languages import EN, ZH
 from geofit.report import fonts
 from geofit.report.accuracy_report import AccuracyReport, from_json, to_json, write_json
 from geofit.report.chapters import document
 from geofit.report.digits import metres
 from geofit.report.gather import accuracy_report, today
 from geofit.report.html import write_html
-from geofit.report.language import EN, ZH
 from geofit.report.pdf import write_pdf
 from geofit.report.pictures import draw, draw_site
 from geofit.site.order import Order

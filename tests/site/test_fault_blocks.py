@@ -25,7 +25,7 @@ from truth import EASTING, NORTHING, rms
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.cad.sewing import shell
 from geofit.data.errors import FitError, InputError, SettingsError
-from geofit.data.messages import Said
+from geofit.data.messages import Message
 from geofit.site.fault_blocks import fit_blocks, fit_faulted
 
 
@@ -56,7 +56,7 @@ def test_the_throw_along_an_inclined_fault_is_recovered(blocks):
     # A normal fault opens by throw / tan(dip).
     assert np.isfinite(cut.heave[2:-2]).all()
     assert np.nanmean(cut.heave) == pytest.approx(cut.throw.mean() / np.tan(DIP), rel=0.2)
-    assert isinstance(cut.text, Said)
+    assert isinstance(cut.text, Message)
     assert "F1 throws T2 down by" in cut.text
 
 

@@ -11,13 +11,13 @@ from truth import EASTING, NORTHING
 
 from geofit import FitSettings, PointSet
 from geofit.data.errors import Cancelled
+from geofit.data.languages import EN, ZH
 from geofit.data.site import Ground, Orientations, Site
 from geofit.project.run import deliver, write_reports
 from geofit.report.accuracy_report import from_json, to_json
 from geofit.report.chapters import document
 from geofit.report.document import Table
 from geofit.report.gather import accuracy_report
-from geofit.report.language import EN, ZH
 from geofit.report.result import HorizonResult
 from geofit.site.fit_site import SiteFit, compare, fit_site
 from geofit.site.separate import Contradiction

@@ -9,7 +9,7 @@ from surfaces import ORIGIN, fold, height_field, horizon
 import geofit.io
 from geofit import fit_horizon
 from geofit.data.errors import InputError, SettingsError
-from geofit.data.messages import Said
+from geofit.data.messages import Message
 from geofit.data.site import Ground
 from geofit.sample import write_site
 from geofit.site.height_field import Relief
@@ -167,7 +167,7 @@ def test_the_check_says_where_how_deep_and_how_much():
     check = order_of(surface(bowl(500.0, 350.0), "T3-T2"), flat(name="T2-T1")).check()
     assert (check.name, check.passed, check.unit) == ("order", False, "m")
     assert check.value == pytest.approx(3.6, abs=1e-6)
-    assert isinstance(check.text, Said)
+    assert isinstance(check.text, Message)
     assert "T3-T2 lies below T2-T1 (places: 1)" in check.text
     assert "deepest 3.60 m at (500500.0, 3100350.0)" in check.text
 

@@ -9,7 +9,7 @@ from truth import EASTING, NORTHING, hills
 from geofit import PointSet, fit_horizon
 from geofit.cad.sewing import shell
 from geofit.data.errors import SettingsError
-from geofit.data.messages import Said
+from geofit.data.messages import Message
 from geofit.site.order import order_of, orders
 from geofit.site.separate import repair
 
@@ -69,7 +69,7 @@ def test_approximated_points_hardly_move_and_the_change_is_told(crossing, repair
         moved = np.abs(surface.accuracy.residuals - crossing[name].accuracy.residuals)
         assert moved.max() < 0.2 * repaired.moved[name]
         note = surface.accuracy.notes[-1]
-        assert isinstance(note, Said)
+        assert isinstance(note, Message)
         assert note == f"moved by up to {repaired.moved[name]:.3f} m to keep the order of strata"
 
 
