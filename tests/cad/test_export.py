@@ -93,10 +93,10 @@ def test_iges_is_in_metres_trimmed_and_named(surfaces, tmp_path):
         assert furthest(part, surface) < 2e-8
         assert area(part) == pytest.approx(area(surface.to_shape().wrapped), rel=1e-7)
     text = (tmp_path / "a.igs").read_text("ascii")
-    assert "T1_top" in text
+    assert "T1_top" in str(text)
     # The whole name is the property 406-15 of the group.
-    assert "406,1,6HT1 top;" in text
-    assert ",6,1HM," in text.replace("\n", "").replace(" ", "")
+    assert "406,1,6HT1 top;" in str(text)
+    assert ",6,1HM," in str(text).replace("\n", "").replace(" ", "")
 
 
 @pytest.mark.parametrize("writer", [write_brep, write_iges])

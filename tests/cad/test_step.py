@@ -78,8 +78,8 @@ def test_a_file_in_millimetres_says_so_and_holds_the_same_surface(written, tmp_p
     assert back.core_max_abs <= 1e-8
     assert back.sigma == pytest.approx(found.sigma, rel=1e-9)
     text = (tmp_path / "mm.step").read_text("ascii").replace("\n", "")
-    assert "SI_UNIT(.MILLI.,.METRE.)" in text
-    assert "SI_UNIT($,.METRE.)" not in text
+    assert "SI_UNIT(.MILLI.,.METRE.)" in str(text)
+    assert "SI_UNIT($,.METRE.)" not in str(text)
     (ours,), (theirs,) = (read_step(file).values() for file in (path, tmp_path / "mm.step"))
     np.testing.assert_array_equal(theirs.origin, ORIGIN)
     for a, b in zip(ours.patches, theirs.patches, strict=True):
@@ -99,9 +99,9 @@ def test_the_file_is_ascii_and_the_same_bytes_again(written, tmp_path):
     twice = write_step({"T1 顶板": surface}, tmp_path / "other name.step")["T1 顶板"]
     assert twice.sha256 == found.sha256
     text = path.read_bytes().decode("ascii")
-    assert "AP242" in text
-    assert "SI_UNIT($,.METRE.)" in text.replace("\n", "")
-    assert text.count("COLOUR_RGB") == 1
+    assert "AP242" in str(text)
+    assert "SI_UNIT($,.METRE.)" in str(text).replace("\n", "")
+    assert str(text).count("COLOUR_RGB") == 1
     assert "'2000-01-01T00:00:00'" in text.partition("DATA;")[0]
     assert [p.name for p in tmp_path.iterdir()] == ["other name.step"]
 

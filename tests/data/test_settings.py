@@ -30,9 +30,9 @@ def test_a_length_must_be_a_finite_number_above_zero(name, value):
     with pytest.raises(SettingsError) as caught:
         FitSettings(**{name: value})
     text = str(caught.value)
-    assert f"({name}) is {value!r}; " in text
-    assert "a finite number above 0 is needed" in text
-    assert "metres" in text
+    assert f"({name}) is {value!r}; " in str(text)
+    assert "a finite number above 0 is needed" in str(text)
+    assert "metres" in str(text)
 
 
 @pytest.mark.parametrize(

@@ -125,7 +125,7 @@ def test_the_surface_is_pulled_through_a_peripheral_point_and_the_core_stays_exa
     half = surface.pull_to(worst, share=0.5)
     assert abs(half.accuracy.residuals[worst]) == pytest.approx(distance[worst] / 2, rel=0.01)
     assert pulled.fit["by_hand"] == 1
-    assert "by hand" in pulled.accuracy.notes[-1]
+    assert "by hand" in str(pulled.accuracy.notes[-1])
 
 
 def test_the_surface_is_pulled_to_a_place_in_the_map_even_in_the_core():

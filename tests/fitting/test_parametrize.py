@@ -116,7 +116,7 @@ def test_the_study_area_widens_the_rectangle_and_points_beyond_it_are_told():
     )
     small = np.array([low + 200, [high[0] - 200, low[1] + 200], high - 200, [low[0] + 200, high[1] - 200]])
     chart = choose_chart(points, SETTINGS, small)
-    assert any("points beyond the study area" in note for note in chart.notes)
+    assert any("points beyond the study area" in str(note) for note in chart.notes)
     assert (chart.plane >= (chart.area[0], chart.area[2])).all()
 
 

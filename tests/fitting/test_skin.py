@@ -163,7 +163,7 @@ def test_linear_without_sections_is_cubic_and_told():
     points = PointSet(np.column_stack([plan, 500 + 0.1 * (plan[:, 0] - EASTING)]))
     surface = fit_horizon(points, FitSettings(across="linear", core="all"))
     assert surface.patches[0].degree == (3, 3)
-    assert any("across='linear' needs" in note for note in surface.accuracy.notes)
+    assert any("across='linear' needs" in str(note) for note in surface.accuracy.notes)
 
 
 def test_section_lines_are_the_mean_u_of_straight_sections():

@@ -34,7 +34,7 @@ def changed(**changes):
 
 
 def test_an_empty_panel_says_what_to_do(panel):
-    assert "press Fit" in panel.pages.text
+    assert "press Fit" in str(panel.pages.text)
 
 
 def test_every_check_stands_there_with_its_result(panel):

@@ -26,7 +26,7 @@ def test_nothing_examined_offers_to_examine(panel, qtbot):
 
 def test_without_a_surface_there_is_nothing_to_examine(panel):
     panel.show_offdata(None, fitted=False)
-    assert "press Fit" in panel.pages.text
+    assert "press Fit" in str(panel.pages.text)
     assert not panel.pages.button.isVisible()
 
 

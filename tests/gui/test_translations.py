@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from chinese import literals
+
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QDialogButtonBox, QLabel, QWidget
 
@@ -44,9 +44,9 @@ def test_the_check_finds_what_is_missing_unfinished_and_wrong(tmp_path, monkeypa
 
     ts = tmp_path / "geofit_zh_CN.ts"
     text = update.TS.read_text("utf-8")
-    text = text.replace("<translation>", '<translation type="unfinished">', 1)
-    text = text.replace("<source>&amp;Save</source>", "<source>&amp;Keep</source>")
-    text = text.replace("拟合 {name}", "拟合 {nom}")
+    text = str(text).replace("<translation>", '<translation type="unfinished">', 1)
+    text = str(text).replace("<source>&amp;Save</source>", "<source>&amp;Keep</source>")
+    text = str(text).replace("拟合 {name}", "拟合 {nom}")
     ts.write_text(text, "utf-8")
     faults = "\n".join(update.check(ts))
     for fault in ("missing: Actions: &Save", "not used any more: Actions: &Keep", "unfinished: Actions: ",

@@ -81,7 +81,7 @@ def test_the_surface_ends_at_its_outline(file, files, surfaces):
     judged = check_given(one, PointSet(place, file="p.csv", row=np.arange(4)), FitSettings(), "T1")
     (check,) = [check for check in judged.accuracy.checks if check.name == "beyond the surface"]
     assert check.value == 3
-    assert sum("p.csv" in note for note in judged.accuracy.notes) == 3
+    assert sum("p.csv" in str(note) for note in judged.accuracy.notes) == 3
 
 
 def test_sigma_of_a_given_surface_is_eq_3(files, surfaces):

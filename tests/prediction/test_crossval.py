@@ -184,14 +184,14 @@ def test_an_overturned_fold_leaves_out_its_sections_by_new_fits():
     assert sections.groups >= 5
     assert 0 < sections.rms < 10
     assert found.uncertainty is None
-    assert any("folded" in note for note in found.notes)
+    assert any("folded" in str(note) for note in found.notes)
 
 
 def test_nothing_is_said_of_an_imported_surface():
     found = examine(sample("T3-T2")[0].with_(model=None))
     assert found.left_out == ()
     assert found.uncertainty is None
-    assert "not fitted here" in found.notes[0]
+    assert "not fitted here" in str(found.notes[0])
 
 
 def test_examine_can_be_stopped():
@@ -230,7 +230,7 @@ def test_robust_weights_find_the_truth_behind_blunders_and_leave_clean_data_alon
     assert rms(robust.elevation(x, y) - height) < 0.5 * rms(plain.elevation(x, y) - height)
     assert rms(robust.elevation(x, y) - height) < 1.1 * rms(clean.elevation(x, y) - height)
     assert np.flatnonzero(~robust.model.problem.kept).tolist() == wrong.tolist()
-    assert any("(3: " in note and "robust: peripheral points" in note for note in robust.accuracy.notes)
+    assert any("(3: " in str(note) and "robust: peripheral points" in str(note) for note in robust.accuracy.notes)
     assert np.abs(robust.accuracy.residuals[robust.core]).max() < 1e-9
     assert robust.accuracy.n == len(points)
     same = fit_horizon(truth.points, FitSettings(robust=True), boundary=boundary)

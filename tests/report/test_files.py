@@ -63,7 +63,7 @@ def test_json_has_the_promised_keys_and_the_known_figures(result, tmp_path):
 
 def test_json_holds_no_nan(result):
     text = json.dumps(horizon_data(result), allow_nan=False)
-    assert "NaN" not in text
+    assert "NaN" not in str(text)
 
 
 def test_every_point_has_its_line_in_the_residual_table(result, tmp_path):

@@ -175,7 +175,7 @@ def test_a_repair_pushes_crossing_horizons_apart_and_checks_them_again():
     assert after.moved
     for name in after.moved:
         surface = after.surfaces[name]
-        assert any("moved by up to" in note for note in surface.accuracy.notes)
+        assert any("moved by up to" in str(note) for note in surface.accuracy.notes)
         assert np.abs(surface.distance(surface.points.xyz) - surface.accuracy.residuals).max() < 1e-6
 
 
@@ -183,7 +183,7 @@ def test_a_repair_says_what_it_leaves_alone(site):
     found = SiteFit()
     assert compare(site, found) == ()
     plain = replace(crossing(), order=())
-    assert "no two fitted horizons" in fit_site(plain, ["U"], apart=True).warnings[0]
+    assert "no two fitted horizons" in str(fit_site(plain, ["U"], apart=True).warnings[0])
     cut = fit_site(site, ["T2", "T1"], apart=True)
     assert cut.warnings == ("T2, T1: cut by a fault, so not pushed apart from other horizons",)
 

@@ -159,7 +159,7 @@ def test_a_crossing_above_the_ground_is_told_from_one_in_the_rock():
         order = order_of(upper, lower, Ground(x, y, np.full((8, 11), ORIGIN[2] + z)))
         assert order.crossings[0].in_air == share
         assert order.check().passed is passed
-    assert "above the ground only" in order_of(upper, lower, Ground(x, y, np.zeros((8, 11)))).check().text
+    assert "above the ground only" in str(order_of(upper, lower, Ground(x, y, np.zeros((8, 11)))).check().text)
     assert order_of(upper, lower).check().passed is False
 
 
@@ -168,8 +168,8 @@ def test_the_check_says_where_how_deep_and_how_much():
     assert (check.name, check.passed, check.unit) == ("order", False, "m")
     assert check.value == pytest.approx(3.6, abs=1e-6)
     assert isinstance(check.text, Message)
-    assert "T3-T2 lies below T2-T1 (places: 1)" in check.text
-    assert "deepest 3.60 m at (500500.0, 3100350.0)" in check.text
+    assert "T3-T2 lies below T2-T1 (places: 1)" in str(check.text)
+    assert "deepest 3.60 m at (500500.0, 3100350.0)" in str(check.text)
 
 
 def test_horizons_apart_in_plan_have_no_order():

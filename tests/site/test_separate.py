@@ -70,7 +70,7 @@ def test_approximated_points_hardly_move_and_the_change_is_told(crossing, repair
         assert moved.max() < 0.2 * repaired.moved[name]
         note = surface.accuracy.notes[-1]
         assert isinstance(note, Message)
-        assert note == f"moved by up to {repaired.moved[name]:.3f} m to keep the order of strata"
+        assert str(note) == f"moved by up to {repaired.moved[name]:.3f} m to keep the order of strata"
 
 
 def test_nothing_moves_outside_the_supports_of_the_crossing(crossing, repaired):
@@ -142,7 +142,7 @@ def test_exact_points_that_contradict_are_named_with_their_rows(crossing):
     assert 2.0 < worst.lack < 10.0
     assert "section S3, wrong.csv row 77" in worst.below
     assert f"points_1.csv row {points.row[row]}" in worst.above
-    assert "cannot be pushed apart" in worst.text
+    assert "cannot be pushed apart" in str(worst.text)
     for surface in found.surfaces.values():
         np.testing.assert_allclose(surface.accuracy.residuals[surface.core], 0, atol=1e-8)
     # Nothing swings for what cannot be.
