@@ -125,7 +125,7 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
         else:
             template = catalogue.ngettext(value.template, value.plural, int(value.params["count"]))
         return template.format(**{name: render(param, catalogue) for name, param in value.params.items()})
-    if isinstance(value, tuple):
+    if isinstance(value, tuple) and all(isinstance(item, (Message, str)) for item in value):
         return _joined([str(render(item, catalogue)) for item in value], catalogue)
     if isinstance(value, str):
         return catalogue.gettext(value) if value in TERMS and not isinstance(value, Verbatim) else str(value)
@@ -142,13 +142,11 @@ def _joined(texts: list[str], catalogue: NullTranslations) -> str:
 
 
 def _kept(params: dict[str, Any]) -> dict[str, Any]:
-    """Return parameters that can be stored and sent: errors become their messages, lists become tuples."""
+    """Return parameters that can be stored and sent: errors become their messages."""
     kept = {}
     for name, value in params.items():
         if isinstance(value, BaseException):
             own = getattr(value, "message", None)
             value = own if isinstance(own, Message) else str(value)
-        elif isinstance(value, list):
-            value = tuple(value)
         kept[name] = value
     return kept
