@@ -16,7 +16,7 @@ from typing import TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from geofit import FitSettings, HorizonSurface, PointSet, fit_horizon
+from geofit import FitSettings, HorizonFit, PointSet, fit_horizon
 from geofit.checks.check import sigma
 from geofit.checks.storage import equal_accuracy
 
@@ -28,7 +28,7 @@ from truth import EASTING, NORTHING, Height, Truth, hills, paper_arrangement, rm
 T = TypeVar("T")
 
 TURNS, FEW_TURNS = 7, 3
-#: Fits that do no checking: the stages of ``surface.fit["seconds"]`` that are not part of it.
+#: Fits that do no checking: the stages of ``surface.diagnostics["seconds"]`` that are not part of it.
 CHECKING = ("check", "adjust")
 MILLION, SIZE, NOISE = 1_000_000, 2_000.0, 0.05
 #: Sizes of the reference that are tried, and its penalty: the best of 0.01, 0.1 and 1 at every size.
@@ -48,9 +48,9 @@ def in_turn(first: Callable[[], object], second: Callable[[], object], turns: in
     return [(timed(first)[0], timed(second)[0]) for _ in range(turns)]
 
 
-def fit_seconds(surface: HorizonSurface) -> float:
+def fit_seconds(surface: HorizonFit) -> float:
     """Return the seconds of a fit up to its control points: all stages but the check and what follows it."""
-    return float(sum(s for stage, s in surface.fit["seconds"].items() if stage not in CHECKING))
+    return float(sum(s for stage, s in surface.diagnostics["seconds"].items() if stage not in CHECKING))
 
 
 def smallest(error: Callable[[int], float], limit: float, low: int, high: int) -> int | None:
@@ -84,12 +84,12 @@ def small() -> None:
     truth = paper_arrangement(0)
     points, boundary = truth.points, truth.boundary
 
-    def ours() -> HorizonSurface:
+    def ours() -> HorizonFit:
         surface = fit_horizon(points, FitSettings(), boundary)
-        surface.to_shape()
+        surface.to_cadquery()
         return surface
 
-    def plate() -> HorizonSurface:
+    def plate() -> HorizonFit:
         return geom_plate(points)
 
     seconds = in_turn(ours, plate)
@@ -113,7 +113,7 @@ def large() -> None:
     places = np.random.default_rng(12345).uniform((area[0], area[2]), (area[1], area[3]), (10_000, 2)).T
     settings = FitSettings(core="none")
 
-    def ours() -> HorizonSurface:
+    def ours() -> HorizonFit:
         return fit_horizon(points, settings, boundary)
 
     def reference(spans: int) -> PSpline:
@@ -147,7 +147,7 @@ def large() -> None:
     )
     for name, seconds, off, count in rows:
         print(f"{name:34s}{seconds:8.2f}{seconds / theirs:7.2f}{off:10.4f}{count:14,d}")
-    stages = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in surface.fit["seconds"].items())
+    stages = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in surface.diagnostics["seconds"].items())
     print(f"stages of geofit, s: {stages}; aim: a ratio of at most 0.33\n")
 
 

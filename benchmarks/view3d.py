@@ -20,22 +20,23 @@ from PySide6.QtWidgets import QApplication
 
 from geofit.data.points import PointSet
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.view import SceneView
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.patch_surface import PatchSurface
 
 ORIGIN = np.array([501_000.0, 3_100_000.0, 1_500.0])
 HALF, CONTROL = 1_000.0, 40
 
 
-def horizon(number: int) -> HorizonSurface:
+def horizon(number: int) -> HorizonFit:
     """One bicubic height field of 40 x 40 control points, 60 m under the one before."""
     knots = np.concatenate([np.zeros(3), np.linspace(0, 1, CONTROL - 2), np.ones(3)])
     at = np.array([knots[i + 1 : i + 4].mean() for i in range(CONTROL)])
     x, y = np.meshgrid(HALF * (2 * at - 1), HALF * (2 * at - 1), indexing="ij")
     z = 40 * np.sin(x / 240 + number) * np.cos(y / 300) - 60 * number
     patch = Patch("core", (3, 3), knots, knots, np.stack([x, y, z], axis=-1))
-    return HorizonSurface((patch,), ORIGIN, PointSet(np.empty((0, 3))), name=f"H{number}")
+    return HorizonFit(PatchSurface((patch,), ORIGIN), name=f"H{number}")
 
 
 def cloud(count: int) -> PointSet:

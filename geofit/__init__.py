@@ -19,15 +19,15 @@ from geofit.data.site import Site
 
 if TYPE_CHECKING:
     from geofit import io
+    from geofit.fitting.horizon_fit import HorizonFit
     from geofit.fitting.pipeline import fit_horizon
-    from geofit.surfaces.surface import HorizonSurface
 
 __version__ = "0.1.0"
 
-__all__ = ["FitSettings", "GeofitError", "HorizonSurface", "PointSet", "Site", "fit_horizon", "io"]
+__all__ = ["FitSettings", "GeofitError", "HorizonFit", "PointSet", "Site", "fit_horizon", "io"]
 
 # scipy and OpenCASCADE are imported when they are first needed.
-_LAZY = {"fit_horizon": "geofit.fitting.pipeline", "HorizonSurface": "geofit.surfaces.surface", "io": "geofit.io"}
+_LAZY = {"fit_horizon": "geofit.fitting.pipeline", "HorizonFit": "geofit.fitting.horizon_fit", "io": "geofit.io"}
 
 
 def __getattr__(name: str) -> Any:

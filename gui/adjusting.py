@@ -6,6 +6,7 @@ from PySide6.QtCore import QObject
 
 from geofit.data.accuracy import Accuracy
 from geofit.data.progress import Progress
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.fitting import Fitting
 from geofit.gui.panels.adjust import AdjustPanel
 from geofit.gui.words import spoken
@@ -13,7 +14,6 @@ from geofit.gui.worker import Task, run
 from geofit.project.building import edited
 from geofit.project.document import Document
 from geofit.project.provenance import HandEdit, Move, Pull, Weigh
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Adjusting"]
 
@@ -77,5 +77,5 @@ class Adjusting(QObject):
             self._trial = None
 
 
-def _effect(surface: HorizonSurface, edit: HandEdit, *, progress: Progress) -> tuple[Accuracy | None, Accuracy | None]:
+def _effect(surface: HorizonFit, edit: HandEdit, *, progress: Progress) -> tuple[Accuracy | None, Accuracy | None]:
     return surface.accuracy, edited(surface, edit, progress).accuracy

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from geofit.data.errors import GeofitError
 from geofit.data.files import file_stems
 from geofit.data.messages import message
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity
 from geofit.gui.preferences import Preferences
 from geofit.gui.showing import Showing
@@ -22,7 +23,6 @@ from geofit.project.export import FORMATS, Request
 from geofit.project.export_task import export_surfaces
 from geofit.project.step_files import StepFile
 from geofit.report.result import HorizonResult
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Delivering"]
 
@@ -54,7 +54,7 @@ class Delivering(QObject):
         self._panels, self._showing, self._window = workspace, showing, window
         self._reports: list[str] = []
         #: By horizon: the surface that was exported last, and the file that holds it.
-        self._exported: dict[str, tuple[HorizonSurface, StepFile]] = {}
+        self._exported: dict[str, tuple[HorizonFit, StepFile]] = {}
         workspace.tree.report_chosen.connect(lambda path: QDesktopServices.openUrl(QUrl.fromLocalFile(path)))
 
     def export_step(self) -> None:
@@ -89,7 +89,7 @@ class Delivering(QObject):
                 target = target.with_suffix(f".{_ENDINGS.get(to, to)}")
             self.write(to, target, surfaces)
 
-    def write(self, to: str, target: Path, surfaces: Mapping[str, HorizonSurface]) -> None:
+    def write(self, to: str, target: Path, surfaces: Mapping[str, HorizonFit]) -> None:
         """Write surfaces in a format, with the points and holes that the format can hold."""
         site = self._document.site_in_use()
         request = Request(points=dict(site.horizons), holes=site.holes, site=site.name, crs=site.crs)
@@ -111,7 +111,7 @@ class Delivering(QObject):
             dialog.examined.connect(lambda name, offdata: self._document.put_offdata(recipes[name], offdata))
             dialog.exec()
 
-    def _result(self, name: str, surface: HorizonSurface) -> HorizonResult:
+    def _result(self, name: str, surface: HorizonFit) -> HorizonResult:
         """Return what a report says of a surface; of a STEP file only if one was written of this very surface."""
         site, offdata = self._document.site_in_use(), self._document.offdata(name)
         exported, file = self._exported.get(name, (None, None))
@@ -141,7 +141,7 @@ class Delivering(QObject):
             else:
                 self._written([target])
 
-    def _surfaces(self) -> Mapping[str, HorizonSurface]:
+    def _surfaces(self) -> Mapping[str, HorizonFit]:
         surfaces = self._document.surfaces()
         if not surfaces:
             self.refused.emit(

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from PySide6.QtCore import QObject, Signal
 
 from geofit.data.prediction import Uncertainty
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.worker import run_apart
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Drawing"]
 
@@ -20,7 +20,7 @@ KEPT = 12
 
 @dataclass(frozen=True, eq=False)
 class _Made:
-    surface: HorizonSurface
+    surface: HorizonFit
     uncertainty: Uncertainty | None
     drawn: Drawn
 
@@ -40,7 +40,7 @@ class Drawing(QObject):
         """Whether something is being made ready."""
         return bool(self._wanted)
 
-    def draw(self, surface: HorizonSurface, uncertainty: Uncertainty | None, show: Callable[[Drawn], object]) -> None:
+    def draw(self, surface: HorizonFit, uncertainty: Uncertainty | None, show: Callable[[Drawn], object]) -> None:
         """Call ``show`` as soon as the surface can be drawn; one that is asked for later takes its place."""
         self.forget(surface.name)
         for made in self._made:

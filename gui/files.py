@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
 from geofit.data.messages import Verbatim, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity
 from geofit.gui.dialogs.recovery import RecoveryDialog
 from geofit.gui.fitting import Fitting
@@ -20,7 +21,6 @@ from geofit.gui.session import Session
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Recipe
 from geofit.project.saving import Opened, Written, read_project, read_surfaces, save_state
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Files"]
 
@@ -233,7 +233,7 @@ class Files(QObject):
             )
         )
 
-    def _surfaces_read(self, surfaces: dict[Recipe, HorizonSurface]) -> None:
+    def _surfaces_read(self, surfaces: dict[Recipe, HorizonFit]) -> None:
         for recipe, surface in surfaces.items():
             self._document.put(recipe, surface)
         self._fitting.complete(tuple(surfaces))

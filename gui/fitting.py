@@ -12,6 +12,7 @@ from geofit.data.accuracy import Accuracy
 from geofit.data.messages import message
 from geofit.data.prediction import OffData
 from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity, Work
 from geofit.gui.session import Session
 from geofit.gui.words import spoken
@@ -31,7 +32,6 @@ from geofit.project.commands import (
 from geofit.project.fault_blocks import Parted, measured, part_at_faults
 from geofit.project.provenance import DocumentError, Recipe, Row
 from geofit.site.throw import FaultCut
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Fitting"]
 
@@ -192,7 +192,7 @@ class Fitting(QObject):
             return None
         return made, (recipe, self._document.given_for(recipe))
 
-    def _fitted(self, recipe: Recipe, surface: HorizonSurface) -> None:
+    def _fitted(self, recipe: Recipe, surface: HorizonFit) -> None:
         self._document.put(recipe, surface)
         if self._document.state.recipes.get(recipe.horizon) != recipe:
             self.push(SetSurface(recipe))
@@ -251,9 +251,7 @@ class Fitting(QObject):
             return None
         return changed, (recipe, surface, command.edit, self._document.given_for(recipe))
 
-    def _edited(
-        self, command: Command, former: Recipe, recipe: Recipe, before: Accuracy, surface: HorizonSurface
-    ) -> None:
+    def _edited(self, command: Command, former: Recipe, recipe: Recipe, before: Accuracy, surface: HorizonFit) -> None:
         if self._document.state.recipes.get(former.horizon) != former:
             self.refused.emit(
                 DocumentError(

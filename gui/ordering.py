@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QDialog, QInputDialog, QWidget
 
 from geofit.data.messages import Verbatim, message, plural_message
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.gui.fitting import Fitting
@@ -20,7 +21,6 @@ from geofit.project.document import Document
 from geofit.project.ordering import all_orders, comparable, over_map, pushed_apart
 from geofit.project.provenance import DocumentError
 from geofit.site.separate import Repair
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Ordering"]
 
@@ -67,7 +67,7 @@ class Ordering(QObject):
         title = self.tr("Check the order")
         self._activity.do(title, all_orders, surfaces, pairs, document.site.ground, on_done=self._found, apart=True)
 
-    def _strata(self) -> dict[str, HorizonSurface]:
+    def _strata(self) -> dict[str, HorizonFit]:
         """Return the surfaces over the map; where the site states an order, those that it names (weathering cuts)."""
         document, stated = self._document, self._document.site.order
         over = over_map(document.surfaces())
@@ -140,7 +140,7 @@ class Ordering(QObject):
         else:
             self.told.emit(self.tr("No two horizons cross."))
 
-    def _repaired(self, former: dict[str, HorizonSurface], minimum: float, found: Repair) -> None:
+    def _repaired(self, former: dict[str, HorizonFit], minimum: float, found: Repair) -> None:
         document = self._document
         if any(document.surface(name) is not surface for name, surface in former.items()):
             self.refused.emit(

@@ -64,7 +64,8 @@ def require_display() -> None:
             message(
                 "window.no-display-neither-display",
                 "There is no display: neither DISPLAY nor WAYLAND_DISPLAY is set. Start geofit-gui on a desktop, over "
-                "'ssh -X', or under a virtual screen (xvfb-run geofit-gui). The command line needs no display: geofit -h.",
+                "'ssh -X', or under a virtual screen (xvfb-run geofit-gui). The command line needs "
+                "no display: geofit -h.",
             )
         )
     if not os.environ.get("WAYLAND_DISPLAY") and not _answers():

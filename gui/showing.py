@@ -10,13 +10,13 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from geofit.data.accuracy import ReadBack
 from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.drawing import Drawing
 from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.workspace import Workspace
 from geofit.project.document import Document
 from geofit.site.order import Order
 from geofit.site.throw import FaultCut
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Showing"]
 
@@ -44,7 +44,7 @@ class Showing(QObject):
         self.thickness = THICKNESS
         self.orders: tuple[Order, ...] = ()
         self.cuts: tuple[FaultCut, ...] = ()
-        self._read_back: dict[str, tuple[HorizonSurface, ReadBack]] = {}
+        self._read_back: dict[str, tuple[HorizonFit, ReadBack]] = {}
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.now)
         self._ends: list[Callable[[], None]] = []

@@ -1,4 +1,4 @@
-"""Files to Site, PointSet and HorizonSurface, and back; one module a format.
+"""Files to Site, PointSet and HorizonFit, and back; one module a format.
 
 Names are loaded when they are first asked for, so that ``import geofit.io`` costs nothing.
 """

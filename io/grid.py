@@ -14,8 +14,9 @@ from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
+from geofit.io.units import grid_unit
 
-__all__ = ["grid_unit", "load_grid", "load_ground", "read_ground"]
+__all__ = ["load_grid", "load_ground", "read_ground"]
 
 _KEYS = {
     "ncols",
@@ -169,13 +170,6 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     x, y = np.arange(columns, dtype=np.float64), np.arange(rows, dtype=np.float64)
     scale = grid_unit(source)
     return Ground(scale * (west + dx * x), scale * (south + dy * y), scale * z.reshape(rows, columns)[::-1].copy())
-
-
-def grid_unit(source: Source) -> float:
-    """Return the metres of the unit that the user states; a grid does not say its own."""
-    from geofit.io.units import metres_of
-
-    return 1.0 if source.unit is None else metres_of(source.unit, source.name)
 
 
 def _number(word: str, file: str, row: int, column: str) -> float:

@@ -37,7 +37,8 @@ _LIMITS = {"azimuth": (-360.0, 360.0), "dip": (-90.0, 90.0)}
 class RoleGuess:
     """One role of a table and the column that seems to hold it.
 
-    ``confidence`` runs from 0 to 1; ``basis`` is what it rests on and ``reason`` says so in words; ``others`` are headers of columns that might hold the role as well.
+    ``confidence`` runs from 0 to 1; ``basis`` is what it rests on, and ``reason`` states it; ``others`` are headers of
+    columns that might hold the role as well.
     """
 
     role: str

@@ -33,8 +33,8 @@ from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems, replacing
 from geofit.data.messages import message
 from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.parser_words import told_by
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = [
     "VERSION",
@@ -117,7 +117,7 @@ class Project:
 def save_project(
     project: Project,
     path: str | PathLike[str],
-    surfaces: Mapping[str, HorizonSurface] | None = None,
+    surfaces: Mapping[str, HorizonFit] | None = None,
     recipes: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Project:
     """Write a project file, and the surfaces that are given, as STEP, into ``NAME_surfaces`` beside it.
@@ -128,7 +128,7 @@ def save_project(
         What to save. Sources without a hash get theirs.
     path : path
         The file, usually ``*.geofit``.
-    surfaces : mapping of str to HorizonSurface, optional
+    surfaces : mapping of str to HorizonFit, optional
         Surfaces by horizon; each takes the place of its horizon's former result.
     recipes : mapping of str to mapping, optional
         From what each surface was made, by horizon, as JSON holds it.
@@ -251,7 +251,7 @@ def open_project(path: str | PathLike[str]) -> Project:
         ) from None
 
 
-def load_surfaces(project: Project, folder: str | PathLike[str]) -> dict[str, HorizonSurface]:
+def load_surfaces(project: Project, folder: str | PathLike[str]) -> dict[str, HorizonFit]:
     """Read the surfaces of a project by horizon; errors as :func:`geofit.cad.step.read_step`."""
     from geofit.cad.step import read_step
 
@@ -259,7 +259,7 @@ def load_surfaces(project: Project, folder: str | PathLike[str]) -> dict[str, Ho
     for result in project.results:
         surface = next(iter(read_step(Path(folder) / result.surface).values()))
         settings = project.settings.get(result.horizon, FitSettings())
-        found[result.horizon] = surface.with_(name=result.horizon, settings=settings)
+        found[result.horizon] = HorizonFit(surface, settings=settings, name=result.horizon)
     return found
 
 
@@ -315,7 +315,7 @@ def _folder(target: Path) -> Path:
     return target.with_name(f"{target.stem}_surfaces")
 
 
-def _write_surface(name: str, surface: HorizonSurface, target: Path) -> ProjectResult:
+def _write_surface(name: str, surface: HorizonFit, target: Path) -> ProjectResult:
     from geofit.cad.step import store_step
 
     folder = _folder(target)

@@ -11,9 +11,9 @@ from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.io.crs import is_code
 from geofit.io.extra import need
-from geofit.io.grid import grid_unit
 from geofit.io.journal import Journal
 from geofit.io.source import Source
+from geofit.io.units import grid_unit
 
 __all__ = ["read_raster"]
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.mesh_surface import MeshSurface
+from geofit.surfaces.patch_surface import PatchSurface
 
 __all__ = ["ENDINGS", "is_surface_file", "read_surface_file"]
 
@@ -20,8 +21,8 @@ def is_surface_file(path: str | Path) -> bool:
     return Path(path).suffix.casefold() in ENDINGS
 
 
-def read_surface_file(path: str | Path) -> Mapping[str, HorizonSurface]:
-    """Read the surfaces of a file by name: patches, or the triangles of a :class:`geofit.geometry.mesh.MeshSurface`.
+def read_surface_file(path: str | Path) -> Mapping[str, PatchSurface | MeshSurface]:
+    """Read the surfaces of a file by name: NURBS patches, or triangles.
 
     Raises
     ------

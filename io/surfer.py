@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.site import Ground
-from geofit.io.grid import grid_unit
 from geofit.io.journal import Journal
 from geofit.io.source import Source
+from geofit.io.units import grid_unit
 
 __all__ = ["read_surfer"]
 

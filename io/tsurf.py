@@ -9,11 +9,11 @@ import numpy as np
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
-from geofit.data.points import PointSet
-from geofit.geometry.mesh import Mesh, MeshSurface
+from geofit.geometry.mesh import Mesh
 from geofit.io.sniff import decode
 from geofit.io.source import Source
 from geofit.io.units import metres_of
+from geofit.surfaces.mesh_surface import MeshSurface
 
 __all__ = ["read_tsurf"]
 
@@ -36,7 +36,7 @@ class _Object:
             triangles = triangles[:, ::-1]
         count = len(triangles)
         mesh = Mesh(xyz - origin, triangles, np.zeros(count, np.int64), np.zeros((count, 3, 2)), origin, (name,))
-        return MeshSurface((), origin, PointSet(np.empty((0, 3))), name=name, mesh=mesh)
+        return MeshSurface(mesh, name)
 
 
 def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:

@@ -11,7 +11,7 @@ from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table
 
-__all__ = ["LENGTHS", "METRES", "length_factors", "metres_of"]
+__all__ = ["LENGTHS", "METRES", "grid_unit", "length_factors", "metres_of"]
 
 #: Metres of one unit. The US survey foot differs by 2 in a million: 1.4 m at a state-plane northing of 2.3e6 ft.
 METRES = {"m": 1.0, "ft": 0.3048, "ft-us": 1200.0 / 3937.0, "km": 1000.0, "cm": 0.01, "mm": 0.001}
@@ -79,3 +79,8 @@ def length_factors(table: Table, columns: Mapping[str, int], source: Source, jou
             column=table.header[j],
         )
     return {role: factor for role, factor in factors.items() if factor != 1.0}
+
+
+def grid_unit(source: Source) -> float:
+    """Return the metres of the unit that the user states; a grid does not say its own."""
+    return 1.0 if source.unit is None else metres_of(source.unit, source.name)

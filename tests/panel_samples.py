@@ -15,8 +15,8 @@ import geofit
 from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.site_file import read_site
-from geofit.surfaces.surface import HorizonSurface
 
 SITE = Path(__file__).parent.parent / "sample_data" / "site.toml"
 WITH_PERIPHERY, FAULT = "T3-T2", "F1"
@@ -33,18 +33,18 @@ def sample_site() -> Site:
 
 
 @cache
-def fitted(name: str = WITH_PERIPHERY) -> HorizonSurface:
+def fitted(name: str = WITH_PERIPHERY) -> HorizonFit:
     site = sample_site()
     return geofit.fit_horizon(site.horizons[name], site.settings[name], boundary=site.boundary, name=name)
 
 
-def failing(surface: HorizonSurface) -> HorizonSurface:
+def failing(surface: HorizonFit) -> HorizonFit:
     """The same surface with a check that does not pass."""
     assert surface.accuracy is not None
     return surface.with_(accuracy=replace(surface.accuracy, sigma=0.61, passed=False))
 
 
-def cloud(n: int) -> HorizonSurface:
+def cloud(n: int) -> HorizonFit:
     """A surface with n points whose check is made up: a table does not mind."""
     rng = np.random.default_rng(5)
     points = PointSet(

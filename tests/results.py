@@ -8,14 +8,15 @@ import numpy as np
 
 from geofit import FitSettings, PointSet, Site
 from geofit.checks.storage import equal_accuracy
-from geofit.data.accuracy import Accuracy, Check, Conflict, Group, ReadBack, Seam
+from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Partition, ReadBack, Seam
 from geofit.data.messages import message
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
 from geofit.data.site import Hole, ImportIssue, Section, TableCount
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.result import HorizonResult
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface, Partition
+from geofit.surfaces.patch_surface import PatchSurface
 
 ORIGIN = np.array([500_000.0, 3_100_000.0, 1500.0])
 
@@ -97,16 +98,15 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         conflicts=(Conflict(130, 131, 0.8, "the borehole is more exact than the section"),),
     )
     corners = ((0.0, -600.0), (800.0, -600.0), (800.0, 600.0), (0.0, 600.0))
-    surface = HorizonSurface(
-        patches=patches,
-        origin=ORIGIN,
+    surface = HorizonFit(
+        surface=PatchSurface(patches, ORIGIN, name, frame="map"),
         points=points,
         settings=FitSettings(epsilon=epsilon),
         name=name,
         partition=Partition(tuple((x + ORIGIN[0], y + ORIGIN[1]) for x, y in corners), 120, 80, "Dense in the middle."),
         core=core,
         accuracy=accuracy,
-        fit={"smoothing": 0.0123, "frame": "map", "iterations": 3},
+        diagnostics={"smoothing": 0.0123, "frame": "map", "iterations": 3},
     )
     boundary = np.array([[-700.0, -600], [1500, -600], [1500, 600], [-700, 600]]) + ORIGIN[:2]
     site = Site(

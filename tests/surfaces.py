@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.patch_surface import PatchSurface
 
 ORIGIN = np.array([5e5, 3.1e6, 400.0])
 
@@ -38,6 +40,12 @@ def fold(nu=40, nv=12):
     x = 100 * u + 120 * np.sin(2 * np.pi * u) + 0.05 * y
     z = 200 * u + 5 * np.sin(y / 60)
     return Patch("limb", (3, 3), ku, kv, np.stack([x, y, z], axis=-1))
+
+
+def lifted(patch, z, name=None):
+    """The patch with other heights of its control points."""
+    control = np.concatenate([patch.control[..., :2], np.asarray(z)[..., None]], axis=-1)
+    return replace(patch, control=control, name=patch.name if name is None else name)
 
 
 def split(patch, cuts_u, cuts_v):
@@ -73,7 +81,7 @@ def horizon(patches, points=None, core=None, name="T1", outline=None, seam="tang
     core = np.zeros(len(points), bool) if core is None else core
     outline = None if outline is None else np.asarray(outline, float) + ORIGIN[:2]
     settings = FitSettings(seam=seam)
-    return HorizonSurface(tuple(patches), ORIGIN, points, settings, name, outline=outline, core=core)
+    return HorizonFit(PatchSurface(tuple(patches), ORIGIN, name, outline), points, settings, name, core=core)
 
 
 def nine():

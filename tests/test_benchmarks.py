@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geofit import FitSettings, HorizonSurface, PointSet
+from geofit import FitSettings, HorizonFit, PointSet
 from geofit.splines.bspline import clamped_knots
 from geofit.splines.patch import Patch
+from geofit.surfaces.patch_surface import PatchSurface
 
 FOLDER = Path(__file__).resolve().parents[1] / "benchmarks"
 
@@ -148,9 +149,9 @@ def test_time_of_a_fit_leaves_out_the_check(load):
     fit = load("fit")
     knots = clamped_knots([0, 1], 1)
     patch = Patch("core", (1, 1), knots, knots, np.zeros((2, 2, 3)))
-    surface = HorizonSurface((patch,), np.zeros(3), PointSet(np.zeros((3, 3))))
+    surface = HorizonFit(PatchSurface((patch,), np.zeros(3)), PointSet(np.zeros((3, 3))))
     seconds = {"conflicts": 1.0, "field": 2.0, "check": 4.0, "adjust": 8.0}
-    assert fit.fit_seconds(surface.with_(fit={"seconds": seconds})) == 3.0
+    assert fit.fit_seconds(surface.with_(diagnostics={"seconds": seconds})) == 3.0
 
 
 def test_without_data_real_says_so_and_exits_with_2(tmp_path):

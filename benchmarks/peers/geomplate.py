@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from geofit import PointSet
 from geofit.cad.faces import from_geom
-from geofit.surfaces.surface import HorizonSurface
+from geofit.fitting.horizon_fit import HorizonFit
+from geofit.surfaces.patch_surface import PatchSurface
 
 __all__ = ["geom_plate"]
 
@@ -13,7 +14,7 @@ PLATE = (3, 10, 2)
 SPLINE = (1e-3, 100, 8, 1e-3, 0)
 
 
-def geom_plate(points: PointSet) -> HorizonSurface:
+def geom_plate(points: PointSet) -> HorizonFit:
     """Fit a plate, approximate it by a B-spline surface, and return that as one patch about a local origin."""
     from OCP.GeomPlate import GeomPlate_BuildPlateSurface, GeomPlate_MakeApprox, GeomPlate_PointConstraint
     from OCP.gp import gp_Pnt
@@ -24,4 +25,4 @@ def geom_plate(points: PointSet) -> HorizonSurface:
         plate.Add(GeomPlate_PointConstraint(gp_Pnt(*place), 0))
     plate.Perform()
     spline = GeomPlate_MakeApprox(plate.Surface(), *SPLINE).Surface()
-    return HorizonSurface((from_geom("plate", spline),), origin, points)
+    return HorizonFit(PatchSurface((from_geom("plate", spline),), origin), points)

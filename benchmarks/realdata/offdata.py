@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from math import isfinite, nan
 
-from geofit import FitSettings, GeofitError, HorizonSurface, PointSet, fit_horizon
+from geofit import FitSettings, GeofitError, HorizonFit, PointSet, fit_horizon
 from geofit.data.prediction import OffData
 from geofit.prediction.examine import examine
 
@@ -51,7 +51,7 @@ class Off:
         return min(self.peers, key=lambda peer: peer[1])
 
 
-def off_data(surface: HorizonSurface, found: OffData | None) -> Off | None:
+def off_data(surface: HorizonFit, found: OffData | None) -> Off | None:
     """Take the figures of the page from an examination; None where there is nothing to show."""
     holes = next((one for one in found.left_out if one.scheme == "hole"), None) if found else None
     if found is None or holes is None:
@@ -59,7 +59,7 @@ def off_data(surface: HorizonSurface, found: OffData | None) -> Off | None:
     factor = found.uncertainty.factor if found.uncertainty else nan
     return Off(
         holes.groups, holes.rms, tuple(holes.peers.items()), holes.inside, holes.inside_raw, factor,
-        len(found.outliers), int(surface.core.sum()), str(surface.fit.get("energy", "")), notes=found.notes,
+        len(found.outliers), int(surface.core.sum()), str(surface.diagnostics.get("energy", "")), notes=found.notes,
     )  # fmt: skip
 
 

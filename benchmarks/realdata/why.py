@@ -36,7 +36,7 @@ def worse(errors: Errors) -> tuple[bool, bool]:
 def try_out(given: PointSet, left_out: PointSet | None, settings: FitSettings) -> Trial:
     """Score the regional field alone with its own smoothing, with ten times it, and with a tenth."""
     alone = replace(settings, core="none", max_iterations=0)
-    figures = fit_horizon(given, alone).fit
+    figures = fit_horizon(given, alone).diagnostics
     scored = [left_out_errors(given, left_out, alone)]
     for factor in (10.0, 0.1):
         scored.append(left_out_errors(given, left_out, replace(alone, smoothing=factor * figures["smoothing"])))

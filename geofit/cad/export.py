@@ -17,7 +17,7 @@ from geofit.cad.sewing import shell
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
 from geofit.data.messages import message
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 __all__ = ["write_brep", "write_iges"]
 
@@ -25,7 +25,7 @@ __all__ = ["write_brep", "write_iges"]
 DATE = "20000101.000000"
 
 
-def write_brep(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> None:
+def write_brep(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> None:
     """Write horizons as one compound of shells, in order; the format holds no names.
 
     The geometry stays about each horizon's origin, which is the shell's placement.
@@ -54,7 +54,7 @@ def write_brep(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]
             )
 
 
-def write_iges(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> None:
+def write_iges(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> None:
     """Write horizons as trimmed NURBS surfaces (entity 144), each with its horizon's name (entity 406-15).
 
     Raises
@@ -141,7 +141,7 @@ def _label(model: Any, name: str, first: int) -> None:
             entity.AddProperty(title)
 
 
-def _given(surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str]) -> Mapping[str, HorizonSurface]:
+def _given(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> Mapping[str, Surface]:
     if not surfaces:
         raise InputError(
             message("export.no-surface-write", "No surface to write"),

@@ -17,7 +17,7 @@ from geofit.cad.faces import faces_of
 from geofit.cad.imported import FileShape, document, products, quiet, surface_of, unique_name
 from geofit.data.errors import InputError
 from geofit.data.messages import message
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.patch_surface import PatchSurface
 
 __all__ = ["read_brep", "read_iges"]
 
@@ -27,7 +27,7 @@ SEWN = 1e-5
 UNNAMED = ("COMPOUND", "COMPSOLID", "SOLID", "SHELL", "FACE")
 
 
-def read_iges(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
+def read_iges(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     """Read the surfaces of an IGES file by name, in metres whatever its unit; see :func:`geofit.io.read_step`.
 
     Loose faces without a name make one surface, named as the file is.
@@ -61,7 +61,7 @@ def read_iges(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
     return {shape.name: surface_of(_sewn(shape)) for shape in _joined(shapes, source.stem)}
 
 
-def read_brep(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
+def read_brep(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     """Read the shapes of a BREP file, in the file's coordinates, which must be metres: the format has no unit.
 
     Each part of the outermost compound is a surface, unless all of them are single faces, which are one. The
@@ -101,7 +101,7 @@ def read_brep(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
             walk.Next()
     if all(len(faces_of(part)) == 1 for part in parts):
         parts = [whole]
-    found: dict[str, HorizonSurface] = {}
+    found: dict[str, PatchSurface] = {}
     for part in parts:
         count = len(faces_of(part))
         name = unique_name(source.stem, found)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 
 from geofit.cad.faces import along, edges_with_faces, explore, faces_of, from_geom
 from geofit.cad.trimming import is_height_field, needed
-from geofit.data.points import PointSet
-from geofit.geometry.trim_loops import TrimmedSurface
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.patch_surface import PatchSurface
+from geofit.surfaces.trimmed import TrimmedSurface
 
 __all__ = ["FileShape", "document", "products", "quiet", "surface_of", "unique_name"]
 
@@ -134,7 +133,7 @@ def _face_name(tool: Any, label: Any, face: Any, number: int) -> str:
     return name or f"face {number}"
 
 
-def surface_of(shape: FileShape, whole: bool = False) -> HorizonSurface:
+def surface_of(shape: FileShape, whole: bool = False) -> PatchSurface:
     """Return the faces of a shape as patches; where loops cut them, they are kept (unless ``whole``).
 
     If the shape stands over every place once, the loop of its free edges becomes the surface's outline.
@@ -149,18 +148,17 @@ def surface_of(shape: FileShape, whole: bool = False) -> HorizonSurface:
     if not origin.any() and np.abs(first).max() > 1e4:
         origin = np.round(first, -2)
         patches = [_moved(patch, np.eye(3), -origin) for patch in patches]
-    surface = HorizonSurface(patches=tuple(patches), origin=origin, points=PointSet(np.empty((0, 3))), name=shape.name)
     loops = tuple(loops for _, loops in faces)
+    surface = PatchSurface(tuple(patches), origin, shape.name)
     if any(loops):
-        own = {f.name: getattr(surface, f.name) for f in fields(surface)}
-        surface = TrimmedSurface(**own, loops=loops)
+        surface = TrimmedSurface(tuple(patches), origin, shape.name, trim_loops=loops)
     outline = _outline(shape) if is_height_field(surface) or _looks_one_way(surface) else None
-    if outline is None or needed(surface.with_(outline=outline), 1e-6) is None:
+    if outline is None or needed(ended := replace(surface, outline=outline), 1e-6) is None:
         return surface
-    return surface.with_(outline=outline)
+    return ended
 
 
-def _looks_one_way(surface: HorizonSurface) -> bool:
+def _looks_one_way(surface: PatchSurface) -> bool:
     """Whether all normals point upwards, or all downwards: rounded control points are no exact height field."""
     share = np.linspace(0, 1, ALONG)
     heights = []

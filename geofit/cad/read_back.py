@@ -14,7 +14,7 @@ from geofit.cad.faces import along, edges_with_faces, faces_of, free_edges, free
 from geofit.data.accuracy import Check, ReadBack, Seam
 from geofit.data.messages import Message, message
 from geofit.geometry.projection import project
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface, Surface
 
 if TYPE_CHECKING:
     from geofit.cad.imported import FileShape
@@ -31,16 +31,16 @@ SAMPLES = 200
 MEASURED = 2000
 
 
-def read_back(surface: HorizonSurface, shape: FileShape, found: HorizonSurface, written: Any, path: Path) -> ReadBack:
+def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written: Any, path: Path) -> ReadBack:
     """Check a horizon as it stands in the file against the one that was written.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : FittedSurface
         What was written, with its points.
     shape : FileShape
         What was read, as OpenCASCADE's shape.
-    found : HorizonSurface
+    found : Surface
         The same as patches, whole even where the outline trims them: points beyond it are measured as in the
         fit.
     written : TopoDS_Shell
@@ -205,7 +205,7 @@ def _words(seams: tuple[Seam, ...], field: str, unit: str) -> Message:
     )
 
 
-def _distances(surface: HorizonSurface, shape: FileShape, found: HorizonSurface) -> tuple[Floats, Message]:
+def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tuple[Floats, Message]:
     """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
     xyz = surface.points.xyz
     if not len(xyz):
@@ -316,7 +316,7 @@ def _edge_tolerances(shape: Any) -> tuple[float, float]:
     return inner, outer
 
 
-def _outline_check(surface: HorizonSurface, shape: FileShape, free: list[Any]) -> Check:
+def _outline_check(surface: FittedSurface, shape: FileShape, free: list[Any]) -> Check:
     name, limit = "read-back outline", surface.settings.boundary_tolerance
     if surface.outline is None:
         return Check(
@@ -340,7 +340,7 @@ def _outline_check(surface: HorizonSurface, shape: FileShape, free: list[Any]) -
     return Check(name, True if off <= limit else None, off, limit, "m", reach)
 
 
-def _normal_check(found: HorizonSurface, seams: tuple[Seam, ...]) -> Check:
+def _normal_check(found: Surface, seams: tuple[Seam, ...]) -> Check:
     """All normals on one side of the mean one; a fold has none such, there neighbours must not flip."""
     share = np.linspace(0.01, 0.99, 25)
     normals = []

@@ -17,7 +17,7 @@ from geofit.data.messages import Message, message
 from geofit.geometry.seams import seams
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 if TYPE_CHECKING:
     from cadquery import Shell
@@ -33,7 +33,7 @@ SEWING = 1e-7
 TRIM = 1e-6
 
 
-def to_shape(surface: HorizonSurface) -> Shell:
+def to_shape(surface: Surface) -> Shell:
     """Return the patches as one sewn cadquery shell in map coordinates, trimmed to the outline.
 
     The geometry stays about the surface's local origin, which is carried as the shell's placement: the
@@ -50,7 +50,7 @@ def to_shape(surface: HorizonSurface) -> Shell:
     return cadquery.Shell(shell(surface).Located(placement(surface.origin)))
 
 
-def shell(surface: HorizonSurface) -> Any:
+def shell(surface: Surface) -> Any:
     """Return the sewn TopoDS_Shell in local coordinates; errors as :func:`to_shape`."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_Sewing
     from OCP.BRepCheck import BRepCheck_Analyzer
@@ -126,8 +126,8 @@ def _shell_of(face: Any) -> Any:
     return result
 
 
-def _why_loose(surface: HorizonSurface, shells: int) -> Message:
-    open_seams = [seam for seam in seams(surface) if seam.gap > SEWING]
+def _why_loose(surface: Surface, shells: int) -> Message:
+    open_seams = [seam for seam in seams(surface.patches) if seam.gap > SEWING]
     if open_seams:
         places = tuple(
             message(
@@ -153,7 +153,7 @@ def _why_loose(surface: HorizonSurface, shells: int) -> Message:
     )
 
 
-def one_surface(surface: HorizonSurface) -> Patch:
+def one_surface(surface: Surface) -> Patch:
     """Merge patches that make a tensor grid into one B-spline surface, for tools that want a single one.
 
     The seams keep the smoothness they have: a tangent seam becomes a knot of multiplicity degree - 1 (C1), a

@@ -27,7 +27,8 @@ from geofit.data.accuracy import ReadBack
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.patch_surface import PatchSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["UNITS", "Unit", "read_shapes", "read_step", "store_step", "write_step"]
 
@@ -50,7 +51,7 @@ PARAMETERS = {
 
 
 def write_step(
-    surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str], *, unit: Unit = "m"
+    surfaces: Mapping[str, FittedSurface], path: str | PathLike[str], *, unit: Unit = "m"
 ) -> dict[str, ReadBack]:
     """Write horizons as one STEP AP242 assembly, read it back with OpenCASCADE and check it.
 
@@ -59,7 +60,7 @@ def write_step(
 
     Parameters
     ----------
-    surfaces : mapping of str to HorizonSurface
+    surfaces : mapping of str to FittedSurface
         Horizons by the name that the file shall give them.
     path : path
         The file, usually ``*.step``.
@@ -86,9 +87,7 @@ def write_step(
     }
 
 
-def store_step(
-    surfaces: Mapping[str, HorizonSurface], path: str | PathLike[str], *, unit: Unit = "m"
-) -> dict[str, Any]:
+def store_step(surfaces: Mapping[str, FittedSurface], path: str | PathLike[str], *, unit: Unit = "m") -> dict[str, Any]:
     """Write the same file without reading it back, for a project of one's own; return the shells by horizon.
 
     Errors as :func:`write_step`.
@@ -114,12 +113,12 @@ def store_step(
     return shells
 
 
-def read_step(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
+def read_step(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     """Read the faces of a STEP file, ours or any other, as surfaces: one for each product.
 
     Planes, cylinders and other surfaces are converted to NURBS. A trimmed face becomes the patch over the
     smallest parameter rectangle that holds it, with the loops that cut it: such a surface is a
-    :class:`geofit.geometry.trim_loops.TrimmedSurface`, whose ``distance`` ends at the loops. If the product is a height
+    :class:`geofit.surfaces.trimmed.TrimmedSurface`, whose ``distance`` ends at the loops. If the product is a height
     field, the loop of its free edges becomes the surface's outline, which ``elevation`` respects.
 
     Parameters
@@ -129,7 +128,7 @@ def read_step(path: str | PathLike[str]) -> dict[str, HorizonSurface]:
 
     Returns
     -------
-    dict of str to HorizonSurface
+    dict of str to PatchSurface
         Without points. The origin is the product's placement, or for a product that stands in map coordinates
         itself, a rounded corner near its first control point.
 
@@ -199,7 +198,7 @@ def _parameters(unit: Unit = "m") -> Iterator[None]:
             getattr(Interface_Static, setter)(name, value)
 
 
-def _fill(document: Any, surfaces: Mapping[str, HorizonSurface], shells: Mapping[str, Any]) -> None:
+def _fill(document: Any, surfaces: Mapping[str, FittedSurface], shells: Mapping[str, Any]) -> None:
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from geofit.cad.faces import to_geom
 from geofit.geometry.elevation import plan_map
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -30,12 +30,12 @@ CURVE = 1e-8
 SMALL = 1e-6
 
 
-def is_height_field(surface: HorizonSurface) -> bool:
+def is_height_field(surface: Surface) -> bool:
     """Whether every patch is a height field over the map."""
     return all(plan_map(patch) is not None for patch in surface.patches)
 
 
-def needed(surface: HorizonSurface, tolerance: float) -> Polygon | None:
+def needed(surface: Surface, tolerance: float) -> Polygon | None:
     """Return the outline in local coordinates if it cuts something off the surface, else None."""
     if surface.outline is None:
         return None

@@ -15,10 +15,11 @@ from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
 from geofit.checks.trend import trend
 from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Seam
+from geofit.data.labels import Labels
 from geofit.data.messages import Message, message
 from geofit.geometry.projection import Projection, project
 from geofit.geometry.seams import seams
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["check", "sigma"]
 
@@ -44,7 +45,7 @@ def sigma(residuals: Floats) -> float:
 
 
 def check(
-    surface: HorizonSurface,
+    surface: FittedSurface,
     conflicts: Sequence[Conflict] = (),
     notes: Sequence[Message] = (),
     *,
@@ -54,7 +55,7 @@ def check(
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : FittedSurface
         The fit; its ``core`` marks the points that it must meet exactly. Without patches (triangles of a file) the
         surface itself is not looked at.
     conflicts : sequence of Conflict
@@ -68,8 +69,7 @@ def check(
     if projection is None:
         projection = project(surface.patches, points.xyz - surface.origin)
     d = projection.distance
-    names = np.array([patch.name for patch in surface.patches] or [surface.name])
-    patch = names[projection.patch] if len(d) else np.empty(0, dtype=names.dtype)
+    patch = Labels(projection.patch.astype(np.int32), tuple(one.name for one in surface.patches) or (surface.name,))
     found = seams(surface.patches)
     value = sigma(d)
     magnitude = np.abs(d)
@@ -96,11 +96,11 @@ def check(
         max_abs=float(magnitude.max(initial=0.0)),
         mean=float(d.mean()) if len(d) else 0.0,
         residuals=d,
-        patch=patch,
+        patch=patch.words(),
         by_patch=_groups(d, patch),
-        by_kind=_groups(d, points.kind),
-        by_hole=_groups(d, points.hole),
-        by_section=_groups(d, points.section),
+        by_kind=_groups(d, points.labels["kind"]),
+        by_hole=_groups(d, points.labels["hole"]),
+        by_section=_groups(d, points.labels["section"]),
         over=over,
         worst=_worst(magnitude),
         seams=found,
@@ -110,7 +110,7 @@ def check(
     )
 
 
-def _groups(d: Floats, labels: NDArray[np.str_]) -> dict[str, Group]:
+def _groups(d: Floats, labels: Labels) -> dict[str, Group]:
     return {
         label: Group(len(part), sigma(part), float(np.abs(part).max()), float(part.mean()))
         for label, part in by_label(d, labels).items()
@@ -125,7 +125,7 @@ def _worst(magnitude: Floats) -> tuple[int, ...]:
     return tuple(some[np.argsort(-magnitude[some], kind="stable")[:WORST]].tolist())
 
 
-def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool_]) -> list[Check]:
+def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_]) -> list[Check]:
     """Ask whether the core's points are on the surface, and the other ones within the interior tolerance."""
     checks, tolerance = [], surface.settings.interior_tolerance
     if exact.any():
@@ -151,7 +151,7 @@ def _tolerance_checks(surface: HorizonSurface, d: Floats, exact: NDArray[np.bool
     return checks
 
 
-def _seam_checks(surface: HorizonSurface, found: tuple[Seam, ...]) -> list[Check]:
+def _seam_checks(surface: FittedSurface, found: tuple[Seam, ...]) -> list[Check]:
     if not found:
         return []
     gap, angle = max(seam.gap for seam in found), max(seam.angle for seam in found)
@@ -169,9 +169,7 @@ def _seam_checks(surface: HorizonSurface, found: tuple[Seam, ...]) -> list[Check
     ]
 
 
-def _residual_checks(
-    surface: HorizonSurface, d: Floats, patch: NDArray[np.str_], loose: NDArray[np.bool_]
-) -> list[Check]:
+def _residual_checks(surface: FittedSurface, d: Floats, patch: Labels, loose: NDArray[np.bool_]) -> list[Check]:
     """Test the residuals of the approximated points: a core's are zero by construction."""
     if not loose.any():
         return []
@@ -180,7 +178,7 @@ def _residual_checks(
     return residual_checks(xyz, d[some], patch[some], surface.settings.interior_tolerance)
 
 
-def _surface_checks(surface: HorizonSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:
+def _surface_checks(surface: FittedSurface, projection: Projection, honoured: NDArray[np.bool_]) -> list[Check]:
     """Look at the surface itself, at and between its points."""
     if not surface.patches:
         return []

@@ -10,10 +10,9 @@ from numpy.typing import NDArray
 
 from geofit.geometry.clip import inside
 from geofit.geometry.trim_loops import inside as inside_loops
-from geofit.geometry.trim_loops import loops_of
 from geofit.splines.bspline import collocation
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["Lattice", "lattices", "places"]
 
@@ -41,9 +40,9 @@ class Lattice:
         return Lattice(self.points[1::2, 1::2], self.normal[1::2, 1::2], self.within[1::2, 1::2])
 
 
-def lattices(surface: HorizonSurface) -> tuple[Lattice, ...]:
+def lattices(surface: FittedSurface) -> tuple[Lattice, ...]:
     """Lay a lattice over each patch, fine enough that no wiggle of one control point falls between its places."""
-    each = zip(surface.patches, loops_of(surface), strict=True)
+    each = zip(surface.patches, surface.loops, strict=True)
     return tuple(_lattice(surface, patch, loops) for patch, loops in each)
 
 
@@ -52,7 +51,7 @@ def places(parts: Sequence[Lattice]) -> tuple[Floats, Floats]:
     return np.concatenate([p.points[p.within] for p in parts]), np.concatenate([p.normal[p.within] for p in parts])
 
 
-def _lattice(surface: HorizonSurface, patch: Patch, loops: tuple[Floats, ...]) -> Lattice:
+def _lattice(surface: FittedSurface, patch: Patch, loops: tuple[Floats, ...]) -> Lattice:
     u, v = (_ends_and_middles(knots, LOOPED if loops else 1) for knots in (patch.knots_u, patch.knots_v))
     points, su, sv = _grid(patch, u, v)
     lengths = np.linalg.norm(su, axis=-1) * np.linalg.norm(sv, axis=-1)

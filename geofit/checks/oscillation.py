@@ -20,7 +20,7 @@ from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.geometry.projection import Projection
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["oscillation"]
 
@@ -48,13 +48,13 @@ NAMED = 20
 
 
 def oscillation(
-    surface: HorizonSurface, parts: Sequence[Lattice], projection: Projection, honoured: Bools
+    surface: FittedSurface, parts: Sequence[Lattice], projection: Projection, honoured: Bools
 ) -> Check | None:
     """Compare the surface between its points with what the points support.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : FittedSurface
         The surface.
     parts : sequence of Lattice
         Its places.
@@ -114,7 +114,7 @@ def oscillation(
     return Check("oscillation", False, value, limit, "m", partly(text, len(chosen), given), named)
 
 
-def _normals(surface: HorizonSurface, projection: Projection, chosen: Ints) -> Floats:
+def _normals(surface: FittedSurface, projection: Projection, chosen: Ints) -> Floats:
     normals = np.zeros((len(chosen), 3))
     for index, patch in enumerate(surface.patches):
         mine = projection.patch[chosen] == index

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from scipy.special import binom, ndtri
 
 from geofit.data.accuracy import Check
+from geofit.data.labels import Labels
 from geofit.data.messages import Message, message
 
 __all__ = ["by_label", "residual_checks"]
@@ -33,7 +34,7 @@ NEIGHBOURS = 6
 CROOKED = 0.1
 
 
-def residual_checks(xyz: Floats, d: Floats, patch: NDArray[np.str_], tolerance: float) -> list[Check]:
+def residual_checks(xyz: Floats, d: Floats, patch: Labels, tolerance: float) -> list[Check]:
     """Test the residuals of the approximated points.
 
     Parameters
@@ -42,7 +43,7 @@ def residual_checks(xyz: Floats, d: Floats, patch: NDArray[np.str_], tolerance: 
         The points, metres, about a local origin.
     d : (n,) array
         Their signed distances from the surface, metres.
-    patch : (n,) array of str
+    patch : Labels
         The patch that each lies on.
     tolerance : float
         Interior tolerance, metres.
@@ -69,14 +70,11 @@ def partly(text: Message, part: int, n: int) -> Message:
     )
 
 
-def by_label(d: Floats, labels: NDArray[np.str_]) -> dict[str, Floats]:
-    """Return the distances of each label, labels and distances in their order."""
-    if len(labels) and (labels == labels[0]).all():
-        return {str(labels[0]): d}
-    numbers: dict[str, int] = {}
-    number = np.array([numbers.setdefault(label, len(numbers)) for label in labels.tolist()], dtype=np.int64)
-    parts = np.split(d[np.argsort(number, kind="stable")], np.cumsum(np.bincount(number))[:-1])
-    return dict(zip(numbers, parts, strict=False))
+def by_label(d: Floats, labels: Labels) -> dict[str, Floats]:
+    """Return the distances of each label, labels in the order of their first appearance, distances in theirs."""
+    codes, first = np.unique(labels.codes, return_index=True)
+    parts = np.split(d[np.argsort(labels.codes, kind="stable")], np.cumsum(np.bincount(labels.codes)[codes])[:-1])
+    return {labels.table[codes[k]]: parts[k] for k in np.argsort(first)} if len(codes) else {}
 
 
 def _thinned(n: int) -> NDArray[np.int64]:
@@ -86,7 +84,7 @@ def _thinned(n: int) -> NDArray[np.int64]:
     return np.sort(np.random.default_rng(0).choice(n, MOST, replace=False))
 
 
-def _bias(d: Floats, patch: NDArray[np.str_], tolerance: float) -> Check:
+def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
     """Whether a patch lies to one side of its points: Student's t and the sign test, held against the tolerance."""
     rows = {name: part for name, part in by_label(d, patch).items() if len(part) >= FEW}
     if not rows:

@@ -12,7 +12,7 @@ from geofit.checks.lattice import Lattice
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["self_crossing"]
 
@@ -27,14 +27,14 @@ TOUCH = 1e-6
 NAMED = 20
 
 
-def self_crossing(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check:
+def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     """Look for places where the surface passes through itself.
 
     A height field over the map or over its best plane cannot: over each place of its frame it stands once. Any
     other surface is looked at as triangles between the ends and middles of its spans: a crossing smaller than
     these is left to OpenCASCADE's test of the file.
     """
-    frame = surface.fit.get("frame")
+    frame = surface.frame
     if all(plan_map(patch) is not None for patch in surface.patches):
         text = message(
             "check.height-field-map-stands",

@@ -12,10 +12,10 @@ from geofit.checks.lattice import Lattice, places
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
-from geofit.geometry.trim_loops import inside, loops_of
+from geofit.geometry.trim_loops import inside
 from geofit.splines.bspline import greville
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["shape_checks"]
 
@@ -37,7 +37,7 @@ NAMED = 20
 PIECES = 100
 
 
-def shape_checks(surface: HorizonSurface, parts: Sequence[Lattice]) -> list[Check]:
+def shape_checks(surface: FittedSurface, parts: Sequence[Lattice]) -> list[Check]:
     """Look at the patches on their lattices: "normals", "patches", "elevation range", "area" where they apply."""
     checks = [_normals(surface, parts), _patches(surface)]
     if len(surface.points) and np.ptp(surface.points.xyz[:, 2]) > 0:
@@ -47,14 +47,14 @@ def shape_checks(surface: HorizonSurface, parts: Sequence[Lattice]) -> list[Chec
     return checks
 
 
-def _normals(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check:
+def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     """Folds and flipped normals: a fold that is meant turns its normals; any other surface's look to one side."""
     points, normal = places(parts)
     if not len(points):
         points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
         normal = np.concatenate([p.normal.reshape(-1, 3) for p in parts])
     turned = np.linalg.norm(normal, axis=1) < 1e-9
-    frame = surface.fit.get("frame")
+    frame = surface.frame
     if frame != "sections":
         upward = np.array([0.0, 0.0, 1.0]) if frame == "map" else _majority(normal)
         turned |= normal @ upward < 0
@@ -85,12 +85,12 @@ def _majority(normal: Floats) -> Floats:
     return np.asarray(mean if np.median(normal @ mean) >= 0 else -mean)
 
 
-def _patches(surface: HorizonSurface) -> Check:
+def _patches(surface: FittedSurface) -> Check:
     """Edges without length, corners without an angle, control points that run back over their neighbours."""
     faults: list[tuple[str, Floats]] = []
-    for patch, loops in zip(surface.patches, loops_of(surface), strict=True):
+    for patch, loops in zip(surface.patches, surface.loops, strict=True):
         faults += [(patch.name, place) for place in _collapsed(patch, loops)]
-        if surface.fit.get("frame") != "best-plane" and plan_map(patch) is None:
+        if surface.frame != "best-plane" and plan_map(patch) is None:
             # A height field's control points stand in order by construction.
             faults += [(patch.name, place) for place in _out_of_order(patch, loops)]
     count = len(faults)
@@ -147,7 +147,7 @@ def _out_of_order(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
     return list(np.concatenate(found))
 
 
-def _elevation_range(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check:
+def _elevation_range(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     points, _ = places(parts)
     if not len(points):
         points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
@@ -162,7 +162,7 @@ def _elevation_range(surface: HorizonSurface, parts: Sequence[Lattice]) -> Check
     return Check("elevation range", value <= limit, value, limit, "m", text, where)
 
 
-def _area(surface: HorizonSurface) -> Check:
+def _area(surface: FittedSurface) -> Check:
     """Area of the surface's plan within the study area, beside the area of its polygon."""
     assert surface.outline is not None
     outline = surface.outline - surface.origin[:2]
@@ -192,8 +192,8 @@ def _area(surface: HorizonSurface) -> Check:
     return Check("area", off <= UNCOVERED, off, UNCOVERED, "%", text)
 
 
-def _covered(surface: HorizonSurface, outline: Floats) -> float:
-    faces = list(zip(surface.patches, loops_of(surface), strict=True))
+def _covered(surface: FittedSurface, outline: Floats) -> float:
+    faces = list(zip(surface.patches, surface.loops, strict=True))
     if all(not loops and plan_map(patch) is not None for patch, loops in faces):
         corners = [patch.control[[0, -1, -1, 0], [0, 0, -1, -1], :2] for patch, _ in faces]
         return sum(abs(_signed_area(_clipped(outline, quad))) for quad in corners)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["Storage", "equal_accuracy"]
 
@@ -32,7 +32,7 @@ class Storage:
     grid_points: int | None
 
 
-def equal_accuracy(surface: HorizonSurface, tolerance: float) -> Storage:
+def equal_accuracy(surface: FittedSurface, tolerance: float) -> Storage:
     """Count the points of a TIN and a grid that hold a surface within a tolerance.
 
     The surface is sampled at about 12,000 places; one that is steep, or no height over the map, is turned so
@@ -42,7 +42,7 @@ def equal_accuracy(surface: HorizonSurface, tolerance: float) -> Storage:
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : FittedSurface
         Any patches.
     tolerance : float
         Largest distance along the mean normal, metres.

@@ -12,7 +12,7 @@ from geofit.checks.lattice import Lattice, places
 from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["trend"]
 
@@ -33,12 +33,12 @@ HUBER = 1.5
 NAMED = 20
 
 
-def trend(surface: HorizonSurface, parts: Sequence[Lattice], honoured: Bools) -> Check | None:
+def trend(surface: FittedSurface, parts: Sequence[Lattice], honoured: Bools) -> Check | None:
     """Hold the surface where no point is near against the robust plane of the points.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : FittedSurface
         The surface.
     parts : sequence of Lattice
         Its places.
@@ -53,12 +53,12 @@ def trend(surface: HorizonSurface, parts: Sequence[Lattice], honoured: Bools) ->
         the points.
     """
     points = surface.points.xyz[honoured] - surface.origin
-    if len(points) < FEWEST or surface.fit.get("frame") == "sections":
+    if len(points) < FEWEST or surface.frame == "sections":
         return None
     where, normal = places(parts)
     if not len(where):
         return None
-    axes = np.eye(3) if surface.fit.get("frame") == "map" else _plane_axes(points, normal)
+    axes = np.eye(3) if surface.frame == "map" else _plane_axes(points, normal)
     every, there = points @ axes.T, where @ axes.T
     local = every
     if len(every) > MOST:

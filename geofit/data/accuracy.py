@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import Message
 
-__all__ = ["Accuracy", "Check", "Conflict", "Group", "ReadBack", "Seam", "plain"]
+__all__ = ["Accuracy", "Check", "Conflict", "Group", "Partition", "ReadBack", "Seam", "plain"]
 
 Floats = NDArray[np.float64]
 
@@ -62,6 +62,20 @@ class Conflict:
     dropped: int
     difference: float
     text: Message
+
+
+@dataclass(frozen=True)
+class Partition:
+    """How the points were split into core and periphery, and why (paper, sec. 3.2; fig. 3a).
+
+    ``corners`` are the core's four corners in map coordinates (None without a core), ``core`` and
+    ``periphery`` count points, ``reason`` says in words what was chosen.
+    """
+
+    corners: tuple[tuple[float, float], ...] | None
+    core: int
+    periphery: int
+    reason: Message
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,7 +141,10 @@ class ReadBack:
 
 
 def plain(value: Any) -> Any:
-    """Turn dataclasses, arrays and numbers into what JSON holds; nan and infinities become null, messages code, text and params."""
+    """Turn dataclasses, arrays and numbers into what JSON holds.
+
+    nan and infinities become null; a message becomes its code, text and parameters.
+    """
     if isinstance(value, Message):
         return plain(value.as_data())
     if is_dataclass(value) and not isinstance(value, type):

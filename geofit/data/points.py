@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import PointsError
+from geofit.data.labels import Labels
 from geofit.data.messages import Message, Verbatim, message
 
 __all__ = ["KINDS", "PointSet"]
@@ -22,7 +24,10 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@dataclass(frozen=True, eq=False)
+_WORDS = ("kind", "hole", "section", "file")
+
+
+@dataclass(frozen=True, eq=False, init=False)
 class PointSet:
     """Points of one horizon, each traceable to a row of a file (paper, sec. 2).
 
@@ -42,6 +47,11 @@ class PointSet:
     file : str or (n,) array_like of str
         Name of the source file; empty where unknown.
 
+    Attributes
+    ----------
+    labels : mapping of str to Labels
+        Codes of "kind", "hole", "section" and "file": what is held, and what large sets are grouped by.
+
     Raises
     ------
     PointsError
@@ -55,29 +65,22 @@ class PointSet:
     """
 
     xyz: Floats
-    kind: Strings = "point"  # type: ignore[assignment]
-    hole: Strings = ""  # type: ignore[assignment]
-    section: Strings = ""  # type: ignore[assignment]
-    accuracy: Floats = np.nan  # type: ignore[assignment]
-    row: Ints = 0  # type: ignore[assignment]
-    file: Strings = ""  # type: ignore[assignment]
+    accuracy: Floats
+    row: Ints
+    labels: Mapping[str, Labels]
 
-    if TYPE_CHECKING:
-        # What may be given is wider than what is held.
-        def __init__(
-            self,
-            xyz: ArrayLike,
-            kind: ArrayLike = ...,
-            hole: ArrayLike = ...,
-            section: ArrayLike = ...,
-            accuracy: ArrayLike = ...,
-            row: ArrayLike = ...,
-            file: ArrayLike = ...,
-        ) -> None: ...
-
-    def __post_init__(self) -> None:
+    def __init__(
+        self,
+        xyz: ArrayLike,
+        kind: ArrayLike | Labels = "point",
+        hole: ArrayLike | Labels = "",
+        section: ArrayLike | Labels = "",
+        accuracy: ArrayLike = np.nan,
+        row: ArrayLike = 0,
+        file: ArrayLike | Labels = "",
+    ) -> None:
         try:
-            xyz = np.array(self.xyz, dtype=np.float64)
+            xyz = np.array(xyz, dtype=np.float64)
         except (TypeError, ValueError) as error:
             raise PointsError(
                 message(
@@ -111,10 +114,10 @@ class PointSet:
             )
         n = len(xyz)
         self._set("xyz", xyz)
-        for name in ("kind", "hole", "section", "file"):
-            self._set(name, _column(name, getattr(self, name), n, np.str_))
-        self._set("accuracy", _column("accuracy", self.accuracy, n, np.float64))
-        self._set("row", _column("row", self.row, n, np.int64))
+        self._set("accuracy", _column("accuracy", accuracy, n, np.float64))
+        self._set("row", _column("row", row, n, np.int64))
+        words = {"kind": kind, "hole": hole, "section": section, "file": file}
+        object.__setattr__(self, "labels", {name: _labels(name, values, n) for name, values in words.items()})
         wrong = np.flatnonzero((self.accuracy <= 0) | np.isinf(self.accuracy))
         if wrong.size:
             raise PointsError(
@@ -134,23 +137,46 @@ class PointSet:
     def __len__(self) -> int:
         return len(self.xyz)
 
+    @cached_property
+    def kind(self) -> Strings:
+        """Source kind of each point, (n,)."""
+        return self.labels["kind"].words()
+
+    @cached_property
+    def hole(self) -> Strings:
+        """Hole or adit of each point, (n,); empty where there is none."""
+        return self.labels["hole"].words()
+
+    @cached_property
+    def section(self) -> Strings:
+        """Section of each point, (n,); empty where there is none."""
+        return self.labels["section"].words()
+
+    @cached_property
+    def file(self) -> Strings:
+        """Source file of each point, (n,); empty where unknown."""
+        return self.labels["file"].words()
+
+    def _columns(self) -> dict[str, Any]:
+        return {"xyz": self.xyz, "accuracy": self.accuracy, "row": self.row, **self.labels}
+
     def __getitem__(self, index: Any) -> PointSet:
         """Return the points at an index array, a mask or a slice."""
-        return PointSet(
-            **{f.name: np.atleast_1d(getattr(self, f.name)[index]) for f in fields(self)}
-            | {"xyz": np.atleast_2d(self.xyz[index])}
-        )
+        index = np.atleast_1d(index) if np.ndim(index) == 0 and not isinstance(index, slice) else index
+        return PointSet(**{name: column[index] for name, column in self._columns().items()})
 
     def with_(self, **changes: Any) -> PointSet:
         """Return a copy with some columns replaced."""
-        return replace(self, **changes)
+        return PointSet(**{**self._columns(), **changes})
 
     @classmethod
     def concatenate(cls, sets: Sequence[PointSet]) -> PointSet:
         """Join sets of points, in order."""
         if not sets:
             return cls(np.empty((0, 3)))
-        return cls(**{f.name: np.concatenate([getattr(s, f.name) for s in sets]) for f in fields(cls)})
+        columns: dict[str, Any] = {name: Labels.concatenate([s.labels[name] for s in sets]) for name in _WORDS}
+        arrays = {name: np.concatenate([getattr(s, name) for s in sets]) for name in ("xyz", "accuracy", "row")}
+        return cls(**columns, **arrays)
 
     def describe(self, index: int) -> Message:
         """Name one point as a person would look it up: hole or section, file and row."""
@@ -164,6 +190,16 @@ class PointSet:
         if file:
             return message("point.in-file", "{point}, {file} row {row}", point=what, file=file, row=row)
         return message("point.in-row", "{point}, row {row}", point=what, row=row) if row else what
+
+
+def _labels(name: str, values: ArrayLike | Labels, n: int) -> Labels:
+    if not isinstance(values, Labels):
+        if np.ndim(values) == 0:
+            return Labels.same(str(values), n)
+        values = Labels.of(_column(name, values, n, np.str_))
+    if len(values) != n:
+        raise PointsError(_wrong_shape(name, (len(values),), n))
+    return values
 
 
 def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
@@ -182,13 +218,15 @@ def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     if array.ndim == 0:
         return np.full(n, array, dtype=array.dtype)
     if array.shape != (n,):
-        raise PointsError(
-            message(
-                "points.shape-points-need-shape",
-                "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
-                name=name,
-                shape=array.shape,
-                n=n,
-            )
-        )
+        raise PointsError(_wrong_shape(name, array.shape, n))
     return array.copy()
+
+
+def _wrong_shape(name: str, shape: tuple[int, ...], n: int) -> Message:
+    return message(
+        "points.wrong-shape",
+        "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
+        name=name,
+        shape=shape,
+        n=n,
+    )

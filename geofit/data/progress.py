@@ -13,7 +13,8 @@ __all__ = ["Progress", "tell"]
 class Progress(Protocol):
     """Anything that can be called as ``progress(stage, fraction)``.
 
-    ``stage`` is one of :data:`geofit.data.terms.TERMS` ("partition", "core", ...) or a message, ``fraction`` runs from 0 to 1 over the whole task.
+    ``stage`` is one of :data:`geofit.data.terms.TERMS` ("partition", "core", ...) or a message; ``fraction`` runs
+    from 0 to 1 over the whole task.
     Returning ``False`` asks for a stop; any other value, ``None`` included, means go on.
     """
 

@@ -8,6 +8,7 @@ the control points that move is touched, and no change takes the surface off a p
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +21,9 @@ from geofit.fitting.model import Model
 from geofit.fitting.skin import least_change
 from geofit.geometry.projection import project
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+
+if TYPE_CHECKING:
+    from geofit.fitting.horizon_fit import HorizonFit
 
 __all__ = ["acted_on", "adjust", "pull_to", "support", "weigh"]
 
@@ -30,12 +33,12 @@ Floats = NDArray[np.float64]
 TANGENT_ROWS = 2
 
 
-def adjust(surface: HorizonSurface, patch: str, i: int, j: int, dz: float) -> HorizonSurface:
+def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> HorizonFit:
     """Move one control point, and the check with it.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         A fit.
     patch : str
         Name of the patch.
@@ -47,8 +50,8 @@ def adjust(surface: HorizonSurface, patch: str, i: int, j: int, dz: float) -> Ho
 
     Returns
     -------
-    HorizonSurface
-        The changed surface with its own check; ``fit["by_hand"]`` counts the changes.
+    HorizonFit
+        The changed surface with its own check; ``diagnostics["by_hand"]`` counts the changes.
 
     Raises
     ------
@@ -98,12 +101,12 @@ def adjust(surface: HorizonSurface, patch: str, i: int, j: int, dz: float) -> Ho
     )
 
 
-def pull_to(surface: HorizonSurface, point: int | ArrayLike, share: float = 1.0) -> HorizonSurface:
+def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
     """Pull the surface to a point, by the smallest change of the control points that act there.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         A fit.
     point : int or (3,) array_like
         Index of one of its points, or a place in map coordinates, metres.
@@ -112,7 +115,7 @@ def pull_to(surface: HorizonSurface, point: int | ArrayLike, share: float = 1.0)
 
     Returns
     -------
-    HorizonSurface
+    HorizonFit
         The changed surface with its own check; exact points stay exact.
 
     Raises
@@ -175,7 +178,7 @@ def pull_to(surface: HorizonSurface, point: int | ArrayLike, share: float = 1.0)
     )
 
 
-def weigh(surface: HorizonSurface, patch: str, i: int, j: int, weight: float) -> HorizonSurface:
+def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> HorizonFit:
     """Give a control point of the periphery another weight: above 1 draws the surface to it (paper, eq. 1).
 
     Parameters as those of :func:`adjust`; errors too. Control points that hold the tangent plane of a seam keep 1.
@@ -241,13 +244,13 @@ def weigh(surface: HorizonSurface, patch: str, i: int, j: int, weight: float) ->
     )
 
 
-def support(surface: HorizonSurface, patch: str, i: int, j: int) -> tuple[float, float, float, float]:
+def support(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[float, float, float, float]:
     """Return the rectangle (u0, u1, v0, v1) of the frame, metres, outside of which :func:`adjust` moves nothing."""
     model = _model(surface)
     return _support(model, _coefficient(model, _part(model, patch), i, j)[0])
 
 
-def acted_on(surface: HorizonSurface, patch: str, i: int, j: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def acted_on(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Return which points a control point acts on, (n,), and which of these are met exactly and so forbid its move.
 
     Raises
@@ -260,7 +263,7 @@ def acted_on(surface: HorizonSurface, patch: str, i: int, j: int) -> tuple[NDArr
     return acting, acting & _exact(model)
 
 
-def _model(surface: HorizonSurface) -> Model:
+def _model(surface: HorizonFit) -> Model:
     if surface.model is None:
         text = message(
             "edit.read-file-patches-no",
@@ -354,13 +357,13 @@ def _touches(part: Part, weights: Floats, acting: NDArray[np.bool_], model: Mode
     return any(acting[_coefficient(model, part, int(i), int(j))[0]] for i, j in np.argwhere(weights != 1))
 
 
-def _names(surface: HorizonSurface, which: NDArray[np.bool_]) -> tuple[Message | str, ...]:
+def _names(surface: HorizonFit, which: NDArray[np.bool_]) -> tuple[Message | str, ...]:
     """Name the first of some points."""
     first = [surface.points.describe(int(i)) for i in np.flatnonzero(which)[:2]]
     return tuple([*first, "..."] if which.sum() > 2 else first)
 
 
-def _target(surface: HorizonSurface, model: Model, point: int | ArrayLike) -> tuple[Floats, Floats, Message]:
+def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[Floats, Floats, Message]:
     """Return the place (1, 2) on the chart, the value (1,) or (1, 3) wanted there, and what to call it."""
     chart = model.problem.chart
     if isinstance(point, (int, np.integer)):
@@ -407,10 +410,10 @@ def _plain(patches: tuple[Patch, ...]) -> tuple[Patch, ...]:
     return tuple(replace(patch, weights=None) for patch in patches)
 
 
-def _changed(surface: HorizonSurface, model: Model, note: Message) -> HorizonSurface:
-    result = model.surface()
-    before, after = surface.accuracy, result.accuracy
+def _changed(fit: HorizonFit, model: Model, note: Message) -> HorizonFit:
+    result = fit.refitted(model)
+    before, after = fit.accuracy, result.accuracy
     assert before is not None
     assert after is not None
-    figures = {**surface.fit, **result.fit, "by_hand": surface.fit.get("by_hand", 0) + 1}
-    return result.with_(fit=figures, accuracy=replace(after, notes=(*before.notes, note)))
+    figures = {**result.diagnostics, "by_hand": fit.diagnostics.get("by_hand", 0) + 1}
+    return result.with_(diagnostics=figures, accuracy=replace(after, notes=(*before.notes, note)))

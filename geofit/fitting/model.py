@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.checks.check import check
-from geofit.data.accuracy import Conflict
+from geofit.data.accuracy import Conflict, Partition
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.assemble import patches_of
@@ -18,9 +18,9 @@ from geofit.fitting.net import Net, approximate_all
 from geofit.fitting.parametrize import Chart
 from geofit.fitting.partition import Split
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface, Partition
+from geofit.surfaces.patch_surface import PatchSurface
 
-__all__ = ["Model", "Problem", "trimmed"]
+__all__ = ["Model", "Problem"]
 
 Floats = NDArray[np.float64]
 
@@ -83,40 +83,20 @@ class Model:
         patches = patches_of(net.space, net.coefficients, net.core, frame, net.unit, net.lines, interpolated)
         return tuple(replace(patch, weights=self.weights.get(patch.name)) for patch in patches)
 
-    def surface(self) -> HorizonSurface:
-        """Return the surface of the control net, with its check."""
-        given, net = self.problem, self.net
-        surface = HorizonSurface(
-            patches=self.patches(),
-            origin=given.chart.frame.origin,
-            points=given.points,
-            settings=given.settings,
-            name=given.name,
-            outline=given.boundary if given.outline is None and given.chart.frame.kind == "map" else given.outline,
-            partition=given.partition(),
-            core=given.split.inside & given.kept,
-            model=self,
-        )
-        figures = {
-            "frame": given.chart.frame.kind,
+    def patch_surface(self) -> PatchSurface:
+        """Return the surface of the control net."""
+        given, frame = self.problem, self.problem.chart.frame
+        outline = given.boundary if given.outline is None and frame.kind == "map" else given.outline
+        return PatchSurface(self.patches(), frame.origin, given.name, outline, frame.kind)
+
+    def figures(self) -> dict[str, Any]:
+        """Return the figures of the fit for the report."""
+        net = self.net
+        return {
+            "frame": self.problem.chart.frame.kind,
             "energy": net.field.energy,
             "smoothing": net.field.smoothing,
             "noise": net.field.noise,
             "spacing": net.unit,
             "rounds": net.rounds,
-            "control_points": surface.control_points,
         }
-        surface = surface.with_(fit=figures)
-        return surface.with_(accuracy=check(surface, given.conflicts, (*given.chart.notes, *net.notes)))
-
-
-def trimmed(surface: HorizonSurface, outline: Floats) -> HorizonSurface:
-    """Return a fit that ends at an outline (k, 2), map coordinates, checked anew as far as it reaches.
-
-    What is made from it later, by hand or by a repair, ends there too.
-    """
-    assert surface.model is not None
-    assert surface.accuracy is not None
-    model = replace(surface.model, problem=replace(surface.model.problem, outline=outline))
-    shorter = surface.with_(outline=outline, model=model)
-    return shorter.with_(accuracy=check(shorter, surface.accuracy.conflicts, surface.accuracy.notes))

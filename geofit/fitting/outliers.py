@@ -32,7 +32,7 @@ def find_outliers(fit: LinearFit, factor: Floats, judged: NDArray[np.bool_] | No
     fit : LinearFit
         The fit.
     factor : (n,) array
-        Local factor of the field's standard deviation at each point (:mod:`geofit.prediction.calibration`).
+        Local factor of the field's standard deviation at each point (:mod:`geofit.fitting.calibration`).
     judged : (n,) array of bool, optional
         Points that may be outliers; all by default.
 

@@ -16,12 +16,12 @@ from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.fitting.adjust import adjust
 from geofit.fitting.conflicts import settle
+from geofit.fitting.horizon_fit import HorizonFit, fit_of
 from geofit.fitting.model import Model, Problem
 from geofit.fitting.parametrize import Chart, choose_chart
 from geofit.fitting.partition import Split, split_all, split_auto, split_none, split_rectangle
 from geofit.fitting.robust import fit_robustly
 from geofit.geometry.projection import project
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["fit_horizon"]
 
@@ -55,7 +55,7 @@ def fit_horizon(
     progress: Progress | None = None,
     *,
     name: str = "horizon",
-) -> HorizonSurface:
+) -> HorizonFit:
     """Fit one horizon: interpolate its dense core, approximate its periphery, check the result.
 
     Parameters
@@ -73,7 +73,7 @@ def fit_horizon(
 
     Returns
     -------
-    HorizonSurface
+    HorizonFit
         Patches, partition and accuracy. ``surface.accuracy.passed`` says whether sigma < epsilon.
 
     Raises
@@ -87,8 +87,8 @@ def fit_horizon(
 
     Notes
     -----
-    Li, Miao, Liu, Wang (2011), sec. 3.2 and 3.3. Stitching and export are separate: ``surface.to_shape()``,
-    ``surface.write_step(path)``.
+    Li, Miao, Liu, Wang (2011), sec. 3.2 and 3.3. Stitching and export are separate: ``fit.to_cadquery()``,
+    ``fit.write_step(path)``.
     """
     settings = settings or FitSettings()
     corners = _require(points, boundary)
@@ -99,7 +99,7 @@ def fit_horizon(
 
 def _fit_horizon(
     points: PointSet, settings: FitSettings, corners: Floats | None, clock: _Clock, name: str
-) -> HorizonSurface:
+) -> HorizonFit:
     clock.stage("conflicts", 0.0)
     chart = choose_chart(points, settings, corners)
     place = chart.values if chart.parametric else chart.plane
@@ -131,12 +131,12 @@ def _fit_horizon(
         model = fit_robustly(model, clock.stage)
 
     clock.stage("check", 0.8)
-    surface = model.surface()
+    surface = fit_of(model)
 
     clock.stage("adjust", 0.9)
     surface = _adjusted(model, surface)
     clock.stage("done", 1.0)
-    return surface.with_(fit={**surface.fit, "seconds": dict(clock.seconds)})
+    return surface.with_(diagnostics={**surface.diagnostics, "seconds": dict(clock.seconds)})
 
 
 def _corrected(model: Model, clock: _Clock) -> Model:
@@ -154,7 +154,7 @@ def _corrected(model: Model, clock: _Clock) -> Model:
     return model
 
 
-def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
+def _adjusted(model: Model, surface: HorizonFit) -> HorizonFit:
     """Adjust locally until sigma is below epsilon or no step helps, and say which."""
     given = model.problem
     for step in range(given.settings.max_iterations + 1):
@@ -173,7 +173,7 @@ def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
             break
         better = adjust(model.net, given.chart, given.kept & ~surface.core, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
-        candidate = None if tried is None else tried.surface()
+        candidate = None if tried is None else fit_of(tried)
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
             words = message(
                 "fit.sigma-stays-above-epsilon",
@@ -187,7 +187,7 @@ def _adjusted(model: Model, surface: HorizonSurface) -> HorizonSurface:
     return surface
 
 
-def _with_note(surface: HorizonSurface, note: Message) -> HorizonSurface:
+def _with_note(surface: HorizonFit, note: Message) -> HorizonFit:
     assert surface.accuracy is not None
     return surface.with_(accuracy=replace(surface.accuracy, notes=(*surface.accuracy.notes, note)))
 

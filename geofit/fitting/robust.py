@@ -15,11 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
+from geofit.fitting.calibration import common_factor
 from geofit.fitting.deletion import linear_fit
 from geofit.fitting.model import Model
 from geofit.fitting.outliers import LIMIT, find_outliers
 from geofit.fitting.posterior import posterior
-from geofit.prediction.crossval import common_factor
 
 __all__ = ["fit_robustly"]
 

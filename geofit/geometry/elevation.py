@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,8 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.geometry.cells import Cells, Place, descend, tabulate
 from geofit.splines import bspline
-from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.splines.patch import Patch, Patches
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -27,40 +26,40 @@ RIM = 1e-9
 PAIRED = 50_000
 
 
-def elevation(surface: HorizonSurface, x: ArrayLike, y: ArrayLike) -> Floats:
-    """Return the height of a surface at map coordinates.
+def elevation(patches: Sequence[Patch], origin: Floats, outline: Floats | None, x: ArrayLike, y: ArrayLike) -> Floats:
+    """Return the height of patches at map coordinates.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    patches : sequence of Patch
         Any patches. Height fields, whose x and y follow the parameters (control points at the Greville
         abscissae), are found from their control points and answered directly; other patches by search.
+    origin : (3,) array
+        Offset that turns the patches' coordinates into map coordinates, metres.
+    outline : (k, 2) array or None
+        Plan polygon in map coordinates that ends the surface.
     x, y : array_like
         Easting and northing, metres; they broadcast.
 
     Returns
     -------
     array
-        Elevation in metres; nan outside all patches or outside ``surface.outline``. The boundary is inside.
+        Elevation in metres; nan outside all patches or outside the outline. The boundary is inside.
         Where the surface stands over a place more than once, the highest.
     """
     x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-    plan = np.stack([x.ravel() - surface.origin[0], y.ravel() - surface.origin[1]])
+    plan = np.stack([x.ravel() - origin[0], y.ravel() - origin[1]])
     height = np.full(plan.shape[1], -np.inf)
-    folded: list[Patch] = []
-    for patch in surface.patches:
-        mapping = plan_map(patch)
-        if mapping is None:
-            folded.append(patch)
-        else:
-            _over_height_field(patch, mapping, plan, height)
+    fields, folded = Patches.of(patches).prepared(_sorted)
+    for single, mapping in fields:
+        _over_height_field(single, mapping, plan, height)
     if folded:
-        _over_folds(tuple(folded), plan, height)
+        _over_folds(folded, plan, height)
     height[np.isneginf(height)] = np.nan
-    if surface.outline is not None:
+    if outline is not None:
         known = np.flatnonzero(np.isfinite(height))
-        height[known[~_inside(surface.outline - surface.origin[:2], plan[:, known])]] = np.nan
-    return np.asarray((height + surface.origin[2]).reshape(x.shape))
+        height[known[~_inside(outline - origin[:2], plan[:, known])]] = np.nan
+    return np.asarray((height + origin[2]).reshape(x.shape))
 
 
 class Plan:
@@ -97,26 +96,30 @@ def plan_map(patch: Patch) -> Plan | None:
     return Plan(start, matrix)
 
 
-def _over_height_field(patch: Patch, mapping: Plan, plan: Floats, height: Floats) -> None:
-    u0, u1, v0, v1 = patch.domain
+def _over_height_field(single: Patches, mapping: Plan, plan: Floats, height: Floats) -> None:
+    u0, u1, v0, v1 = single[0].domain
     u, v = mapping.parameters(plan)
     rim_u, rim_v = RIM * (u1 - u0), RIM * (v1 - v0)
     inside = np.flatnonzero((u >= u0 - rim_u) & (u <= u1 + rim_u) & (v >= v0 - rim_v) & (v <= v1 + rim_v))
     if not len(inside):
         return
-    cells = _cells((patch,))
+    cells = single.prepared(tabulate)
     z = cells.points(cells.locate(0, u[inside], v[inside]))[2]
     height[inside] = np.maximum(height[inside], z)
 
 
-@lru_cache(maxsize=16)
-def _cells(patches: tuple[Patch, ...]) -> Cells:
-    return tabulate(patches)
+def _sorted(patches: Patches) -> tuple[list[tuple[Patches, Plan]], Patches]:
+    """Return the height fields over the map, each by itself with its map, and all other patches together."""
+    mapped = [(patch, plan_map(patch)) for patch in patches]
+    return (
+        [(Patches([patch]), mapping) for patch, mapping in mapped if mapping is not None],
+        Patches(patch for patch, mapping in mapped if mapping is None),
+    )
 
 
-def _over_folds(patches: tuple[Patch, ...], plan: Floats, height: Floats) -> None:
+def _over_folds(patches: Patches, plan: Floats, height: Floats) -> None:
     """Walk in plan from every piece of the patches that may lie over a place, and keep the highest."""
-    cells, flat, pieces = _cells(patches), _plan_cells(patches), _pieces(patches)
+    cells, flat, pieces = patches.prepared(tabulate), patches.prepared(_plan_cells), patches.prepared(_pieces)
     size = np.ptp(pieces.high, axis=1).max()
     candidates = np.flatnonzero(
         (plan >= pieces.low.min(axis=1)[:, None]).all(axis=0) & (plan <= pieces.high.max(axis=1)[:, None]).all(axis=0)
@@ -134,8 +137,7 @@ def _over_folds(patches: tuple[Patch, ...], plan: Floats, height: Floats) -> Non
         np.maximum.at(height, batch[point[hit]], cells.points(end[hit])[2])
 
 
-@lru_cache(maxsize=8)
-def _plan_cells(patches: tuple[Patch, ...]) -> Cells:
+def _plan_cells(patches: Patches) -> Cells:
     return tabulate(patches, axes=(0, 1))
 
 
@@ -176,10 +178,9 @@ class _Pieces:
         return point[within], piece[within]
 
 
-@lru_cache(maxsize=8)
-def _pieces(patches: tuple[Patch, ...]) -> _Pieces:
+def _pieces(patches: Patches) -> _Pieces:
     """Quarter every cell (single cells finer) and box the pieces, with room for what bulges over the box."""
-    flat = _plan_cells(patches)
+    flat = patches.prepared(_plan_cells)
     count = len(flat.patch)
     steps = int(np.clip(np.ceil(np.sqrt(4000 / count)), 2, 16))
     edge = np.linspace(-1, 1, 2 * steps + 1)

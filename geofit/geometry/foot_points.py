@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 from geofit.geometry.cells import BATCH, Cells, Place, tabulate
 from geofit.geometry.elevation import plan_map
 from geofit.splines import bspline
-from geofit.splines.patch import Patch
+from geofit.splines.patch import Patch, Patches
 
 __all__ = ["Projection", "feet_over_plan"]
 
@@ -43,7 +42,8 @@ class Projection:
     """Nearest places of a surface to n points.
 
     ``distance`` (n,) metres, signed: positive on the upper side. ``foot`` (n, 3) metres, ``patch`` (n,) index
-    of the patch, ``u``, ``v`` (n,) its parameters, ``converged`` (n,) bool.
+    of the patch, ``u``, ``v`` (n,) its parameters (nan on triangles), ``converged`` (n,) bool. ``beyond`` (n,): the
+    foot point is on the rim and the point lies beyond the edge; None where that was not looked at.
     """
 
     distance: Floats
@@ -52,6 +52,7 @@ class Projection:
     u: Floats
     v: Floats
     converged: Bools
+    beyond: Bools | None = None
 
     @classmethod
     def unknown(cls, n: int) -> Projection:
@@ -61,7 +62,8 @@ class Projection:
     def fill(self, rows: Ints, other: Projection) -> None:
         """Write what was found for some of the points."""
         for name, values in vars(other).items():
-            getattr(self, name)[rows] = values
+            if values is not None:
+                getattr(self, name)[rows] = values
 
 
 def feet_over_plan(patches: Sequence[Patch], target: Floats) -> Projection:
@@ -71,7 +73,7 @@ def feet_over_plan(patches: Sequence[Patch], target: Floats) -> Projection:
     point if the patches are not height fields side by side, without creases.
     """
     found = Projection.unknown(len(target))
-    for field in _fields(tuple(patches)):
+    for field in Patches.of(patches).prepared(_fields):
         x, y = target[:, 0] - field.start[0], target[:, 1] - field.start[1]
         u, v = (a * x + b * y for a, b in field.inverse)
         low_u, high_u, low_v, high_v = field.domain
@@ -158,9 +160,7 @@ def _within(field: _Field, u: Floats, v: Floats, reach: Floats) -> Bools:
     return np.asarray(across & (v - reach_v >= low_v) & (v + reach_v <= high_v))
 
 
-# The same surface is asked many times (check, adjustment, windows).
-@lru_cache(maxsize=4)
-def _fields(patches: tuple[Patch, ...]) -> tuple[_Field, ...]:
+def _fields(patches: Patches) -> tuple[_Field, ...]:
     """Return the patches as height fields; none if one of them is none, or has a crease, or they overlap."""
     fields = tuple(_field(index, patch) for index, patch in enumerate(patches))
     found = tuple(field for field in fields if field is not None)

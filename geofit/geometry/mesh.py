@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
 
-__all__ = ["Mesh", "MeshSurface", "triangulate"]
+__all__ = ["Mesh", "triangulate", "trim_to_outline"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -65,38 +65,19 @@ class Mesh:
         return Mesh(self.points[used], numbers.reshape(-1, 3), self.patch[keep], self.uv[keep], self.origin, self.names)
 
 
-@dataclass(frozen=True, eq=False)
-class MeshSurface(HorizonSurface):
-    """A surface of a file that is triangles itself, so that it has no patches; ``mesh`` holds them."""
-
-    mesh: Mesh = field(kw_only=True)
-
-    def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
-        """Return the height at map coordinates in metres, nan outside, the highest of several; arrays broadcast."""
-        from geofit.geometry.mesh_projection import elevation
-
-        return elevation(self.mesh, x, y)
-
-    def distance(self, xyz: ArrayLike) -> Floats:
-        """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""
-        from geofit.geometry.mesh_projection import nearest
-
-        return nearest(self.mesh, np.atleast_2d(np.asarray(xyz, float)) - self.mesh.origin).distance
-
-
-def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
-    """Return triangles of a surface, trimmed to its outline, or along the loops of a file's faces.
+def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.05) -> Mesh:
+    """Return triangles of whole patches.
 
     Every knot span is cut so finely that a triangle leaves the surface by about ``tolerance`` at most; spans
     that bend little stay whole. Neighbouring patches that share an edge curve share its vertices, so seams
-    are closed exactly. On the outline the vertices of a height field lie on the surface, those of any other
-    surface on the triangle that was cut; on loops all do. Two faces that meet at a loop, within their patches,
-    each keep their own vertices there: gaps between them are below the tolerance.
+    are closed exactly.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    patches : sequence of Patch
         Any patches, steep and overturned ones included.
+    origin : (3,) array
+        Offset that turns the patches' coordinates into map coordinates, metres.
     tolerance : float
         Largest distance between triangle and surface in metres.
 
@@ -119,27 +100,20 @@ def triangulate(surface: HorizonSurface, tolerance: float = 0.05) -> Mesh:
                 tolerance=tolerance,
             )
         )
-    from geofit.geometry.trim_loops import TrimmedSurface, trim
-
-    if isinstance(surface, MeshSurface):
-        return surface.mesh
-    lines = [_lines(patch, tolerance) for patch in surface.patches]
+    lines = [_lines(patch, tolerance) for patch in patches]
     table = _Vertices()
-    edges = _shared_edges(surface.patches, lines)
-    parts = [_patch_triangles(patch, lines[k], edges[k], table) for k, patch in enumerate(surface.patches)]
+    edges = _shared_edges(tuple(patches), lines)
+    parts = [_patch_triangles(patch, lines[k], edges[k], table) for k, patch in enumerate(patches)]
     mesh = Mesh(
         points=np.concatenate(table.points),
         triangles=np.concatenate([triangles for triangles, _ in parts]),
         patch=np.repeat(np.arange(len(parts)), [len(triangles) for triangles, _ in parts]),
         uv=np.concatenate([uv for _, uv in parts]),
-        origin=np.asarray(surface.origin, float),
-        names=tuple(patch.name for patch in surface.patches),
+        origin=np.asarray(origin, float),
+        names=tuple(patch.name for patch in patches),
     )
     t = mesh.triangles
-    mesh = mesh.only((t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0]))
-    if isinstance(surface, TrimmedSurface):
-        return trim(mesh, surface.patches, surface.loops)
-    return mesh if surface.outline is None else _trim(mesh, surface)
+    return mesh.only((t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0]))
 
 
 def _lines(patch: Patch, tolerance: float) -> tuple[Floats, Floats]:
@@ -323,13 +297,17 @@ def _strip(
     return triangles, np.stack([outer_uv[at_o], places, inner_uv[at_i]], axis=1)
 
 
-def _trim(mesh: Mesh, surface: HorizonSurface) -> Mesh:
-    assert surface.outline is not None
+def trim_to_outline(mesh: Mesh, patches: Sequence[Patch], outline: Floats) -> Mesh:
+    """Return the triangles of patches that lie within a plan polygon (k, 2) of map coordinates.
+
+    On the outline the vertices of a height field lie on the surface, those of any other patch on the triangle that
+    was cut.
+    """
     before = len(mesh.points)
-    outline = np.asarray(surface.outline, float) - surface.origin[:2]
-    points, triangles, parent, uv = clip(mesh.points, mesh.triangles, mesh.uv, outline)
+    plan = np.asarray(outline, float) - mesh.origin[:2]
+    points, triangles, parent, uv = clip(mesh.points, mesh.triangles, mesh.uv, plan)
     patch = mesh.patch[parent]
-    for k, one in enumerate(surface.patches):
+    for k, one in enumerate(patches):
         if plan_map(one) is not None:
             corner = (triangles >= before) & (patch == k)[:, None]
             points[triangles[corner], 2] = one.evaluate(uv[corner][:, 0], uv[corner][:, 1])[:, 2]

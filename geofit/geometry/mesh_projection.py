@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from itertools import chain
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
+from geofit.geometry.foot_points import Projection
 from geofit.geometry.mesh import Mesh
 
-__all__ = ["Nearest", "elevation", "nearest"]
+__all__ = ["elevation", "nearest"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,23 +30,7 @@ RIM = 1e-9
 CHUNK = 5_000
 
 
-@dataclass(frozen=True, eq=False)
-class Nearest:
-    """Nearest places of a surface to n points.
-
-    ``distance`` (n,) metres, signed: positive on the upper side; ``foot`` (n, 3) metres; ``part`` (n,) index of
-    the triangle or patch; ``beyond`` (n,): the foot is on the rim and the point beside the surface; ``uv`` (n, 2)
-    the foot's parameters on a patch, None on triangles.
-    """
-
-    distance: Floats
-    foot: Floats
-    part: Ints
-    beyond: Bools
-    uv: Floats | None = None
-
-
-def nearest(mesh: Mesh, xyz: ArrayLike) -> Nearest:
+def nearest(mesh: Mesh, xyz: ArrayLike) -> Projection:
     """Find the nearest place of triangles to each point, exactly.
 
     The upper side is that of the triangles' normals, turned round if their mean points downwards. Where the
@@ -67,9 +52,8 @@ def nearest(mesh: Mesh, xyz: ArrayLike) -> Nearest:
     mean = normal[sound].sum(axis=0)
     upwards = next((np.sign(c) for c in mean[::-1] if abs(c) > 1e-9 * np.abs(mean).max()), 1.0)
     finder = _Finder(corners)
-    result = Nearest(
-        np.empty(len(target)), np.empty((len(target), 3)), np.empty(len(target), np.int64), np.zeros(len(target), bool)
-    )
+    result = Projection.unknown(len(target))
+    beyond = np.zeros(len(target), bool)
     rim_edges, rim_corners = _rim(mesh.triangles[sound])
     for k in range(0, len(target), CHUNK):
         batch = slice(k, k + CHUNK)
@@ -81,9 +65,10 @@ def nearest(mesh: Mesh, xyz: ArrayLike) -> Nearest:
         height = np.einsum("nk,nk->n", away, unit[chosen])
         aside = np.sqrt(np.maximum((away**2).sum(axis=1) - height**2, 0.0)) > ASIDE
         result.distance[batch] = np.where(height * upwards < 0, -distance[best], distance[best])
-        result.foot[batch], result.part[batch] = foot, sound[chosen]
-        result.beyond[batch] = aside & _on_rim(corners[chosen], foot, rim_edges[chosen], rim_corners[chosen])
-    return result
+        result.foot[batch], result.patch[batch] = foot, mesh.patch[sound[chosen]]
+        beyond[batch] = aside & _on_rim(corners[chosen], foot, rim_edges[chosen], rim_corners[chosen])
+    result.u[:], result.v[:], result.converged[:] = np.nan, np.nan, True
+    return replace(result, beyond=beyond)
 
 
 def _first_of_each(key: Ints, order: Ints, count: int) -> Ints:

@@ -11,18 +11,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
 from geofit.geometry.cells import Cells, Place, descend, tabulate
-from geofit.geometry.elevation import elevation, plan_map
+from geofit.geometry.elevation import plan_map
 from geofit.geometry.foot_points import Projection, feet_over_plan
-from geofit.splines.patch import Patch
+from geofit.splines.patch import Patch, Patches
 
-__all__ = ["Projection", "elevation", "project"]
+__all__ = ["Projection", "project"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -76,7 +75,7 @@ def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
 
 def _searched(patches: Sequence[Patch], target: Floats) -> Projection:
     """Find the nearest places by walks from all places that may lead to them."""
-    surface = _prepare(tuple(patches))
+    surface = Patches.of(patches).prepared(_prepare)
     feet = Place.join([_nearest(surface, target[k : k + CHUNK]) for k in range(0, max(len(target), 1), CHUNK)])
     feet = _no_farther_than_below(patches, surface.cells, target, feet)
     s, ds, dt, *_ = surface.cells.jets(feet)
@@ -139,9 +138,7 @@ class _Searchable:
     upwards: float
 
 
-# The same surface is asked many times (check, adjustment, cross-validation, windows).
-@lru_cache(maxsize=4)
-def _prepare(patches: tuple[Patch, ...]) -> _Searchable:
+def _prepare(patches: Patches) -> _Searchable:
     cells = tabulate(patches)
     parts = [_lattice(cells, index, len(patches)) for index in range(len(patches))]
     place = Place(np.concatenate([p.place.cell for p in parts]), np.concatenate([p.place.local for p in parts], axis=1))

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from geofit.data.accuracy import Seam
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["seams"]
 
@@ -24,7 +23,7 @@ CLOSED = 1e-9
 EDGES = ("u0", "u1", "v0", "v1")
 
 
-def seams(surface: HorizonSurface | Sequence[Patch], samples: int = SAMPLES) -> tuple[Seam, ...]:
+def seams(patches: Sequence[Patch], samples: int = SAMPLES) -> tuple[Seam, ...]:
     """Measure the gap and the angle between neighbouring patches along every common edge.
 
     Two edges belong together if their ends and middles are nearer to each other than 1 % of their length: a
@@ -32,7 +31,7 @@ def seams(surface: HorizonSurface | Sequence[Patch], samples: int = SAMPLES) -> 
 
     Parameters
     ----------
-    surface : HorizonSurface or sequence of Patch
+    surface : HorizonFit or sequence of Patch
         Patches whose neighbours run along whole edges (no T-junctions).
     samples : int
         Places along each seam, evenly in the first patch's parameter.
@@ -43,7 +42,6 @@ def seams(surface: HorizonSurface | Sequence[Patch], samples: int = SAMPLES) -> 
         In the order of the patches; gap in metres (distance to the nearest place of the other edge), angle
         between the normals in degrees (0 to 180; an edge whose normal vanishes is left out of it).
     """
-    patches = surface.patches if isinstance(surface, HorizonSurface) else tuple(surface)
     edges = [(index, edge) for index in range(len(patches)) for edge in EDGES]
     marks = np.array([_edge(patches[index], edge, np.linspace(0, 1, 5)) for index, edge in edges]).reshape(-1, 5, 3)
     # How far a patch reaches away from its edge: from one middle to the other.

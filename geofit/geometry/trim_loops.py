@@ -7,7 +7,7 @@ measured again, to the loops themselves and to the feet that lie inside them, wh
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,12 +18,11 @@ from geofit.geometry.cells import Cells, Place, descend, tabulate
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.geometry.mesh import WELD, Mesh
-from geofit.geometry.mesh_projection import ASIDE, Nearest
-from geofit.geometry.projection import project
+from geofit.geometry.mesh_projection import ASIDE
+from geofit.geometry.projection import Projection, project
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
 
-__all__ = ["Loops", "TrimmedSurface", "inside", "loops_of", "nearest", "trim"]
+__all__ = ["Loops", "beyond_edge", "inside", "nearest", "trim"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,50 +38,7 @@ LATTICE, AROUND = 60, 2000
 STARTS, STEPS = 4, 60
 
 
-@dataclass(frozen=True, eq=False)
-class TrimmedSurface(HorizonSurface):
-    """A surface of a file some of whose patches are cut by ``loops``, so that it is smaller than its patches."""
-
-    loops: Loops = ()
-
-    def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
-        """Return the height at map coordinates in metres, nan outside and where a loop leaves a hole."""
-        x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
-        plan = np.stack([x.ravel(), y.ravel()], axis=1)
-        bare = HorizonSurface((), self.origin, self.points, outline=self.outline)
-        heights = np.stack([bare.with_(patches=(patch,)).elevation(*plan.T) for patch in self.patches])
-        uncut = _highest(heights)
-        asked = np.isfinite(heights)
-        if self.outline is not None:  # one loop around all faces: only where patches overlap is more to be asked
-            asked &= asked.sum(axis=0) > 1
-        for k in [k for k, loops in enumerate(self.loops) if loops and asked[k].any()]:
-            some = np.flatnonzero(asked[k])
-            place = np.column_stack([plan[some], heights[k, some]]) - self.origin
-            gone = np.abs(nearest(self.patches[k : k + 1], place, self.loops[k : k + 1]).distance) > ASIDE
-            heights[k, some[gone]] = np.nan
-        height = _highest(heights)
-        if self.outline is not None:  # between two faces whose common curve each follows by its own polygon
-            height = np.where(np.isnan(height), uncut, height)
-        return height.reshape(x.shape)
-
-    def distance(self, xyz: ArrayLike) -> Floats:
-        """Return the signed distance of (n, 3) map coordinates to the trimmed patches, metres, positive above."""
-        local = np.atleast_2d(np.asarray(xyz, float)) - self.origin
-        return nearest(self.patches, local, self.loops).distance
-
-
-def loops_of(surface: HorizonSurface) -> Loops:
-    """Return the loops of each patch of any surface."""
-    return surface.loops if isinstance(surface, TrimmedSurface) else ((),) * len(surface.patches)
-
-
-def _highest(heights: Floats) -> Floats:
-    """Return the highest of each column, nan where there is none."""
-    found = np.where(np.isfinite(heights), heights, -np.inf).max(axis=0)
-    return np.asarray(np.where(np.isneginf(found), np.nan, found))
-
-
-def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Nearest:
+def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Projection:
     """Find the nearest place of trimmed patches to each point.
 
     Parameters
@@ -96,54 +52,50 @@ def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Near
 
     Returns
     -------
-    Nearest
-        ``part`` is the patch; ``beyond`` marks points beside the surface, whose foot is its outer edge.
+    Projection
+        ``beyond`` marks points beyond the edge, whose foot point is on it.
         A loop that is curved in the parameters is the polygon that was sampled along it.
     """
     target = np.asarray(xyz, float).reshape(-1, 3)
     found = project(patches, target)
-    distance, foot, part = found.distance.copy(), found.foot.copy(), found.patch.copy()
-    uv = np.stack([found.u, found.v], axis=1)
-    beyond = _beside(patches, target, foot, part, uv)
+    found = replace(found, beyond=beyond_edge(patches, target, found))
+    assert found.beyond is not None
     if any(loops):
-        held = np.ones(len(target), bool)
+        within = np.ones(len(target), bool)
         for k in range(len(patches)):
-            own = part == k
-            held[own] = inside(patches[k], loops[k], found.u[own], found.v[own])
-        again = np.flatnonzero(~held)
+            own = found.patch == k
+            within[own] = inside(patches[k], loops[k], found.u[own], found.v[own])
+        again = np.flatnonzero(~within)
         if again.size:
-            rim = _rim_feet(patches, loops, target[again])
-            face = _inner_feet(patches, loops, target[again])
+            rim, face = _rim_feet(patches, loops, target[again]), _inner_feet(patches, loops, target[again])
             on_rim = rim.distance <= face.distance
-            assert rim.uv is not None
-            assert face.uv is not None
-            uv[again] = np.where(on_rim[:, None], rim.uv, face.uv)
-            foot[again] = np.where(on_rim[:, None], rim.foot, face.foot)
-            part[again] = np.where(on_rim, rim.part, face.part)
-            distance[again] = np.copysign(np.minimum(rim.distance, face.distance), distance[again])
-            beyond[again] = on_rim
-    return Nearest(distance, foot, part, beyond, uv)
+            found.u[again], found.v[again] = np.where(on_rim, rim.u, face.u), np.where(on_rim, rim.v, face.v)
+            found.foot[again] = np.where(on_rim[:, None], rim.foot, face.foot)
+            found.patch[again] = np.where(on_rim, rim.patch, face.patch)
+            found.distance[again] = np.copysign(np.minimum(rim.distance, face.distance), found.distance[again])
+            found.beyond[again] = on_rim
+    return found
 
 
-def _beside(patches: Sequence[Patch], target: Floats, foot: Floats, part: Ints, uv: Floats) -> Bools:
-    """Mark points whose foot is on an outer edge of the patches, and not straight below them."""
+def beyond_edge(patches: Sequence[Patch], target: Floats, found: Projection) -> Bools:
+    """Mark points (n, 3) whose foot point is on an outer edge of the patches, and not straight below them."""
     result = np.zeros(len(target), bool)
     for k, patch in enumerate(patches):
-        own = np.flatnonzero(part == k)
+        own = np.flatnonzero(found.patch == k)
         low, high = np.array(patch.domain).reshape(2, 2).T
-        at = uv[own]
+        at = np.stack([found.u[own], found.v[own]], axis=1)
         own = own[((at - low <= ON * (high - low)) | (high - at <= ON * (high - low))).any(axis=1)]
         if not own.size:
             continue
-        u, v = uv[own].T
+        u, v = found.u[own], found.v[own]
         cross = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1))
         normal = cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-300)[:, None]
-        away = target[own] - foot[own]
+        away = target[own] - found.foot[own]
         aside = away - np.einsum("nk,nk->n", away, normal)[:, None] * normal
         own = own[np.linalg.norm(aside, axis=1) > ASIDE]
         others = [other for j, other in enumerate(patches) if j != k]
         if own.size and others:
-            own = own[np.abs(project(others, foot[own]).distance) > ASIDE]
+            own = own[np.abs(project(others, found.foot[own]).distance) > ASIDE]
         result[own] = True
     return result
 
@@ -171,7 +123,7 @@ def inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Boo
     return np.asarray(shapely.intersects_xy(region, (u - u0) / (u1 - u0), (v - v0) / (v1 - v0)))
 
 
-def _rim_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Nearest:
+def _rim_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
     """Return the nearest places on the loops: a golden section along the pieces beside the nearest samples."""
     starts, ways, places, owner = [], [], [], []
     for k, patch in enumerate(patches):
@@ -203,7 +155,8 @@ def _rim_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Nearest
     distance = far(t)
     best = np.lexsort((distance, point))[::count]
     uv = (start[piece] + t[:, None] * way[piece])[best]
-    return Nearest(distance[best], at(t)[best], part[piece[best]], np.ones(len(target), bool), uv)
+    u, v = uv.T
+    return Projection(distance[best], at(t)[best], part[piece[best]], u, v, np.ones(len(target), bool))
 
 
 def _golden(value: Any, count: int) -> Floats:
@@ -223,7 +176,7 @@ def _golden(value: Any, count: int) -> Floats:
     return np.asarray(np.take_along_axis(ends, values.argmin(axis=0)[None], axis=0)[0])
 
 
-def _inner_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Nearest:
+def _inner_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
     """Return the nearest feet inside the loops, infinitely far where there is none."""
     cells, tree, place = _lattice(patches, loops)
     count = min(STARTS, tree.n)
@@ -237,8 +190,7 @@ def _inner_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Neare
         own = np.flatnonzero(part == k)
         distance[own[~inside(patch, loops[k], u[own], v[own])]] = np.inf
     best = np.lexsort((distance, point))[::count]
-    uv = np.stack([u, v], axis=1)[best]
-    return Nearest(distance[best], foot[best], part[best], np.zeros(len(target), bool), uv)
+    return Projection(distance[best], foot[best], part[best], u[best], v[best], np.ones(len(target), bool))
 
 
 def _lattice(patches: Sequence[Patch], loops: Loops) -> tuple[Cells, cKDTree, Place]:

@@ -15,12 +15,12 @@ from threadpoolctl import threadpool_limits
 from geofit.data.errors import FitError, SettingsError
 from geofit.data.messages import message
 from geofit.data.prediction import OffData, Uncertainty
+from geofit.fitting.calibration import Calibration, uncalibrated
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.posterior import Posterior, posterior
 from geofit.geometry.clip import inside
-from geofit.prediction.calibration import Calibration, uncalibrated
 from geofit.splines import bspline
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Grid", "Spread", "band", "grid_over", "sd_at", "uncertainty_on"]
 
@@ -75,7 +75,7 @@ class Grid:
         return frame.turn_back(local) + frame.origin
 
 
-def grid_over(surface: HorizonSurface) -> Grid:
+def grid_over(surface: HorizonFit) -> Grid:
     """Lay a grid over the study area; over the hull of its points, where a steep surface lies over its best plane."""
     model = _model(surface)
     chart, unit = model.problem.chart, model.net.unit
@@ -115,7 +115,7 @@ def uncertainty_on(grid: Grid, spread: Spread) -> Uncertainty:
     )  # fmt: skip
 
 
-def sd_at(surface: HorizonSurface, uncertainty: Uncertainty, xyz: ArrayLike) -> Floats:
+def sd_at(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike) -> Floats:
     """Return the standard deviation of a surface at (n, 3) map coordinates on it (or (n, 2) of a map frame), metres.
 
     The posterior is evaluated at each place; the local factor is that of the nearest node of the grid.
@@ -143,14 +143,12 @@ def sd_at(surface: HorizonSurface, uncertainty: Uncertainty, xyz: ArrayLike) -> 
         return _sd(model, uncertainty, plane / model.net.unit)
 
 
-def band(
-    surface: HorizonSurface, found: OffData | Uncertainty, share: float = 0.9
-) -> tuple[HorizonSurface, HorizonSurface]:
+def band(surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9) -> tuple[HorizonFit, HorizonFit]:
     """Return the upper and the lower surface between which the rock lies with the given probability.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         A fitted height field.
     found : OffData or Uncertainty
         What :func:`geofit.prediction.examine.examine` found.
@@ -159,7 +157,7 @@ def band(
 
     Returns
     -------
-    upper, lower : HorizonSurface
+    upper, lower : HorizonFit
         The same net, each control point moved by plus or minus z * sd at its Greville abscissa: Schoenberg's
         variation-diminishing spline, which never swings below zero. Patches meet as those of the surface do.
 
@@ -221,7 +219,7 @@ def _sd(model: Model, uncertainty: Uncertainty, plane: Floats) -> Floats:
     return np.asarray(factor * Spread(model, posterior(model), uncalibrated()).sd(plane))
 
 
-def _model(surface: HorizonSurface) -> Model:
+def _model(surface: HorizonFit) -> Model:
     if surface.model is None:
         raise FitError(
             message(

@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, Scheme
+from geofit.fitting.calibration import Calibration, calibrate, gathered, share_inside, variance_of
 from geofit.fitting.deletion import LinearFit, Prediction
 from geofit.fitting.model import Model
 from geofit.fitting.posterior import Posterior
-from geofit.prediction.calibration import FEWEST, SHARE, Calibration, LeftOutPoints, calibrate, factor_for, share_inside
 from geofit.prediction.folds import beyond_hull, block_labels, groups_of, hole_labels
 from geofit.prediction.kriging import krige_left_out
 from geofit.prediction.thinplate import thin_plate_left_out
 
-__all__ = ["BLOCK", "Fold", "about_the_hull", "calibrated", "common_factor", "folds_of", "left_out", "one_by_one"]
+__all__ = ["BLOCK", "Fold", "about_the_hull", "calibrated", "folds_of", "left_out", "one_by_one"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -65,7 +65,7 @@ def one_by_one(model: Model, given: Posterior) -> list[Fold]:
 
 
 def calibrated(fit: LinearFit, folds: list[Fold], places: Floats, variance: Floats) -> Calibration:
-    """Hold the standard deviation to the errors of all schemes (:func:`geofit.prediction.calibration.calibrate`).
+    """Hold the standard deviation to the errors of all schemes (:func:`geofit.fitting.calibration.calibrate`).
 
     ``places`` (k, 2) lie all over the surface, ``variance`` (k,) is what the fit expects there, m^2.
     """
@@ -76,26 +76,9 @@ def calibrated(fit: LinearFit, folds: list[Fold], places: Floats, variance: Floa
     def by(scheme: Scheme) -> list[Prediction]:
         return [fold.predicted for fold in folds if fold.scheme == scheme]
 
-    near = _gathered(given, [alone, small, *by("section")])
-    blocks, holes = _gathered(given, by("block")), _gathered(given, by("hole"))
+    near = gathered(given, [alone, small, *by("section")])
+    blocks, holes = gathered(given, by("block")), gathered(given, by("hole"))
     return calibrate(given.plane, near, blocks, holes, places, variance)
-
-
-def common_factor(fit: LinearFit, judged: NDArray[np.bool_]) -> float:
-    """Return the factor of the standard deviation that holds 90 % of the judged points, each left out alone."""
-    alone = fit.without([np.array([k]) for k in np.flatnonzero(judged)])
-    left = _gathered(fit.posterior, [alone])
-    return factor_for(left, 1.0, np.ones(len(left.point)), SHARE) if len(left.point) >= FEWEST else 1.0
-
-
-def _gathered(given: Posterior, predictions: list[Prediction]) -> LeftOutPoints:
-    """Put the errors of several predictions one after another, without the points that were not left out."""
-    noise = (given.noise * given.noise_ratio) ** 2
-    point = np.tile(np.arange(len(given.value)), len(predictions))
-    error = np.concatenate([np.empty(0), *(one.error for one in predictions)])
-    variance = np.concatenate([np.empty(0), *(_variance(one) for one in predictions)])
-    known = np.isfinite(error)
-    return LeftOutPoints(point[known], error[known], variance[known], noise[point[known]])
 
 
 def left_out(model: Model, given: Posterior, fold: Fold, calibration: Calibration, plate: Floats | None) -> LeftOut:
@@ -116,7 +99,7 @@ def left_out(model: Model, given: Posterior, fold: Fold, calibration: Calibratio
         kriging predict the same folds; None: no other method is compared.
     """
     error = fold.predicted.error
-    variance, noise = _variance(fold.predicted), (given.noise * given.noise_ratio) ** 2
+    variance, noise = variance_of(fold.predicted), (given.noise * given.noise_ratio) ** 2
     widened = calibration.at(given.plane) ** 2 * variance + noise
     known = np.isfinite(error)
     others: dict[str, float] = {}
@@ -159,11 +142,6 @@ def about_the_hull(given: Posterior, fold: Fold) -> Message | None:
         outer=_rms(fold.predicted.error[beyond]),
         inner=_rms(fold.predicted.error[within]),
     )
-
-
-def _variance(predicted: Prediction) -> Floats:
-    """Mean square error of the surface at a point left out: the field's, and the surface's departure from the field."""
-    return np.asarray(predicted.variance + (predicted.error - predicted.field_error) ** 2)
 
 
 def _over_all(count: int, kept: Ints, values: Floats) -> Floats:

@@ -10,17 +10,17 @@ from geofit.data.errors import FitError
 from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, OffData, Outlier
 from geofit.data.progress import Progress, tell
+from geofit.fitting.calibration import uncalibrated
 from geofit.fitting.deletion import linear_fit
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.outliers import find_outliers
 from geofit.fitting.posterior import posterior
 from geofit.prediction.bands import Spread, grid_over, uncertainty_on
-from geofit.prediction.calibration import uncalibrated
 from geofit.prediction.crossval import about_the_hull, calibrated, folds_of, left_out, one_by_one
 from geofit.prediction.drilling import suggest_holes
 from geofit.prediction.refits import sections_by_refit
 from geofit.prediction.thinplate import thin_plate_inverse
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["MOST", "examine"]
 
@@ -32,12 +32,12 @@ MOST = 4_000
 HELD = (0.85, 0.95)
 
 
-def examine(surface: HorizonSurface, progress: Progress | None = None) -> OffData:
+def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
     """Examine a fit away from its data.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         A fit; of an imported surface nothing can be said, and the notes say so.
     progress : callable, optional
         Called as ``progress(stage, fraction)``; returning False stops.
@@ -76,7 +76,7 @@ def examine(surface: HorizonSurface, progress: Progress | None = None) -> OffDat
             )
 
 
-def _examine(surface: HorizonSurface, model: Model, progress: Progress | None) -> OffData:
+def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> OffData:
     notes: list[Message] = []
     tell(progress, "uncertainty", 0.0)
     given = posterior(model)

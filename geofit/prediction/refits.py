@@ -8,10 +8,10 @@ from geofit.data.errors import GeofitError
 from geofit.data.messages import message
 from geofit.data.prediction import LeftOut, OffData
 from geofit.data.progress import Progress, tell
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.pipeline import fit_horizon
 from geofit.prediction.folds import groups_of
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["sections_by_refit"]
 
@@ -19,7 +19,7 @@ __all__ = ["sections_by_refit"]
 MOST_SECTIONS = 40
 
 
-def sections_by_refit(surface: HorizonSurface, model: Model, progress: Progress | None) -> OffData:
+def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | None) -> OffData:
     """Leave out each inner section of a parametric surface, and measure its orthogonal distance from the rest's fit.
 
     The first and the last section are never left out: no surface reaches them without their points.

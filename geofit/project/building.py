@@ -13,8 +13,8 @@ from geofit.data.points import PointSet
 from geofit.data.prediction import OffData
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.provenance import Apart, HandEdit, Move, Part, Pull, Recipe, without_rows
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Given", "beside", "changed", "edited", "examined", "fault_surfaces", "get_ready", "made", "make"]
 
@@ -28,10 +28,10 @@ class Given:
     """
 
     site: Site
-    faults: Mapping[Recipe, HorizonSurface] = field(default_factory=dict)
+    faults: Mapping[Recipe, HorizonFit] = field(default_factory=dict)
 
 
-def make(recipe: Recipe, given: Given, progress: Progress | None = None) -> HorizonSurface:
+def make(recipe: Recipe, given: Given, progress: Progress | None = None) -> HorizonFit:
     """Make a surface; the same recipe gives the same surface to the last bit.
 
     Raises
@@ -52,7 +52,7 @@ def make(recipe: Recipe, given: Given, progress: Progress | None = None) -> Hori
     return beside(surface, recipe, given.site)
 
 
-def beside(surface: HorizonSurface, recipe: Recipe, site: Site) -> HorizonSurface:
+def beside(surface: HorizonFit, recipe: Recipe, site: Site) -> HorizonFit:
     """Return a surface whose checks also ask whether it agrees with the site's dips and ground."""
     from geofit.site.site_checks import check_surroundings
 
@@ -61,12 +61,12 @@ def beside(surface: HorizonSurface, recipe: Recipe, site: Site) -> HorizonSurfac
 
 def fault_surfaces(
     faults: Iterable[Recipe], given: Given, progress: Progress | None = None
-) -> dict[Recipe, HorizonSurface]:
+) -> dict[Recipe, HorizonFit]:
     """Return the surfaces of faults; those that are not at hand are made."""
     return {one: given.faults[one] if one in given.faults else make(one, given, progress) for one in faults}
 
 
-def _block(recipe: Recipe, part: Part, points: PointSet, given: Given, progress: Progress | None) -> HorizonSurface:
+def _block(recipe: Recipe, part: Part, points: PointSet, given: Given, progress: Progress | None) -> HorizonFit:
     """Fit a block between its faults."""
     import shapely
 
@@ -82,7 +82,7 @@ def _block(recipe: Recipe, part: Part, points: PointSet, given: Given, progress:
     return fit_block(points, faults, sides, recipe.settings, area, progress, name=recipe.horizon)
 
 
-def _pushed(surface: HorizonSurface, edit: Apart, given: Given, progress: Progress | None) -> HorizonSurface:
+def _pushed(surface: HorizonFit, edit: Apart, given: Given, progress: Progress | None) -> HorizonFit:
     """Make the neighbours as they were, and push all apart once more."""
     from geofit.site.separate import repair
 
@@ -90,7 +90,7 @@ def _pushed(surface: HorizonSurface, edit: Apart, given: Given, progress: Progre
     return repair(stack, edit.sequence, edit.minimum).surfaces[surface.name]
 
 
-def edited(surface: HorizonSurface, edit: HandEdit, progress: Progress | None = None) -> HorizonSurface:
+def edited(surface: HorizonFit, edit: HandEdit, progress: Progress | None = None) -> HorizonFit:
     """Return the surface after one change by hand."""
     from geofit.fitting.edit import adjust, pull_to, weigh
 
@@ -102,14 +102,14 @@ def edited(surface: HorizonSurface, edit: HandEdit, progress: Progress | None = 
     return weigh(surface, edit.patch, edit.i, edit.j, edit.weight)
 
 
-def made(recipe: Recipe, given: Given, *, progress: Progress) -> tuple[Recipe, HorizonSurface]:
+def made(recipe: Recipe, given: Given, *, progress: Progress) -> tuple[Recipe, HorizonFit]:
     """Make a surface, and say from what."""
     return recipe, make(recipe, given, progress)
 
 
 def changed(
-    recipe: Recipe, surface: HorizonSurface, edit: HandEdit, given: Given, *, progress: Progress
-) -> tuple[Recipe, Recipe, Accuracy | None, HorizonSurface]:
+    recipe: Recipe, surface: HorizonFit, edit: HandEdit, given: Given, *, progress: Progress
+) -> tuple[Recipe, Recipe, Accuracy | None, HorizonFit]:
     """Change a surface by hand; return its recipe before and after, the check before, and the new surface."""
     before = surface.accuracy
     if surface.model is None:
@@ -118,7 +118,7 @@ def changed(
     return recipe, after, before, beside(edited(surface, edit, progress), after, given.site)
 
 
-def examined(recipe: Recipe, surface: HorizonSurface, *, progress: Progress) -> tuple[Recipe, OffData]:
+def examined(recipe: Recipe, surface: HorizonFit, *, progress: Progress) -> tuple[Recipe, OffData]:
     """Find out how far the rock may lie from a surface where nobody drilled."""
     from geofit.prediction.examine import examine
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.site import Site
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 __all__ = ["describe_site", "describe_surfaces"]
 
@@ -17,21 +17,22 @@ Floats = NDArray[np.float64]
 
 def describe_surfaces(file: Path) -> list[tuple[str, ...]]:
     """Return a row for each surface of a file: name, patches, control points, ranges of x, y and z."""
-    from geofit.geometry.mesh import MeshSurface
     from geofit.io.surface_files import read_surface_file
 
     rows: list[tuple[str, ...]] = []
     for name, surface in read_surface_file(file).items():
-        if isinstance(surface, MeshSurface):
-            size, xyz = (f"{len(surface.mesh.triangles)} triangles", f"{len(surface.mesh.points)}"), surface.mesh.xyz
-        else:
-            size = (str(len(surface.patches)), str(surface.control_points))
+        if surface.patches:
+            poles = sum(patch.control.shape[0] * patch.control.shape[1] for patch in surface.patches)
+            size = (str(len(surface.patches)), str(poles))
             xyz = np.concatenate([_corners(surface, i) for i in range(len(surface.patches))])
+        else:
+            mesh = surface.triangulate()
+            size, xyz = (f"{len(mesh.triangles)} triangles", f"{len(mesh.points)}"), mesh.xyz
         rows.append((name, *size, *_ranges(xyz)))
     return rows
 
 
-def _corners(surface: HorizonSurface, index: int) -> Floats:
+def _corners(surface: Surface, index: int) -> Floats:
     patch = surface.patches[index]
     u0, u1, v0, v1 = patch.domain
     u, v = np.meshgrid(np.linspace(u0, u1, 30), np.linspace(v0, v1, 30))

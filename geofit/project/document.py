@@ -11,13 +11,13 @@ from geofit.data.points import PointSet
 from geofit.data.prediction import OffData
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.building import Given
 from geofit.project.fault_blocks import Blocks, parted_site
 from geofit.project.provenance import DocumentError, Recipe, Row, fingerprint, without_rows
 from geofit.project.shelf import Shelf
 from geofit.project.signal import Signal
 from geofit.project.state import State
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Document", "Selection"]
 
@@ -189,11 +189,11 @@ class Document:
             return bool(faults)
         return part.faults != faults or part.given != self.given(part.horizon)
 
-    def surface(self, name: str) -> HorizonSurface | None:
+    def surface(self, name: str) -> HorizonFit | None:
         """Return the surface of a horizon; None if there is none, or if it is wanted but not made yet."""
         return self.shelf.surface(self._state.recipes.get(name))
 
-    def surfaces(self) -> Mapping[str, HorizonSurface]:
+    def surfaces(self) -> Mapping[str, HorizonFit]:
         """Return the surfaces at hand, the highest first."""
         found = {name: self.surface(name) for name in self.horizons}
         return {name: surface for name, surface in found.items() if surface is not None}
@@ -202,7 +202,7 @@ class Document:
         """Return what is known about a surface off its data."""
         return self.shelf.offdata(self._state.recipes.get(name))
 
-    def put(self, recipe: Recipe, surface: HorizonSurface) -> None:
+    def put(self, recipe: Recipe, surface: HorizonFit) -> None:
         """Lay a surface on the shelf; it is shown as soon as the state has its recipe."""
         self.shelf.put(recipe, surface, set(self._state.recipes.values()))
         self._tell_of(recipe)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
@@ -15,12 +15,12 @@ from numpy.typing import NDArray
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems
 from geofit.data.messages import message
-from geofit.geometry.mesh import MeshSurface, triangulate
-from geofit.geometry.trim_loops import TrimmedSurface
 from geofit.sampling.contours import contours
 from geofit.sampling.cut import CutLine, cut, section_line
 from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.mesh_surface import MeshSurface
+from geofit.surfaces.patch_surface import PatchSurface
+from geofit.surfaces.protocol import Surface
 
 if TYPE_CHECKING:
     from geofit.data.points import PointSet
@@ -86,7 +86,7 @@ class Request:
     crs: str = ""
 
 
-Surfaces = Mapping[str, HorizonSurface]
+Surfaces = Mapping[str, Surface]
 
 
 def export(surfaces: Surfaces, to: str, out: Path, request: Request | None = None) -> list[Path]:
@@ -135,7 +135,7 @@ def export(surfaces: Surfaces, to: str, out: Path, request: Request | None = Non
         step, tolerance = wanted.interval, wanted.tolerance
         write({name: contours(one, step, tolerance=tolerance) for name, one in surfaces.items()}, out, **more)
         return [out]
-    meshes = {name: triangulate(surface, wanted.tolerance) for name, surface in surfaces.items()}
+    meshes = {name: surface.triangulate(wanted.tolerance) for name, surface in surfaces.items()}
     if chosen.takes == "meshes":
         origin = write(meshes, out)
         return [out] if origin is None else [out, out.with_name(out.name + ".origin.txt")]
@@ -149,11 +149,11 @@ def export(surfaces: Surfaces, to: str, out: Path, request: Request | None = Non
     return list(files.values())
 
 
-def read_surfaces(files: Sequence[Path]) -> dict[str, HorizonSurface]:
+def read_surfaces(files: Sequence[Path]) -> dict[str, PatchSurface | MeshSurface]:
     """Read the horizons of surface files; names that stand in several files get the file's name before them."""
     from geofit.io.surface_files import read_surface_file
 
-    found: dict[str, HorizonSurface] = {}
+    found: dict[str, PatchSurface | MeshSurface] = {}
     for file in files:
         for name, surface in read_surface_file(file).items():
             unique = name if name not in found else f"{file.stem} {name}"
@@ -163,7 +163,7 @@ def read_surfaces(files: Sequence[Path]) -> dict[str, HorizonSurface]:
                     message("export.name-file-once", "Name each file once."),
                     file=str(file),
                 )
-            found[unique] = surface.with_(name=unique)
+            found[unique] = replace(surface, name=unique)
     return found
 
 
@@ -257,13 +257,13 @@ def uncut(surfaces: Surfaces, to: str) -> list[str]:
     return [
         f"{name}: its faces end at holes or curves that {to} does not follow here; it holds the patches whole"
         for name, surface in surfaces.items()
-        if isinstance(surface, TrimmedSurface) and surface.outline is None
+        if any(surface.loops) and surface.outline is None
     ]
 
 
 def _need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
     """Refuse triangles where a format holds NURBS."""
-    meshes = [name for name, surface in surfaces.items() if isinstance(surface, MeshSurface)]
+    meshes = [name for name, surface in surfaces.items() if not surface.patches]
     if meshes:
         others = [name for name, one in FORMATS.items() if one.takes not in ("surfaces", "site")]
         raise InputError(

@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from geofit.data.progress import Progress, tell
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.export import Request, export
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["export_surfaces"]
 
 
 def export_surfaces(
-    surfaces: Mapping[str, HorizonSurface], to: str, target: Path, request: Request, *, progress: Progress
+    surfaces: Mapping[str, HorizonFit], to: str, target: Path, request: Request, *, progress: Progress
 ) -> list[Path]:
     """Write surfaces in a format of :data:`geofit.project.export.FORMATS`; return the files."""
     tell(progress, "write", 0.1)

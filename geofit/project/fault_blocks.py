@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 from geofit.data.messages import Message, message
 from geofit.data.progress import Progress
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.building import Given, fault_surfaces
 from geofit.project.provenance import Part, Recipe, runs
 from geofit.site.fit_site import SiteFit
 from geofit.site.throw import FaultCut
-from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     from geofit.site.fault_blocks import Parting
@@ -30,7 +30,7 @@ class Parted:
 
     horizon: str
     blocks: Mapping[str, Part]
-    faults: Mapping[Recipe, HorizonSurface]
+    faults: Mapping[Recipe, HorizonFit]
     notes: tuple[Message, ...]
 
 
@@ -38,7 +38,7 @@ class Parted:
 class Blocks:
     """Blocks with their surfaces, by name, and what their faults are made from."""
 
-    surfaces: Mapping[str, tuple[Part, HorizonSurface]]
+    surfaces: Mapping[str, tuple[Part, HorizonFit]]
     given: Given
 
 
@@ -140,7 +140,7 @@ def measured(blocks: Blocks, *, progress: Progress | None) -> tuple[FaultCut, ..
     return cuts
 
 
-def site_fit(surfaces: Mapping[str, HorizonSurface], blocks: Blocks, progress: Progress | None) -> SiteFit:
+def site_fit(surfaces: Mapping[str, HorizonFit], blocks: Blocks, progress: Progress | None) -> SiteFit:
     """Return surfaces as a fit of their whole site has them: which are blocks of what, and the throws."""
     whole = {name: part.horizon for name, (part, _) in blocks.surfaces.items()}
     recipes = dict.fromkeys(fault for part, _ in blocks.surfaces.values() for fault in part.faults)

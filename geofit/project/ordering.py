@@ -10,18 +10,18 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.elevation import plan_map
 from geofit.project.fault_blocks import same_side
 from geofit.project.provenance import Part
 from geofit.site.order import Order, order_of
 from geofit.site.separate import Repair, repair
 from geofit.site.site_checks import check_surroundings
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["all_orders", "comparable", "over_map", "pushed_apart"]
 
 
-def over_map(surfaces: Mapping[str, HorizonSurface]) -> dict[str, HorizonSurface]:
+def over_map(surfaces: Mapping[str, HorizonFit]) -> dict[str, HorizonFit]:
     """Return those that lie over the map: of a fault nothing lies above or below."""
     return {
         name: surface
@@ -36,7 +36,7 @@ def comparable(names: Sequence[str], parts: Mapping[str, Part]) -> tuple[tuple[s
 
 
 def all_orders(
-    surfaces: Mapping[str, HorizonSurface],
+    surfaces: Mapping[str, HorizonFit],
     pairs: Sequence[tuple[str, str]],
     ground: Ground | None,
     *,
@@ -51,7 +51,7 @@ def all_orders(
     return tuple(found)
 
 
-def pushed_apart(surfaces: Mapping[str, HorizonSurface], minimum: float, site: Site, *, progress: Progress) -> Repair:
+def pushed_apart(surfaces: Mapping[str, HorizonFit], minimum: float, site: Site, *, progress: Progress) -> Repair:
     """Push horizons apart, given the highest first; those that moved are asked again what the ``site`` says of them."""
     tell(progress, "push apart", 0.1)
     found = repair(surfaces, tuple(surfaces), minimum)

@@ -19,13 +19,13 @@ from geofit.report.result import HorizonResult
 if TYPE_CHECKING:
     from geofit.checks.storage import Storage
     from geofit.data.prediction import OffData
+    from geofit.fitting.horizon_fit import HorizonFit
     from geofit.report.accuracy_report import AccuracyReport
     from geofit.report.pictures import Pictures
     from geofit.site.fit_site import SiteFit
     from geofit.site.order import Order
     from geofit.site.separate import Contradiction
     from geofit.site.throw import FaultCut
-    from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Delivery", "Form", "Reports", "deliver", "write_reports"]
 
@@ -269,7 +269,7 @@ class _Made:
 
 
 def _written(
-    surface: HorizonSurface, site: Site, stem: Path, progress: Progress, language: Language, fit: float, bands: bool
+    surface: HorizonFit, site: Site, stem: Path, progress: Progress, language: Language, fit: float, bands: bool
 ) -> _Made:
     """Examine a surface, and write what belongs to it."""
     from geofit.cad.step import write_step
@@ -297,13 +297,13 @@ def _written(
     return _Made(result, pictures.images, warnings)
 
 
-def _storage(surface: HorizonSurface) -> Storage:
+def _storage(surface: HorizonFit) -> Storage:
     from geofit.checks.storage import equal_accuracy
 
     return equal_accuracy(surface, surface.settings.interior_tolerance)
 
 
-def _write_bands(surface: HorizonSurface, offdata: OffData, stem: Path) -> tuple[Message, ...]:
+def _write_bands(surface: HorizonFit, offdata: OffData, stem: Path) -> tuple[Message, ...]:
     """Write the surfaces between which the rock lies with 90 %; return why there are none."""
     from geofit.cad.step import write_step
     from geofit.prediction.bands import band

@@ -14,13 +14,13 @@ from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
 from geofit.io.site_file import read_site
 from geofit.project.building import beside
 from geofit.project.fault_blocks import parted_site
 from geofit.project.provenance import Part, Recipe, Row, without_rows
 from geofit.project.state import State
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Opened", "Written", "project_of", "read_project", "read_surfaces", "save_state", "state_of"]
 
@@ -80,7 +80,7 @@ def save_state(
     site: Site,
     site_file: Path,
     path: Path,
-    surfaces: Mapping[Recipe, HorizonSurface],
+    surfaces: Mapping[Recipe, HorizonFit],
     same: bool,
     *,
     progress: Progress,
@@ -97,7 +97,7 @@ def save_state(
     return Written(path, state, write_project(project, path, new_surfaces(project, surfaces)))
 
 
-def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Recipe, HorizonSurface]:
+def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Recipe, HorizonFit]:
     """Read and check the surfaces of a project whose horizons the site still has."""
     tell(progress, "read STEP", 0.0)
     found = saved_surfaces(project, folder)
@@ -109,14 +109,14 @@ def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progr
     }
 
 
-def saved_surfaces(project: Project, folder: Path) -> dict[Recipe, HorizonSurface]:
+def saved_surfaces(project: Project, folder: Path) -> dict[Recipe, HorizonFit]:
     """Read the surfaces that a project names and that are there, by their recipes; nothing stands behind them."""
     there = tuple(result for result in project.results if result.recipe and (folder / result.surface).is_file())
     surfaces = load_surfaces(replace(project, results=there), folder)
     return {Recipe.from_data(result.recipe): surfaces[result.horizon] for result in there}
 
 
-def checked(surface: HorizonSurface, recipe: Recipe, site: Site) -> HorizonSurface:
+def checked(surface: HorizonFit, recipe: Recipe, site: Site) -> HorizonFit:
     """Return a surface that was read from a file, with its points and its check."""
     points = without_rows(site.horizons[recipe.horizon], recipe.excluded)
     known = surface.with_(points=points, settings=recipe.settings, core=np.zeros(len(points), bool))
@@ -174,13 +174,13 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
     )
 
 
-def write_project(project: Project, path: Path, surfaces: Mapping[Recipe, HorizonSurface]) -> Project:
+def write_project(project: Project, path: Path, surfaces: Mapping[Recipe, HorizonFit]) -> Project:
     """Write a project file, and the surfaces that are new to it."""
     by_horizon = {recipe.horizon: surface for recipe, surface in surfaces.items()}
     return save_project(project, path, by_horizon, {recipe.horizon: recipe.to_data() for recipe in surfaces})
 
 
-def new_surfaces(project: Project, surfaces: Mapping[Recipe, HorizonSurface]) -> dict[Recipe, HorizonSurface]:
+def new_surfaces(project: Project, surfaces: Mapping[Recipe, HorizonFit]) -> dict[Recipe, HorizonFit]:
     """Return the surfaces that the project does not have yet."""
     there = {Recipe.from_data(result.recipe) for result in project.results}
     return {recipe: surface for recipe, surface in surfaces.items() if recipe not in there}

@@ -6,8 +6,8 @@ from collections.abc import Collection
 from dataclasses import dataclass, replace
 
 from geofit.data.prediction import OffData
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.provenance import Recipe
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Shelf"]
 
@@ -17,7 +17,7 @@ SPARE, SPARE_POINTS = 24, 1_000_000
 
 @dataclass(frozen=True, eq=False)
 class _Result:
-    surface: HorizonSurface
+    surface: HorizonFit
     offdata: OffData | None = None
 
 
@@ -34,7 +34,7 @@ class Shelf:
         """Forget everything."""
         self._results.clear()
 
-    def put(self, recipe: Recipe, surface: HorizonSurface, shown: Collection[Recipe]) -> None:
+    def put(self, recipe: Recipe, surface: HorizonFit, shown: Collection[Recipe]) -> None:
         """Keep the surface of a recipe; forget the oldest of those that are not shown."""
         former = self._results.pop(recipe, None)
         self._results[recipe] = _Result(surface, None if former is None else former.offdata)
@@ -44,7 +44,7 @@ class Shelf:
         ):
             del self._results[spare.pop(0)]
 
-    def surface(self, recipe: Recipe | None) -> HorizonSurface | None:
+    def surface(self, recipe: Recipe | None) -> HorizonFit | None:
         """Return the surface of a recipe, None if it is not at hand."""
         found = None if recipe is None else self._results.get(recipe)
         return None if found is None else found.surface

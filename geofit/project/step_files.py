@@ -10,7 +10,7 @@ from geofit.cad.step import Unit, write_step
 from geofit.data.accuracy import ReadBack
 from geofit.data.files import file_stems
 from geofit.data.progress import Progress, tell
-from geofit.surfaces.surface import HorizonSurface
+from geofit.fitting.horizon_fit import HorizonFit
 
 __all__ = ["StepFile", "step_paths", "write_step_files"]
 
@@ -39,7 +39,7 @@ def step_paths(names: list[str], target: Path, *, separate: bool) -> dict[Path, 
 
 
 def write_step_files(
-    surfaces: Mapping[str, HorizonSurface], target: Path, unit: Unit, separate: bool, *, progress: Progress
+    surfaces: Mapping[str, HorizonFit], target: Path, unit: Unit, separate: bool, *, progress: Progress
 ) -> list[StepFile]:
     """Write surfaces as STEP, in one file or one each, and read every file back.
 

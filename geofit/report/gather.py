@@ -144,7 +144,7 @@ def _horizon(result: HorizonResult) -> HorizonReport:
         within_interior=float((out <= settings.interior_tolerance).mean()) if len(out) else None,
         tolerances=(settings.boundary_tolerance, settings.interior_tolerance, settings.epsilon),
         over=tuple((str(name), int(n)) for name, n in a.over.items()),
-        reason=surface.partition.reason if surface.partition else EMPTY,
+        reason=surface.partition.reason if surface.partition is not None else EMPTY,
         notes=a.notes,
         groups=tuple(
             GroupLine(by, name, g.n, g.sigma, g.max_abs, g.mean)
@@ -165,7 +165,7 @@ def _horizon(result: HorizonResult) -> HorizonReport:
         grid_points=storage.grid_points if storage else None,
         equal_accuracy=storage.tolerance if storage else None,
         settings=tuple((key, _word(value)) for key, value in asdict(settings).items()),
-        fit=tuple((k, _word(v)) for k, v in surface.fit.items() if isinstance(v, bool | int | float | str)),
+        fit=tuple((k, _word(v)) for k, v in surface.diagnostics.items() if isinstance(v, bool | int | float | str)),
         pictures=tuple((what, picture_name(what, result.name)) for what in shown),
     )
 

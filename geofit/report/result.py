@@ -18,7 +18,7 @@ from geofit.data.files import replacing
 from geofit.data.messages import Message
 from geofit.data.prediction import OffData
 from geofit.data.site import ImportIssue, Site
-from geofit.surfaces.surface import HorizonSurface
+from geofit.fitting.horizon_fit import HorizonFit
 
 __all__ = ["HorizonResult", "horizon_data", "sigma_of", "write_json"]
 
@@ -29,7 +29,7 @@ class HorizonResult:
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         With its accuracy.
     site : Site
         Where the points come from: holes, sections, issues, counts, hashes.
@@ -45,7 +45,7 @@ class HorizonResult:
         The surface away from its data; None: not examined.
     """
 
-    surface: HorizonSurface
+    surface: HorizonFit
     site: Site
     read_back: ReadBack | None = None
     storage: Storage | None = None
@@ -147,7 +147,7 @@ def horizon_data(result: HorizonResult) -> dict[str, Any]:
             "tin_points_equal_accuracy": result.storage and result.storage.tin_points,
             "grid_points_equal_accuracy": result.storage and result.storage.grid_points,
         },
-        "fit": {key: value for key, value in surface.fit.items() if key != "seconds"},
+        "fit": {key: value for key, value in surface.diagnostics.items() if key != "seconds"},
         "seconds": result.seconds,
         "inputs": [{"file": f, "sha256": h} for f, h in result.site.inputs.items()],
         "rows": [asdict(count) for count in result.site.counts],

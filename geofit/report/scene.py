@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from geofit.data.errors import MissingDependencyError
 from geofit.data.messages import Message, message
 from geofit.data.site import Hole
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.result import HorizonResult
 from geofit.report.style import HORIZONS, kind_style
 from geofit.report.view import rims, trimmed
-from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     import pyvista
@@ -90,7 +90,7 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
 
 
 def site_scene(
-    surfaces: Sequence[HorizonSurface], holes: Sequence[Hole] = (), size: tuple[int, int] = (1800, 1300)
+    surfaces: Sequence[HorizonFit], holes: Sequence[Hole] = (), size: tuple[int, int] = (1800, 1300)
 ) -> Scene:
     """Draw all horizons of a site with its holes, one colour of ``HORIZONS`` each.
 
@@ -131,7 +131,7 @@ class _Place:
         return np.asarray((xyz - self.centre) * self.scale, np.float32)
 
 
-def _raised(surfaces: Sequence[HorizonSurface]) -> int:
+def _raised(surfaces: Sequence[HorizonFit]) -> int:
     xyz = np.concatenate([rim for s in surfaces for rim in rims(s).values()])
     width, relief = np.ptp(xyz[:, :2], axis=0).max(), np.ptp(xyz[:, 2])
     return int(np.clip(np.ceil(RELIEF * width / max(relief, 1e-9)), 1, MOST_RAISED))
@@ -165,7 +165,7 @@ def _opengl() -> bool:
     return True
 
 
-def _mesh(surface: HorizonSurface, index: int, place: _Place) -> pyvista.PolyData:
+def _mesh(surface: HorizonFit, index: int, place: _Place) -> pyvista.PolyData:
     """One patch as triangles, cut along the outline of the study area."""
     import pyvista
 
@@ -188,7 +188,7 @@ def _add_surface(plotter: pyvista.Plotter, mesh: pyvista.PolyData, **style: Any)
         plotter.add_mesh(mesh, smooth_shading=True, specular=0.05, ambient=0.15, show_scalar_bar=False, **style)
 
 
-def _add_rim(plotter: pyvista.Plotter, surface: HorizonSurface, rim: Floats, place: _Place, **style: Any) -> None:
+def _add_rim(plotter: pyvista.Plotter, surface: HorizonFit, rim: Floats, place: _Place, **style: Any) -> None:
     """Draw a patch's edge as far as it lies in the study area."""
     inside = trimmed(surface, rim[:, 0], rim[:, 1]) > -1e-6
     for run in np.split(np.arange(len(rim)), np.flatnonzero(np.diff(inside)) + 1):

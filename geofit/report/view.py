@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["View", "choose_view", "rims", "trimmed"]
 
@@ -33,7 +33,7 @@ class View:
         return np.asarray((xyz - self.start) @ self.axes.T)
 
 
-def choose_view(surface: HorizonSurface) -> View:
+def choose_view(surface: HorizonFit) -> View:
     """Return the plan for a surface that lies flat, the view across the strike for a steep one."""
     normal = np.mean([_normals(patch) for patch in surface.patches], axis=0)
     dip = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), abs(normal[2])))
@@ -74,7 +74,7 @@ def _normals(patch: Patch) -> Floats:
     return np.asarray((area * (u1 - u0) * (v1 - v0)).mean(axis=0))
 
 
-def rims(surface: HorizonSurface, steps: int = 80) -> dict[str, Floats]:
+def rims(surface: HorizonFit, steps: int = 80) -> dict[str, Floats]:
     """Return the closed outline of every patch in map coordinates, (k, 3) each."""
     outlines = {}
     for patch in surface.patches:
@@ -87,7 +87,7 @@ def rims(surface: HorizonSurface, steps: int = 80) -> dict[str, Floats]:
     return outlines
 
 
-def trimmed(surface: HorizonSurface, x: Floats, y: Floats) -> Floats:
+def trimmed(surface: HorizonFit, x: Floats, y: Floats) -> Floats:
     """Return metres inside the plan outline (negative outside); infinity where the surface is not trimmed."""
     if surface.outline is None:
         return np.full(np.shape(x), np.inf)

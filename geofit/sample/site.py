@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+import geofit.sample.tables as tables
 from geofit.data.site import Ground
-from geofit.sample import tables
 from geofit.sample.holes import Adit, Borehole, drill_adits, drill_boreholes
 from geofit.sample.ledger import Ledger
 from geofit.sample.mapping import map_outcrops, pick_lines

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
-from geofit.geometry.mesh import Mesh, triangulate
+from geofit.geometry.mesh import Mesh
 from geofit.sampling.isolines import plane_lines
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 __all__ = ["Contour", "contours", "interval_for"]
 
@@ -39,7 +39,7 @@ def interval_for(low: float, high: float) -> float:
 
 
 def contours(
-    surface: HorizonSurface,
+    surface: Surface,
     interval: float | None = None,
     *,
     tolerance: float = 0.05,
@@ -49,7 +49,7 @@ def contours(
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : Surface
         Any surface; an overturned one gives lines for each of its limbs.
     interval : float, optional
         Metres between contours, which stand at its multiples; by default 1, 2 or 5 times a power of ten.
@@ -63,7 +63,7 @@ def contours(
     SettingsError
         If the interval is not above 0, or so small that it makes over 5,000 contours.
     """
-    mesh = triangulate(surface, tolerance) if mesh is None else mesh
+    mesh = surface.triangulate(tolerance) if mesh is None else mesh
     z = mesh.points[:, 2] + surface.origin[2]
     low, high = float(z.min()), float(z.max())
     step = interval_for(low, high) if interval is None else interval

@@ -10,10 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
-from geofit.geometry.mesh import Mesh, triangulate
+from geofit.geometry.mesh import Mesh
 from geofit.geometry.projection import project
 from geofit.sampling.isolines import plane_lines
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 __all__ = ["CutLine", "cut", "section_line"]
 
@@ -58,14 +58,12 @@ def section_line(line: ArrayLike) -> Floats:
     return np.asarray(corners[apart])
 
 
-def cut(
-    surface: HorizonSurface, line: ArrayLike, *, tolerance: float = 0.05, mesh: Mesh | None = None
-) -> list[CutLine]:
+def cut(surface: Surface, line: ArrayLike, *, tolerance: float = 0.05, mesh: Mesh | None = None) -> list[CutLine]:
     """Return the lines in which a section cuts a surface.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : Surface
         Any surface, steep and overturned ones included.
     line : (k, 2) array_like
         The section's line in plan, map coordinates; where it turns, so does the curtain.
@@ -80,7 +78,7 @@ def cut(
         By distance. An overturned fold gives one line that turns back.
     """
     corners = section_line(line) - surface.origin[:2]
-    mesh = triangulate(surface, tolerance) if mesh is None else mesh
+    mesh = surface.triangulate(tolerance) if mesh is None else mesh
     pieces: list[tuple[Floats, Floats]] = []
     start_at = 0.0
     for start, end in pairwise(corners):
@@ -100,7 +98,7 @@ def cut(
     return [CutLine(distance, places + surface.origin) for distance, places in joined]
 
 
-def _within(surface: HorizonSurface, places: Floats, start: Floats, end: Floats) -> list[Floats]:
+def _within(surface: Surface, places: Floats, start: Floats, end: Floats) -> list[Floats]:
     """Cut a line at both ends of a leg of the section; return what lies between."""
     length = float(np.linalg.norm(end - start))
     along = (places[:, :2] - start) @ (end - start) / length
@@ -127,7 +125,7 @@ def _within(surface: HorizonSurface, places: Floats, start: Floats, end: Floats)
     return [line[first : last + 1] for first, last in bounds.reshape(-1, 2)]
 
 
-def _upright(surface: HorizonSurface, corner: Floats, near: Floats) -> Floats:
+def _upright(surface: Surface, corner: Floats, near: Floats) -> Floats:
     """Return where the vertical line at a corner meets the surface near a place; the place where it does not."""
     if not surface.patches:  # triangles of a file: the line between two places is the surface
         return near

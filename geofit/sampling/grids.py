@@ -12,9 +12,8 @@ from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
-from geofit.geometry.mesh import triangulate
 from geofit.sampling.contours import interval_for
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 __all__ = ["deviation_grid", "elevation_grid", "thickness_grid"]
 
@@ -27,7 +26,7 @@ MOST_CELLS = 100_000_000
 COARSE = 1.0
 
 
-def elevation_grid(surface: HorizonSurface, cell: float | None = None) -> Ground:
+def elevation_grid(surface: Surface, cell: float | None = None) -> Ground:
     """Return the elevation of a surface at nodes that stand at multiples of ``cell`` metres; nan outside.
 
     Raises
@@ -38,7 +37,7 @@ def elevation_grid(surface: HorizonSurface, cell: float | None = None) -> Ground
     return _grid(_extent(surface), cell, surface.elevation)
 
 
-def thickness_grid(upper: HorizonSurface, lower: HorizonSurface, cell: float | None = None) -> Ground:
+def thickness_grid(upper: Surface, lower: Surface, cell: float | None = None) -> Ground:
     """Return upper minus lower elevation, metres, nan where either is absent; errors as elevation_grid.
 
     Negative where the horizons cross.
@@ -48,7 +47,7 @@ def thickness_grid(upper: HorizonSurface, lower: HorizonSurface, cell: float | N
     return _grid(box, cell, lambda x, y: upper.elevation(x, y) - lower.elevation(x, y))
 
 
-def deviation_grid(surface: HorizonSurface, points: PointSet, cell: float | None = None) -> Ground:
+def deviation_grid(surface: Surface, points: PointSet, cell: float | None = None) -> Ground:
     """Return, for each cell with data points, the deviation (m, positive above) of largest size; nan elsewhere.
 
     Nothing is interpolated between points. Errors as elevation_grid.
@@ -65,8 +64,8 @@ def deviation_grid(surface: HorizonSurface, points: PointSet, cell: float | None
     return grid
 
 
-def _extent(surface: HorizonSurface) -> tuple[Floats, Floats]:
-    plan = triangulate(surface, COARSE).xyz[:, :2]
+def _extent(surface: Surface) -> tuple[Floats, Floats]:
+    plan = surface.triangulate(COARSE).xyz[:, :2]
     return plan.min(axis=0), plan.max(axis=0)
 
 

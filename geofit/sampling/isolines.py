@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from geofit.geometry.mesh import Mesh
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.protocol import Surface
 
 __all__ = ["plane_lines"]
 
@@ -19,12 +19,12 @@ EXACT = 1e-10
 STEPS = 20
 
 
-def plane_lines(surface: HorizonSurface, mesh: Mesh, normal: Floats, offset: float) -> list[Floats]:
+def plane_lines(surface: Surface, mesh: Mesh, normal: Floats, offset: float) -> list[Floats]:
     """Return the lines in which the plane ``normal . x = offset`` cuts a surface.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : Surface
         The surface.
     mesh : Mesh
         Its triangles (:func:`geofit.geometry.mesh.triangulate`), which decide how many vertices a line gets.

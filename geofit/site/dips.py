@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.data.site import Orientations
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.projection import project
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["DipDeviation", "check_dips"]
 
@@ -40,14 +40,12 @@ class DipDeviation:
     distance: float
 
 
-def check_dips(
-    surface: HorizonSurface, orientations: Orientations | None
-) -> tuple[tuple[DipDeviation, ...], Check | None]:
+def check_dips(surface: HorizonFit, orientations: Orientations | None) -> tuple[tuple[DipDeviation, ...], Check | None]:
     """Compare the dips that were measured on a horizon with the surface's own dip there.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         The fit; measurements that name its horizon are compared.
     orientations : Orientations or None
         All measurements of the site.
@@ -80,7 +78,7 @@ def check_dips(
     return deviations, _check(deviations, orientations)
 
 
-def _at_the_surface(surface: HorizonSurface, xyz: Floats) -> tuple[Floats, Floats]:
+def _at_the_surface(surface: HorizonFit, xyz: Floats) -> tuple[Floats, Floats]:
     """Return upward unit normals (n, 3) at the nearest places, and the distances, metres."""
     projection = project(surface.patches, xyz - surface.origin)
     normal = np.zeros((len(xyz), 3))

@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.zero_contours import zero_lines
-from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -33,13 +33,13 @@ HALVINGS = 24
 class Fault:
     """A fault, as a surface or as the part of the plan on the left of its trace."""
 
-    def __init__(self, name: str, surface: HorizonSurface | None, left: Polygon | None) -> None:
+    def __init__(self, name: str, surface: HorizonFit | None, left: Polygon | None) -> None:
         self.name, self._surface, self._left = name, surface, left
 
     @classmethod
-    def of(cls, fault: HorizonSurface | ArrayLike, number: int, area: Polygon) -> Fault:
+    def of(cls, fault: HorizonFit | ArrayLike, number: int, area: Polygon) -> Fault:
         """Return the fault of a surface or of a trace in plan."""
-        if isinstance(fault, HorizonSurface):
+        if isinstance(fault, HorizonFit):
             return cls(fault.name, fault, None)
         line = np.asarray(fault, float)
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():

@@ -20,12 +20,11 @@ from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
-from geofit.fitting.model import trimmed
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
 from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, size
 from geofit.site.height_field import Relief
 from geofit.site.throw import FaultCut, Sides, throws
-from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -63,7 +62,7 @@ class BlockFit:
     ``block`` (n,) is the number of the block of each point.
     """
 
-    blocks: tuple[HorizonSurface, ...]
+    blocks: tuple[HorizonFit, ...]
     block: NDArray[np.int64]
     cuts: tuple[FaultCut, ...]
     notes: tuple[Message, ...]
@@ -101,7 +100,7 @@ def fit_faulted(site: Site, name: str, progress: Progress | None = None) -> Bloc
 
 def fit_blocks(
     points: PointSet,
-    faults: Sequence[HorizonSurface | ArrayLike],
+    faults: Sequence[HorizonFit | ArrayLike],
     settings: FitSettings | None = None,
     boundary: ArrayLike | None = None,
     *,
@@ -114,7 +113,7 @@ def fit_blocks(
     ----------
     points : PointSet
         All points of the horizon.
-    faults : sequence of HorizonSurface or (k, 2) array_like
+    faults : sequence of HorizonFit or (k, 2) array_like
         Steep surfaces, or traces in plan (map coordinates), which are continued straight at their ends.
     settings : FitSettings, optional
         Of each block's fit.
@@ -143,7 +142,7 @@ def fit_blocks(
     """
     area = area_of(points, boundary)
     parted = part(points, faults, area, name)
-    blocks: dict[Sides, HorizonSurface] = {}
+    blocks: dict[Sides, HorizonFit] = {}
     for k, (title, sides) in enumerate(zip(parted.names, parted.sides, strict=True)):
         tell(progress, message("site.block-name", "block {name}", name=title), 0.5 + 0.5 * k / len(parted.names))
         mine = points[np.flatnonzero(parted.block == k)]
@@ -162,7 +161,7 @@ def area_of(points: PointSet, boundary: ArrayLike | None) -> Polygon:
     return shapely.Polygon([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 
 
-def part(points: PointSet, faults: Sequence[HorizonSurface | ArrayLike], area: Polygon, name: str) -> Parting:
+def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polygon, name: str) -> Parting:
     """Part the points of a horizon by the side of each fault they lie on.
 
     Parameters and errors as :func:`fit_blocks`; ``area`` is the study area.
@@ -219,7 +218,7 @@ def fit_block(
     progress: Progress | None = None,
     *,
     name: str,
-) -> HorizonSurface:
+) -> HorizonFit:
     """Fit one block to somewhat beyond its faults, then cut it where its surface meets them.
 
     Parameters
@@ -256,7 +255,7 @@ def fit_block(
     relief = Relief(surface)
     held = _largest(shapely.intersection(area, relief.area()))
     outline = _cut(held, relief, faults, sides, name)
-    return trimmed(surface, shapely.get_coordinates(outline.exterior)[:-1])
+    return surface.ended_at(shapely.get_coordinates(outline.exterior)[:-1])
 
 
 def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, title: str) -> Polygon:

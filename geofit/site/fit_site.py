@@ -13,13 +13,13 @@ from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
 from geofit.site.fault_blocks import fit_blocks
 from geofit.site.order import Order, order_of
 from geofit.site.separate import Contradiction, repair
 from geofit.site.site_checks import check_surroundings
 from geofit.site.throw import FaultCut
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["SiteFit", "compare", "fit_site"]
 
@@ -34,11 +34,11 @@ class SiteFit:
     a repair; ``warnings`` what else is to be told.
     """
 
-    surfaces: dict[str, HorizonSurface] = field(default_factory=dict)
+    surfaces: dict[str, HorizonFit] = field(default_factory=dict)
     horizon: dict[str, str] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
     failures: dict[str, Message] = field(default_factory=dict)
-    faults: dict[str, HorizonSurface] = field(default_factory=dict)
+    faults: dict[str, HorizonFit] = field(default_factory=dict)
     cuts: tuple[FaultCut, ...] = ()
     moved: dict[str, float] = field(default_factory=dict)
     contradictions: tuple[Contradiction, ...] = ()
@@ -105,7 +105,7 @@ class _Fits:
 
     def __init__(self, site: Site, changes: Mapping[str, Any]) -> None:
         self._site, self._changes = site, changes
-        self._known: dict[str, HorizonSurface] = {}
+        self._known: dict[str, HorizonFit] = {}
 
     def add(self, name: str, found: SiteFit, listen: Progress) -> None:
         """Fit a horizon and put it, or its blocks, where they belong."""
@@ -139,7 +139,7 @@ class _Fits:
             found.surfaces[surface.name] = surface
             found.horizon[surface.name], found.seconds[surface.name] = name, seconds
 
-    def _fault(self, name: str, found: SiteFit, listen: Progress) -> HorizonSurface:
+    def _fault(self, name: str, found: SiteFit, listen: Progress) -> HorizonFit:
         try:
             found.faults[name] = self._whole(name, listen)
         except (FitError, PointsError) as error:
@@ -153,7 +153,7 @@ class _Fits:
             ) from None
         return found.faults[name]
 
-    def _whole(self, name: str, listen: Progress) -> HorizonSurface:
+    def _whole(self, name: str, listen: Progress) -> HorizonFit:
         if name not in self._known:
             points = self._site.horizons[name]
             self._known[name] = fit_horizon(points, self._settings(name), self._site.boundary, listen, name=name)
@@ -163,7 +163,7 @@ class _Fits:
         return replace(self._site.settings.get(name, FitSettings()), **self._changes)
 
 
-def _noted(block: HorizonSurface, notes: Sequence[Message]) -> HorizonSurface:
+def _noted(block: HorizonFit, notes: Sequence[Message]) -> HorizonFit:
     assert block.accuracy is not None
     return block.with_(accuracy=replace(block.accuracy, notes=(*block.accuracy.notes, *notes)))
 

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.cells import tabulate
 from geofit.geometry.elevation import RIM, Plan, plan_map
-from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     from shapely import Geometry
@@ -31,7 +31,7 @@ class Relief:
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         Patches whose x and y follow their parameters: fits over the map, their STEP files read back.
 
     Raises
@@ -40,7 +40,7 @@ class Relief:
         If a patch is no height field over the map (faults, overturned folds, triangles of a file).
     """
 
-    def __init__(self, surface: HorizonSurface) -> None:
+    def __init__(self, surface: HorizonFit) -> None:
         self.name, self.origin, self.outline = surface.name, surface.origin, surface.outline
         mappings = [plan_map(patch) for patch in surface.patches]
         self._mappings: list[Plan] = [one for one in mappings if one is not None]

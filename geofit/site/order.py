@@ -13,9 +13,9 @@ from geofit.data.accuracy import Check
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.data.site import Ground
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.height_field import Relief
 from geofit.site.overlap import Crossing, Overlap
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Order", "order_of", "orders", "require_sequence", "thickness"]
 
@@ -64,9 +64,13 @@ class Order:
             )
         if not self.crossings:
             text = message(
-                "site.lies-above-everywhere-average", "{upper} lies above {lower} everywhere: {low:.2f} to {high:.2f} m, {mean:.2f} m on average",
-                low=self.min, high=self.max, mean=self.mean, **names,
-            )  # fmt: skip
+                "site.above-everywhere",
+                "{upper} lies above {lower} everywhere: {low:.2f} to {high:.2f} m, {mean:.2f} m on average",
+                low=self.min,
+                high=self.max,
+                mean=self.mean,
+                **names,
+            )
             return Check("order", True, 0.0, 0.0, "m", text)
         deepest = max(self.crossings, key=lambda crossing: crossing.depth)
         figures = {
@@ -90,19 +94,19 @@ class Order:
         return Check("order", False, max(crossing.depth for crossing in below), 0.0, "m", text)
 
 
-def thickness(upper: HorizonSurface, lower: HorizonSurface, x: ArrayLike, y: ArrayLike) -> Floats:
+def thickness(upper: HorizonFit, lower: HorizonFit, x: ArrayLike, y: ArrayLike) -> Floats:
     """Return upper minus lower elevation at map coordinates, metres; nan where either is absent; arrays broadcast."""
     return np.asarray(upper.elevation(x, y) - lower.elevation(x, y))
 
 
 def orders(
-    surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str], ground: Ground | None = None
+    surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], ground: Ground | None = None
 ) -> tuple[Order, ...]:
     """Compare every two horizons of a sequence, neighbours and others.
 
     Parameters
     ----------
-    surfaces : mapping of str to HorizonSurface
+    surfaces : mapping of str to HorizonFit
         Surfaces by name; height fields over the map.
     sequence : sequence of str
         Names from the top to the bottom.
@@ -119,12 +123,12 @@ def orders(
     return tuple(_compare(upper, lower, ground) for upper, lower in combinations(reliefs, 2))
 
 
-def order_of(upper: HorizonSurface, lower: HorizonSurface, ground: Ground | None = None) -> Order:
+def order_of(upper: HorizonFit, lower: HorizonFit, ground: Ground | None = None) -> Order:
     """Compare two horizons; see :func:`orders`."""
     return _compare(Relief(upper), Relief(lower), ground)
 
 
-def require_sequence(surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str]) -> None:
+def require_sequence(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str]) -> None:
     """Raise SettingsError unless each name of a sequence has a surface and stands once."""
     missing = [name for name in sequence if name not in surfaces]
     if missing:

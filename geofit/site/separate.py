@@ -20,11 +20,11 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import EMPTY, Message, message
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.site.height_field import Relief
 from geofit.site.order import require_sequence
 from geofit.site.overlap import Overlap
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Contradiction", "Repair", "repair"]
 
@@ -62,29 +62,36 @@ class Contradiction:
     @property
     def text(self) -> Message:
         """What contradicts what, in words."""
+        none = message("site.no-exact-point", "no exact point")
         return message(
-            "site.cannot-pushed-apart-missing", "{upper} and {lower} cannot be pushed apart at ({x:.1f}, {y:.1f}), {lack:.3f} m are missing: {above} of "
+            "site.contradiction",
+            "{upper} and {lower} cannot be pushed apart at ({x:.1f}, {y:.1f}), {lack:.3f} m are missing: {above} of "
             "{upper} stands against {below} of {lower}",
-            upper=self.upper, lower=self.lower, x=self.x, y=self.y, lack=self.lack,
-            above=self.above or message("site.no-exact-point", "no exact point"), below=self.below or message("site.no-exact-point", "no exact point"),
-        )  # fmt: skip
+            upper=self.upper,
+            lower=self.lower,
+            x=self.x,
+            y=self.y,
+            lack=self.lack,
+            above=self.above or none,
+            below=self.below or none,
+        )
 
 
 @dataclass(frozen=True, eq=False)
 class Repair:
     """Surfaces after a repair, by name; ``moved`` says by how many metres each was moved at most."""
 
-    surfaces: Mapping[str, HorizonSurface]
+    surfaces: Mapping[str, HorizonFit]
     moved: Mapping[str, float]
     contradictions: tuple[Contradiction, ...]
 
 
-def repair(surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str], minimum: float = 0.0) -> Repair:
+def repair(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], minimum: float = 0.0) -> Repair:
     """Push horizons of a sequence apart until each is at least ``minimum`` metres above the next.
 
     Parameters
     ----------
-    surfaces : mapping of str to HorizonSurface
+    surfaces : mapping of str to HorizonFit
         Fitted surfaces by name; those that the sequence does not name are handed on as they are.
     sequence : sequence of str
         Names from the top to the bottom.
@@ -130,7 +137,7 @@ def repair(surfaces: Mapping[str, HorizonSurface], sequence: Sequence[str], mini
 class _Layer:
     """One horizon of the stack: its control net, its exact points, and the change so far."""
 
-    def __init__(self, surface: HorizonSurface) -> None:
+    def __init__(self, surface: HorizonFit) -> None:
         if surface.model is None or surface.model.problem.chart.frame.kind != "map":
             text = message(
                 "site.no-control-net-map",
@@ -164,7 +171,7 @@ class _Layer:
         away = np.linalg.norm(points.xyz[self.exact, :2] - (x, y), axis=1)
         return points.describe(int(self.exact[away.argmin()]))
 
-    def as_moved(self, lift: float) -> HorizonSurface:
+    def as_moved(self, lift: float) -> HorizonFit:
         """Return the surface as moved so far and lifted, unchecked."""
         return self.surface.with_(patches=self.moved().patches(), origin=self.surface.origin + np.array([0, 0, lift]))
 
@@ -174,9 +181,9 @@ class _Layer:
         coefficients = np.where(self.change == 0, net.coefficients, net.coefficients + self.change)
         return self.model.with_net(replace(net, coefficients=coefficients))
 
-    def moved_surface(self) -> HorizonSurface:
+    def moved_surface(self) -> HorizonFit:
         """Return the checked surface of the control points moved; it says that it was."""
-        new, old = self.moved().surface(), self.surface
+        new = self.surface.refitted(self.moved())
         assert new.accuracy is not None
         note = message(
             "site.moved-keep-order-strata",
@@ -184,7 +191,7 @@ class _Layer:
             most=float(np.abs(self.change).max()),
         )
         accuracy = replace(new.accuracy, notes=(*new.accuracy.notes, note))
-        return new.with_(accuracy=accuracy, fit={**old.fit, **new.fit})
+        return new.with_(accuracy=accuracy)
 
 
 class _Stack:

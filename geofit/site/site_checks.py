@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from geofit.data.site import Ground, Orientations, Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.clip import inside
 from geofit.site.dips import check_dips
 from geofit.site.topography import check_ground
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["check_surroundings", "ground_tolerance"]
 
@@ -20,12 +20,12 @@ __all__ = ["check_surroundings", "ground_tolerance"]
 CELL_SHARE = 0.1
 
 
-def check_surroundings(surface: HorizonSurface, site: Site, horizon: str = "") -> HorizonSurface:
+def check_surroundings(surface: HorizonFit, site: Site, horizon: str = "") -> HorizonFit:
     """Return a checked surface whose checks also ask whether it agrees with dips and ground.
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         With its accuracy.
     site : Site
         Its ``orientations`` that name the horizon, and its ``ground``.
@@ -56,7 +56,7 @@ def ground_tolerance(ground: Ground, least: float) -> float:
     return max(CELL_SHARE * cell, least)
 
 
-def _of_block(orientations: Orientations | None, block: HorizonSurface, horizon: str) -> Orientations | None:
+def _of_block(orientations: Orientations | None, block: HorizonFit, horizon: str) -> Orientations | None:
     """Return the measurements of a horizon that stand within a block's outline, as the block's own."""
     if orientations is None or block.outline is None:
         return None

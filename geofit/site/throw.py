@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.fault import BEYOND_TRACE, HALVINGS, Fault, longer, size
 from geofit.site.height_field import Relief
-from geofit.surfaces.surface import HorizonSurface
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -53,21 +53,28 @@ class FaultCut:
     def text(self) -> Message:
         """The throw in words."""
         return message(
-            "site.throws-down-average-lies", "{fault} throws {horizon} down by {low:.2f} to {high:.2f} m, {mean:.2f} m on average over {length:.0f} m: "
+            "site.throw",
+            "{fault} throws {horizon} down by {low:.2f} to {high:.2f} m, {mean:.2f} m on average over {length:.0f} m: "
             "{up} lies above {down}",
-            fault=self.fault, horizon=self.horizon, low=float(self.throw.min()), high=float(self.throw.max()),
-            mean=float(self.throw.mean()), length=float(self.distance[-1]), up=self.up, down=self.down,
-        )  # fmt: skip
+            fault=self.fault,
+            horizon=self.horizon,
+            low=float(self.throw.min()),
+            high=float(self.throw.max()),
+            mean=float(self.throw.mean()),
+            length=float(self.distance[-1]),
+            up=self.up,
+            down=self.down,
+        )
 
 
 def throws(
-    blocks: Mapping[Sides, HorizonSurface], faults: Sequence[Fault], horizon: str, area: Polygon
+    blocks: Mapping[Sides, HorizonFit], faults: Sequence[Fault], horizon: str, area: Polygon
 ) -> tuple[FaultCut, ...]:
     """Return what each fault displaces between every two blocks that it alone parts.
 
     Parameters
     ----------
-    blocks : mapping of tuple of int to HorizonSurface
+    blocks : mapping of tuple of int to HorizonFit
         Surfaces of one horizon by their side of each of ``faults``; they reach somewhat beyond their outlines.
     faults : sequence of Fault
         All that cut the horizon.

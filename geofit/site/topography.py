@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.data.site import Ground
-from geofit.surfaces.surface import HorizonSurface
+from geofit.fitting.horizon_fit import HorizonFit
 
 __all__ = ["check_ground"]
 
@@ -23,7 +23,7 @@ REACH = 2.0
 NAMED = 20
 
 
-def check_ground(surface: HorizonSurface, ground: Ground | None, tolerance: float) -> Check | None:
+def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -> Check | None:
     """Look for places where a horizon stands above the ground.
 
     A horizon that crops out goes on above the ground as it lay before erosion: that is told, and no fault. Above
@@ -32,7 +32,7 @@ def check_ground(surface: HorizonSurface, ground: Ground | None, tolerance: floa
 
     Parameters
     ----------
-    surface : HorizonSurface
+    surface : HorizonFit
         The fit; of a fold the highest sheet counts.
     ground : Ground or None
         The ground surface.
@@ -108,7 +108,7 @@ def _buried(plan: Floats, own: Floats, depth: Floats) -> Floats:
     return np.where(triangle >= 0, least[triangle], 0.0)
 
 
-def _nodes(ground: Ground, surface: HorizonSurface) -> tuple[Floats, Floats, float]:
+def _nodes(ground: Ground, surface: HorizonFit) -> tuple[Floats, Floats, float]:
     """Flat x, y of the ground's nodes over the surface, thinned if there are many, and the area of each."""
     if surface.outline is not None:
         box = surface.outline

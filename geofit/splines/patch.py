@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.splines import bspline
 
-__all__ = ["Patch"]
+__all__ = ["Patch", "Patches"]
+
+T = TypeVar("T")
 
 Floats = NDArray[np.float64]
 
@@ -38,6 +42,19 @@ class Patch:
     knots_v: Floats
     control: Floats
     weights: Floats | None = None
+
+    def __post_init__(self) -> None:
+        # What is prepared from a patch (search trees, polynomial pieces) stays right only while its arrays do.
+        for name in ("knots_u", "knots_v", "control", "weights"):
+            array = getattr(self, name)
+            if array is not None and array.flags.writeable:
+                array = np.array(array, dtype=np.float64)
+                array.setflags(write=False)
+                object.__setattr__(self, name, array)
+
+    def __repr__(self) -> str:
+        rows, columns = self.control.shape[:2]
+        return f"<Patch {self.name}: degree {self.degree[0]} x {self.degree[1]}, {rows} x {columns} control points>"
 
     @property
     def domain(self) -> tuple[float, float, float, float]:
@@ -93,3 +110,24 @@ class Patch:
 
 def _binomial(n: int, k: int) -> int:
     return (1, 1, 1, 1, 2, 1)[n * (n + 1) // 2 + k]
+
+
+class Patches(tuple[Patch, ...]):
+    """The patches of one surface, with what has been prepared from them: it lives as long as they do."""
+
+    @classmethod
+    def of(cls, patches: Iterable[Patch]) -> Patches:
+        """Return the patches themselves where they are already of this class."""
+        return patches if isinstance(patches, cls) else cls(patches)
+
+    def prepared(self, make: Callable[[Patches], T]) -> T:
+        """Return ``make(patches)``, made at the first call and kept."""
+        kept: dict[Any, Any] = self.__dict__.setdefault("_prepared", {})
+        if make not in kept:
+            kept[make] = make(self)
+        result: T = kept[make]
+        return result
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle the patches without what was prepared from them."""
+        return Patches, (tuple(self),)

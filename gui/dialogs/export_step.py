@@ -30,13 +30,13 @@ from PySide6.QtWidgets import (
 from geofit.data.accuracy import Check
 from geofit.data.files import file_stems
 from geofit.data.messages import message
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import verdict_mark
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
 from geofit.project.step_files import StepFile, step_paths, write_step_files
 from geofit.report import digits
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ExportDialog"]
 
@@ -49,7 +49,7 @@ class ExportDialog(TaskDialog):
     ``files`` holds what was written last.
     """
 
-    def __init__(self, surfaces: Mapping[str, HorizonSurface], parent: QWidget | None = None) -> None:
+    def __init__(self, surfaces: Mapping[str, HorizonFit], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Export STEP"))
         # The patches are all that a file holds; what stands behind them need not travel to the other process.

@@ -6,12 +6,12 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtWidgets import QFrame, QPushButton, QScrollArea, QTabWidget, QVBoxLayout, QWidget
 
 from geofit.data.accuracy import Accuracy
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.control_point import ControlPointPage
 from geofit.gui.panels.data_point import DataPointPage
 from geofit.gui.panels.effect import Effect
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["AdjustPanel"]
 
@@ -36,7 +36,7 @@ class AdjustPanel(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._surface: HorizonSurface | None = None
+        self._surface: HorizonFit | None = None
         self.control, self.point = ControlPointPage(), DataPointPage()
         self.ways = QTabWidget()
         self.ways.addTab(self.control, self.tr("Control point"))
@@ -76,7 +76,7 @@ class AdjustPanel(QWidget):
         self.point.edited.connect(self._edited)
         self.show_surface(None)
 
-    def show_surface(self, surface: HorizonSurface | None) -> None:
+    def show_surface(self, surface: HorizonFit | None) -> None:
         """Show a surface; the control point and the data point stay chosen where it has them."""
         if surface is not None and surface is self._surface:
             return

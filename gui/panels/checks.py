@@ -21,13 +21,13 @@ from PySide6.QtWidgets import (
 from geofit.data.accuracy import Accuracy, Check, ReadBack
 from geofit.data.messages import Message
 from geofit.data.prediction import OffData
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken
 from geofit.report.digits import measured
 from geofit.site.order import Order
 from geofit.site.throw import FaultCut
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ChecksPanel"]
 
@@ -80,7 +80,7 @@ class ChecksPanel(QWidget):
 
     def show_surface(
         self,
-        surface: HorizonSurface | None,
+        surface: HorizonFit | None,
         offdata: OffData | None = None,
         orders: Sequence[Order] = (),
         read_back: ReadBack | None = None,
@@ -90,7 +90,7 @@ class ChecksPanel(QWidget):
 
         Parameters
         ----------
-        surface : HorizonSurface or None
+        surface : HorizonFit or None
             With its accuracy; None while there is none.
         offdata : OffData or None
             What is known away from the data.
@@ -198,7 +198,7 @@ class ChecksPanel(QWidget):
             rows.append(self._row(name, None, measured(left.rms, "m"), words=words, word=self.tr("for knowledge")))
         return rows + [self._note(note) for note in offdata.notes]
 
-    def _conflicts(self, surface: HorizonSurface, a: Accuracy) -> list[QTreeWidgetItem]:
+    def _conflicts(self, surface: HorizonFit, a: Accuracy) -> list[QTreeWidgetItem]:
         rows = []
         for conflict in a.conflicts:
             name = spoken(surface.points.describe(conflict.dropped))

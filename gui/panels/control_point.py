@@ -21,10 +21,10 @@ from PySide6.QtWidgets import (
 
 from geofit.data.errors import GeofitError
 from geofit.fitting.edit import acted_on, support
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.weight import WeightBox
 from geofit.gui.words import spoken
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ControlPointPage"]
 
@@ -46,7 +46,7 @@ class ControlPointPage(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._surface: HorizonSurface | None = None
+        self._surface: HorizonFit | None = None
         self.held = False
         self.patch, self.i, self.j = QComboBox(), QSpinBox(), QSpinBox()
         self.dz, self.z = QDoubleSpinBox(), QDoubleSpinBox()
@@ -72,7 +72,7 @@ class ControlPointPage(QWidget):
         """Whether there is a move that can be made."""
         return self.dz.value() != 0 and not self.held
 
-    def show_surface(self, surface: HorizonSurface) -> None:
+    def show_surface(self, surface: HorizonFit) -> None:
         """Show a surface that has a control net; the control point stays chosen where it has it."""
         self._surface = surface
         before = self.patch.currentData()

@@ -11,10 +11,10 @@ from geofit.data.errors import GeofitError
 from geofit.data.messages import EMPTY
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.parametrize import Chart, choose_chart
 from geofit.fitting.partition import split_rectangle
 from geofit.geometry.frame import Frame
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["CoreBox", "chart_of", "taken"]
 
@@ -77,7 +77,7 @@ class CoreBox:
 
 
 def chart_of(
-    points: PointSet, settings: FitSettings, boundary: Floats | None, surface: HorizonSurface | None
+    points: PointSet, settings: FitSettings, boundary: Floats | None, surface: HorizonFit | None
 ) -> Chart | None:
     """Return the chart on which a horizon is (or will be) fitted; None where these points cannot be fitted."""
     if surface is not None and surface.model is not None:

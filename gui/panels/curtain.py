@@ -11,15 +11,15 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
-from geofit.geometry.mesh import Mesh, triangulate
+from geofit.fitting.horizon_fit import HorizonFit
+from geofit.geometry.mesh import Mesh
 from geofit.sampling.cut import CutLine, cut, section_line
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Curtain", "Traces", "extent", "trace"]
 
 Floats = NDArray[np.float64]
 #: Triangles of each surface that was cut already, with the surface that they belong to.
-Meshes = MutableMapping[str, tuple[HorizonSurface, Mesh]]
+Meshes = MutableMapping[str, tuple[HorizonFit, Mesh]]
 Traces = Mapping[str, list[CutLine]]
 
 #: Lines of a drawing need not be nearer to the surface than this, metres; their vertices lie on it.
@@ -101,7 +101,7 @@ class Curtain:
         return along, np.where(np.isnan(along), np.nan, beside)
 
 
-def extent(site: Site, surfaces: Mapping[str, HorizonSurface]) -> Floats:
+def extent(site: Site, surfaces: Mapping[str, HorizonFit]) -> Floats:
     """Return the lowest and highest easting and northing of a site, (2, 2)."""
     parts = [points.xyz[:, :2] for points in site.horizons.values() if len(points)]
     parts += [s.patches[0].control[..., :2].reshape(-1, 2) + s.origin[:2] for s in surfaces.values() if s.patches]
@@ -111,9 +111,7 @@ def extent(site: Site, surfaces: Mapping[str, HorizonSurface]) -> Floats:
     return np.stack([xy.min(axis=0), xy.max(axis=0)])
 
 
-def trace(
-    surfaces: Mapping[str, HorizonSurface], line: Floats, meshes: Meshes, progress: Progress | None = None
-) -> Traces:
+def trace(surfaces: Mapping[str, HorizonFit], line: Floats, meshes: Meshes, progress: Progress | None = None) -> Traces:
     """Cut every surface along a line; triangles are kept in ``meshes`` for the next cut.
 
     Raises
@@ -127,7 +125,7 @@ def trace(
             tell(progress, "section", k / len(surfaces))
             kept = meshes.get(name)
             if kept is None or kept[0] is not surface:
-                kept = (surface, triangulate(surface, TOLERANCE))
+                kept = (surface, surface.triangulate(TOLERANCE))
                 meshes[name] = kept
             found[name] = cut(surface, line, tolerance=TOLERANCE, mesh=kept[1])
     return found

@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QVBoxLayout, QWidget
 
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.words import spoken
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["DataPointPage"]
 
@@ -18,7 +18,7 @@ class DataPointPage(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        self._surface: HorizonSurface | None = None
+        self._surface: HorizonFit | None = None
         self.point: int | None = None
         self.about = QLabel()
         self.about.setWordWrap(True)
@@ -51,7 +51,7 @@ class DataPointPage(QWidget):
         page.addStretch(1)
         self.share.valueChanged.connect(lambda _: self.edited.emit())
 
-    def show_surface(self, surface: HorizonSurface) -> None:
+    def show_surface(self, surface: HorizonFit) -> None:
         """Show a surface; the point stays chosen where it has it."""
         self._surface = surface
         self.choose(self.point if self.point is not None and self.point < len(surface.points) else None)

@@ -10,12 +10,12 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from geofit.data.languages import Language
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.canvas import Canvas, Ink, place, recolour, wrapped
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken_language
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["HistogramPanel"]
 
@@ -42,7 +42,7 @@ class HistogramPanel(QWidget):
         self._texts: list[tuple[str, str, tuple[float, float]]] = []
         self.show_surface(None)
 
-    def show_surface(self, surface: HorizonSurface | None) -> None:
+    def show_surface(self, surface: HorizonFit | None) -> None:
         """Show the residuals of a checked surface; None while there is none."""
         if self._result is not None and self._result.surface is surface:
             return

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QBoxLayout, QLabel, QPushButton, QVBoxLayout, QWid
 
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.parametrize import Chart
 from geofit.geometry.frame import Frame, map_frame
 from geofit.gui.panels.core_box import CoreBox, chart_of, taken
@@ -18,7 +19,6 @@ from geofit.gui.panels.plan_view import PlanData, PlanView
 from geofit.gui.words import spoken
 from geofit.report.style import horizon_colours
 from geofit.report.view import rims
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["PlanPanel"]
 
@@ -91,7 +91,7 @@ class PlanPanel(QWidget):
         self._last: CoreBox | None = None
         self.show_surface(None, "", None, FitSettings())
 
-    def show_surface(self, site: Site | None, name: str, surface: HorizonSurface | None, settings: FitSettings) -> None:
+    def show_surface(self, site: Site | None, name: str, surface: HorizonFit | None, settings: FitSettings) -> None:
         """Show the plan of a horizon, fitted or not; drags that were not used are dropped."""
         if site is None or (name not in site.horizons and surface is None):
             self._name = ""
@@ -159,7 +159,7 @@ class PlanPanel(QWidget):
             corners = tuple((float(x), float(y)) for x, y in self._last.corners)
             self.core_changed.emit(self._name, corners)
 
-    def _box(self, surface: HorizonSurface | None, frame: Frame) -> CoreBox | None:
+    def _box(self, surface: HorizonFit | None, frame: Frame) -> CoreBox | None:
         drawn: object = self._settings.core
         if isinstance(drawn, str):
             partition = None if surface is None else surface.partition

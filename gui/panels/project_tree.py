@@ -10,13 +10,13 @@ from PySide6.QtGui import QIcon, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QLineEdit, QTreeView, QVBoxLayout, QWidget
 
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import natural
 from geofit.gui.words import spoken
 from geofit.report.digits import given, metres
 from geofit.report.style import horizon_colours
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ProjectTree"]
 
@@ -63,10 +63,10 @@ class ProjectTree(QWidget):
         self.setLayout(self.pages)
         self._reports: tuple[str, ...] = ()
         self._silent = False
-        self._given: tuple[Site | None, Mapping[str, HorizonSurface], Container[str]] = (None, {}, ())
+        self._given: tuple[Site | None, Mapping[str, HorizonFit], Container[str]] = (None, {}, ())
         self.show_site(None, {}, ())
 
-    def show_site(self, site: Site | None, surfaces: Mapping[str, HorizonSurface], stale: Container[str] = ()) -> None:
+    def show_site(self, site: Site | None, surfaces: Mapping[str, HorizonFit], stale: Container[str] = ()) -> None:
         """Show a site with its surfaces; names in ``stale`` have settings newer than their surface."""
         self._given = (site, surfaces, stale)
         if site is None:
@@ -119,7 +119,7 @@ class ProjectTree(QWidget):
         self._silent = False
 
     def _horizon(
-        self, name: str, site: Site, surfaces: Mapping[str, HorizonSurface], stale: Container[str]
+        self, name: str, site: Site, surfaces: Mapping[str, HorizonFit], stale: Container[str]
     ) -> list[QStandardItem]:
         surface = surfaces.get(name)
         count, colour = len(site.horizons[name]), horizon_colours(site.horizons)[name]

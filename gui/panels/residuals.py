@@ -11,12 +11,12 @@ from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QCheckBox, QLabel, QLineEdit, QMenu, QVBoxLayout, QWidget
 
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable, spoken_words
 from geofit.report.style import bands
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["ResidualTable"]
 
@@ -96,10 +96,10 @@ class ResidualTable(QWidget):
         self.table.exclude_requested.connect(self.exclude_requested)
         self.table.pull_requested.connect(self.pull_requested)
         self._shown: _Shown | None = None
-        self._surface: HorizonSurface | None = None
+        self._surface: HorizonFit | None = None
         self.show_surface(None)
 
-    def show_surface(self, surface: HorizonSurface | None) -> None:
+    def show_surface(self, surface: HorizonFit | None) -> None:
         """Show the residuals of a checked surface; None while there is none."""
         if surface is not None and surface is self._surface:
             return
@@ -138,7 +138,7 @@ class ResidualTable(QWidget):
         elif self._shown is not None:
             self._tell_count()
 
-    def _columns(self, surface: HorizonSurface, core: NDArray[np.bool_]) -> list[Column]:
+    def _columns(self, surface: HorizonFit, core: NDArray[np.bool_]) -> list[Column]:
         points, a = surface.points, surface.accuracy
         assert a is not None
         marks = _marks(surface, self)
@@ -197,7 +197,7 @@ def _joined(parts: tuple[NDArray[np.str_], ...]) -> NDArray[np.str_]:
     return np.char.lower(joined)
 
 
-def _marks(surface: HorizonSurface, panel: QWidget) -> Callable[[int], QIcon]:
+def _marks(surface: HorizonFit, panel: QWidget) -> Callable[[int], QIcon]:
     """Return the mark of each residual's band, as the deviation map draws it in the panel's theme."""
     assert surface.accuracy is not None
     d = surface.accuracy.residuals

@@ -9,11 +9,11 @@ from PySide6.QtWidgets import QLabel, QVBoxLayout, QWidget
 from geofit.checks.check import ANGLE_LIMIT, GAP_LIMIT
 from geofit.data.accuracy import Seam
 from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable, spoken_words
 from geofit.gui.view3d.colouring import seam_colours
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["SeamTable", "seam_holds"]
 
@@ -46,7 +46,7 @@ class SeamTable(QWidget):
         self.table.chosen.connect(self.seam_chosen)
         self.show_surface(None)
 
-    def show_surface(self, surface: HorizonSurface | None) -> None:
+    def show_surface(self, surface: HorizonFit | None) -> None:
         """Show the seams of a checked surface; None while there is none."""
         if surface is None or surface.accuracy is None:
             self.pages.say(self.tr("No surface yet: press Fit, and the seams between its patches are listed here."))

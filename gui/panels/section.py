@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QV
 
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.canvas import Canvas, Ink, place
 from geofit.gui.panels.curtain import Curtain, Meshes, Traces, extent, trace
 from geofit.gui.panels.flow import FlowLayout
@@ -29,7 +30,6 @@ from geofit.gui.panels.section_ink import (
 from geofit.gui.panels.section_scale import automatic, grown, window
 from geofit.gui.words import failure
 from geofit.gui.worker import Task, run
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["SectionPanel"]
 
@@ -90,7 +90,7 @@ class SectionPanel(QWidget):
         self.pages = Placeholder(content)
         self.setLayout(self.pages)
         self._data: SectionData | None = None
-        self._surfaces: Mapping[str, HorizonSurface] = {}
+        self._surfaces: Mapping[str, HorizonFit] = {}
         self._meshes: Meshes = {}
         self._task: Task | None = None
         self._again = self._due = False
@@ -113,7 +113,7 @@ class SectionPanel(QWidget):
     def show_section(
         self,
         site: Site | None,
-        surfaces: Mapping[str, HorizonSurface],
+        surfaces: Mapping[str, HorizonFit],
         line: ArrayLike | None,
         thickness: float,
         uncertainty: Mapping[str, Uncertainty] | None = None,

@@ -11,6 +11,7 @@ from geofit.data.points import PointSet
 from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.view3d.horizon_items import control_item, points_item, seams_item, shape_item, suggestions_item
 from geofit.gui.view3d.item import Item, Look
@@ -19,7 +20,6 @@ from geofit.gui.view3d.shape import next_below, seam_lines
 from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, holes_item, sections_item
 from geofit.gui.view3d.stage import Stage
 from geofit.report.style import horizon_colours
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Contents"]
 
@@ -33,7 +33,7 @@ class Contents:
         self.stage = stage
         self.site: Site | None = None
         self.points: dict[str, PointSet] = {}
-        self.surfaces: dict[str, HorizonSurface] = {}
+        self.surfaces: dict[str, HorizonFit] = {}
         self.control: dict[str, list[tuple[str, int, int]]] = {}
         self._drawn: dict[str, Drawn] = {}
 
@@ -82,7 +82,7 @@ class Contents:
                 self.stage.layers.change(layer.key, colour=self.colour(layer.horizon))
 
     def show_surface(
-        self, surface: HorizonSurface, uncertainty: Uncertainty | None = None, drawn: Drawn | None = None
+        self, surface: HorizonFit, uncertainty: Uncertainty | None = None, drawn: Drawn | None = None
     ) -> None:
         """Show a surface, or its new fit; ``drawn`` if it was made ready already."""
         name, layers = surface.name, self.stage.layers

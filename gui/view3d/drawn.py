@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of
 from geofit.prediction.bands import band
 from geofit.prediction.bands import sd_at as sd_of_fit
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["BAND", "Drawn", "drawn_of"]
 
@@ -32,9 +32,7 @@ class Drawn:
     lower: Shape | None = None
 
 
-def drawn_of(
-    surface: HorizonSurface, uncertainty: Uncertainty | None = None, *, progress: Progress | None = None
-) -> Drawn:
+def drawn_of(surface: HorizonFit, uncertainty: Uncertainty | None = None, *, progress: Progress | None = None) -> Drawn:
     """Return a surface made ready for drawing.
 
     The bounds of a surface that was fitted here are its own net moved up and down; of one that was read from a file
@@ -55,7 +53,7 @@ def drawn_of(
 
 
 def _lifted(
-    surface: HorizonSurface, uncertainty: Uncertainty, shape: Shape, fine: Floats, few: Floats, sign: float
+    surface: HorizonFit, uncertainty: Uncertainty, shape: Shape, fine: Floats, few: Floats, sign: float
 ) -> Shape:
     way = sign * across(surface, uncertainty)
     moved = shape.lifted(fine, way)

@@ -15,13 +15,13 @@ from geofit.data.accuracy import Seam
 from geofit.data.points import PointSet
 from geofit.data.prediction import Suggestion
 from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.actors import Part, coloured, dots, lines, poly, ramped, shaded, triangles
 from geofit.gui.view3d.colouring import PointColours, points_by, ramp, rgb, seam_colours
 from geofit.gui.view3d.item import Item, Look, extent
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import Shape
 from geofit.sampling.contours import interval_for
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["control_item", "points_item", "seams_item", "shape_item", "suggestions_item"]
 
@@ -124,7 +124,7 @@ def seams_item(runs: Sequence[Sequence[Floats]], seams: Sequence[Seam], layer: L
     return Item(parts, extent(np.concatenate(boxes) if boxes else look.origin[None]), legend=legend)
 
 
-def control_item(surface: HorizonSurface, layer: Layer, look: Look) -> tuple[Item, list[tuple[str, int, int]]]:
+def control_item(surface: HorizonFit, layer: Layer, look: Look) -> tuple[Item, list[tuple[str, int, int]]]:
     """Control net of every patch, and the name, row and column of each of its points."""
     points, runs, known, start = [], [], [], 0
     for patch in surface.patches:

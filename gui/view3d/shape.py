@@ -12,11 +12,11 @@ from scipy.spatial import cKDTree
 from geofit.data.accuracy import Seam
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.cells import tabulate
-from geofit.geometry.mesh import Mesh, MeshSurface, triangulate
+from geofit.geometry.mesh import Mesh
 from geofit.report.view import trimmed
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["Shape", "across", "next_below", "sd_at", "seam_lines", "shape_of"]
 
@@ -54,9 +54,9 @@ class Shape:
         return Shape(self.xyz[known] + by[known, None] * way, number[keep], self.normals[known])
 
 
-def shape_of(surface: HorizonSurface) -> Shape:
+def shape_of(surface: HorizonFit) -> Shape:
     """Return the triangles of a surface, fine and coarse."""
-    fine = _shape(surface, triangulate(surface, FINE * _width(surface)))
+    fine = _shape(surface, surface.triangulate(FINE * _width(surface)))
     return Shape(fine.xyz, fine.triangles, fine.normals, _thinned(fine))
 
 
@@ -84,16 +84,13 @@ def _thinned(shape: Shape) -> Shape:
     return Shape(shape.xyz[known], triangles, shape.normals[known])
 
 
-def _width(surface: HorizonSurface) -> float:
-    if isinstance(surface, MeshSurface):
-        extent = np.ptp(surface.mesh.points, axis=0)
-    else:
-        extent = np.ptp(np.concatenate([patch.control.reshape(-1, 3) for patch in surface.patches]), axis=0)
-    return max(float(np.linalg.norm(extent)), 1e-3)
+def _width(surface: HorizonFit) -> float:
+    low, high = surface.bounds
+    return max(float(np.linalg.norm(high - low)), 1e-3)
 
 
-def _shape(surface: HorizonSurface, mesh: Mesh) -> Shape:
-    normals = _facet_normals(mesh) if isinstance(surface, MeshSurface) else _patch_normals(surface.patches, mesh)
+def _shape(surface: HorizonFit, mesh: Mesh) -> Shape:
+    normals = _patch_normals(surface.patches, mesh) if surface.patches else _facet_normals(mesh)
     lost = ~np.isfinite(normals).all(axis=1)
     normals[lost] = (0.0, 0.0, 1.0)
     normals *= np.where(normals[:, 2:] < 0, -1.0, 1.0)
@@ -125,7 +122,7 @@ def _facet_normals(mesh: Mesh) -> Floats:
     return np.asarray(total / np.where(length > 0, length, np.nan))
 
 
-def sd_at(surface: HorizonSurface, uncertainty: Uncertainty, xyz: Floats) -> Floats:
+def sd_at(surface: HorizonFit, uncertainty: Uncertainty, xyz: Floats) -> Floats:
     """Return the standard deviation at places of a surface, bilinear between the grid's nodes, nan outside."""
     grid = Ground(uncertainty.x, uncertainty.y, uncertainty.sd)
     if uncertainty.frame == "map":
@@ -136,14 +133,14 @@ def sd_at(surface: HorizonSurface, uncertainty: Uncertainty, xyz: Floats) -> Flo
     return grid.elevation(local[:, 0], local[:, 1])
 
 
-def across(surface: HorizonSurface, uncertainty: Uncertainty) -> Floats:
+def across(surface: HorizonFit, uncertainty: Uncertainty) -> Floats:
     """Return the unit vector along which the standard deviation is measured: upwards, or across the best plane."""
     if uncertainty.frame == "map" or surface.model is None:
         return np.array([0.0, 0.0, 1.0])
     return np.asarray(surface.model.problem.chart.frame.axes[2])
 
 
-def next_below(surface: HorizonSurface, shape: Shape, others: Sequence[HorizonSurface]) -> HorizonSurface | None:
+def next_below(surface: HorizonFit, shape: Shape, others: Sequence[HorizonFit]) -> HorizonFit | None:
     """Return the horizon next below, by the median difference over common ground; None if there is none."""
     some = shape.xyz[:: max(len(shape.xyz) // PROBES, 1)]
     best, least = None, np.inf
@@ -157,7 +154,7 @@ def next_below(surface: HorizonSurface, shape: Shape, others: Sequence[HorizonSu
     return best
 
 
-def seam_lines(surface: HorizonSurface, seams: Sequence[Seam], samples: int = 60) -> list[list[Floats]]:
+def seam_lines(surface: HorizonFit, seams: Sequence[Seam], samples: int = 60) -> list[list[Floats]]:
     """Return, for each seam, its lines inside the study area, (k, 3) map coordinates."""
     patches = {patch.name: patch for patch in surface.patches}
     found: list[list[Floats]] = []

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.actors import Part, lines, poly
 from geofit.gui.view3d.axes import floor_lines, marks, nice
 from geofit.gui.view3d.camera import Eye, framed
@@ -32,7 +33,6 @@ from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, SectionPlane
 from geofit.gui.view3d.writing import Writing, theme_of
 from geofit.sampling.cut import section_line
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["SceneView"]
 
@@ -113,7 +113,7 @@ class SceneView(QWidget):
         self._placed()
 
     def show_surface(
-        self, surface: HorizonSurface, uncertainty: Uncertainty | None = None, drawn: Drawn | None = None
+        self, surface: HorizonFit, uncertainty: Uncertainty | None = None, drawn: Drawn | None = None
     ) -> None:
         """Show a surface or its new fit; ``drawn`` (:func:`drawn_of`, in a worker) spares the window 0.3 s."""
         self.contents.show_surface(surface, uncertainty, drawn)

@@ -14,10 +14,9 @@ from geofit.data.errors import InputError
 from geofit.data.files import replacing
 from geofit.data.messages import message
 from geofit.data.site import Hole
-from geofit.geometry.mesh import triangulate
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.extra import need
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
 
 __all__ = ["write_ifc"]
 
@@ -29,7 +28,7 @@ PRECISION = 1e-6
 
 
 def write_ifc(
-    surfaces: Mapping[str, HorizonSurface],
+    surfaces: Mapping[str, HorizonFit],
     path: str | PathLike[str],
     *,
     holes: Sequence[Hole] = (),
@@ -46,7 +45,7 @@ def write_ifc(
 
     Parameters
     ----------
-    surfaces : mapping of str to HorizonSurface
+    surfaces : mapping of str to HorizonFit
         Horizons by name.
     path : path
         The file.
@@ -126,12 +125,12 @@ class _Model:
     def _placed(self, origin: Sequence[float]) -> Any:
         return self.file.createIfcLocalPlacement(self._place, self._axes(origin))
 
-    def horizon(self, name: str, surface: HorizonSurface, tolerance: float) -> None:
+    def horizon(self, name: str, surface: HorizonFit, tolerance: float) -> None:
         add = self.file
         exact = add.createIfcShapeRepresentation(
             self._surface, "Surface", "AdvancedSurface", [self._patch(patch) for patch in surface.patches]
         )
-        mesh = triangulate(surface, tolerance)
+        mesh = surface.triangulate(tolerance)
         faces = add.createIfcTriangulatedFaceSet(
             add.createIfcCartesianPointList3D(np.round(mesh.points, 6).tolist()),
             None,

@@ -81,7 +81,7 @@ def test_brep_is_what_was_sewn(surfaces, tmp_path):
     for part, surface in zip(parts, surfaces.values(), strict=True):
         assert furthest(part, surface) < 1e-7
         assert free_loops(part) == 1
-        assert area(part) == pytest.approx(area(surface.to_shape().wrapped), rel=1e-9)
+        assert area(part) == pytest.approx(area(surface.to_cadquery().wrapped), rel=1e-9)
 
 
 def test_iges_is_in_metres_trimmed_and_named(surfaces, tmp_path):
@@ -91,7 +91,7 @@ def test_iges_is_in_metres_trimmed_and_named(surfaces, tmp_path):
     for part, surface in zip((first, second), surfaces.values(), strict=True):
         # Nine decimals in the file; 3.1e6 m leaves 5e-10 m to a double.
         assert furthest(part, surface) < 2e-8
-        assert area(part) == pytest.approx(area(surface.to_shape().wrapped), rel=1e-7)
+        assert area(part) == pytest.approx(area(surface.to_cadquery().wrapped), rel=1e-7)
     text = (tmp_path / "a.igs").read_text("ascii")
     assert "T1_top" in str(text)
     # The whole name is the property 406-15 of the group.

@@ -82,7 +82,7 @@ def test_a_sound_surface_of_nine_patches_raises_nothing():
     whole, patches = nine()
     rng = np.random.default_rng(0)
     u, v = rng.uniform((0, 0), (1000, 700), (300, 2)).T
-    found = check(horizon(patches, whole.evaluate(u, v) + ORIGIN, core=np.ones(300, bool)).with_(fit={"frame": "map"}))
+    found = check(horizon(patches, whole.evaluate(u, v) + ORIGIN, core=np.ones(300, bool)).with_(frame="map"))
     assert len(found.seams) == 12
     checks = named(found)
     shape = {"normals", "patches", "elevation range", "self-intersection", "oscillation", "trend"}
@@ -97,7 +97,7 @@ def planted(change, name="p11"):
     whole, patches = nine()
     patches = [replace(p, control=change(p.control.copy())) if p.name == name else p for p in patches]
     u, v = np.random.default_rng(0).uniform((0, 0), (1000, 700), (50, 2)).T
-    return named(check(horizon(patches, whole.evaluate(u, v) + ORIGIN).with_(fit={"frame": "map"})))
+    return named(check(horizon(patches, whole.evaluate(u, v) + ORIGIN).with_(frame="map")))
 
 
 @pytest.mark.parametrize("gap", [2e-6, 0.01])
@@ -143,8 +143,8 @@ def test_a_fold_that_is_meant_is_none():
     control = patch.control.copy()
     control[4:8, :, 0] -= 700.0
     surface = horizon([Patch("core", (3, 3), patch.knots_u, patch.knots_v, control)])
-    assert named(check(surface.with_(fit={"frame": "map"})))["normals"].passed is False
-    assert named(check(surface.with_(fit={"frame": "sections"})))["normals"].passed
+    assert named(check(surface.with_(frame="map")))["normals"].passed is False
+    assert named(check(surface.with_(frame="sections")))["normals"].passed
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -165,7 +165,7 @@ def test_a_narrow_spike_is_found():
     control[103, 103, 2] += 2000.0
     u, v = np.random.default_rng(0).uniform((0, 0), (1000, 700), (50, 2)).T
     surface = horizon([replace(patch, control=control)], patch.evaluate(u, v) + ORIGIN)
-    assert named(check(surface.with_(fit={"frame": "map"})))["elevation range"].passed is False
+    assert named(check(surface.with_(frame="map")))["elevation range"].passed is False
 
 
 def test_flat_data_have_no_range_to_leave():

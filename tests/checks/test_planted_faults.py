@@ -146,7 +146,7 @@ def test_a_control_point_moved_over_its_neighbours_is_found():
     patch = height_field(20, 16)
     control = patch.control.copy()
     control[8, 7, :2] += 2.5 * (control[11, 7, :2] - control[8, 7, :2])
-    surface = horizon([patch]).with_(fit={"frame": "map"})
+    surface = horizon([patch]).with_(frame="map")
     assert failing(check(surface)) == set()
     found = check(surface.with_(patches=(replace(patch, control=control),)))
     assert {"normals", "patches"} <= failing(found)
@@ -173,7 +173,7 @@ def test_a_narrow_spike_of_a_fine_net_is_found():
     points = patch.evaluate(u, v) + ORIGIN
     control = patch.control.copy()
     control[40, 30, 2] += 20.0
-    spiked = horizon([replace(patch, control=control)], points).with_(fit={"frame": "map"})
+    spiked = horizon([replace(patch, control=control)], points).with_(frame="map")
     assert named(check(horizon([patch], points)))["oscillation"].passed
     assert named(check(spiked))["oscillation"].passed is False
 
@@ -192,7 +192,7 @@ def test_flipped_normals_are_found(sample_surfaces):
     ]
     found = checked(surface.with_(patches=tuple(turned)))
     assert {"normals", "seam angle"} <= failing(found)
-    unknown = checked(surface.with_(patches=tuple(turned), fit={}))
+    unknown = checked(surface.with_(patches=tuple(turned), frame=""))
     assert 0 < named(unknown)["normals"].value < 0.5 * sum(p.control.size for p in surface.patches)
 
 
@@ -227,14 +227,14 @@ def test_a_kink_at_a_seam_is_found(sample_surfaces):
 
 
 def test_a_parametric_surface_that_crosses_itself_is_found():
-    sound = horizon([fold()]).with_(fit={"frame": "sections"})
+    sound = horizon([fold()]).with_(frame="sections")
     assert failing(check(sound)) == set()
     one = fold()
     control = one.control.copy()
     # The upper limb is pushed down through the lower one.
     bent = control[:, :, 2].copy()
     control[:, :, 2] = np.where(control[:, :, 2] > 100, 200 - bent, bent)
-    crossed = horizon([replace(one, control=control)]).with_(fit={"frame": "sections"})
+    crossed = horizon([replace(one, control=control)]).with_(frame="sections")
     found = named(check(crossed))["self-intersection"]
     assert found.passed is False
     z = np.array(found.places)[:, 2] - ORIGIN[2]
@@ -387,7 +387,7 @@ def test_many_points_are_thinned_and_it_is_said():
     u, v = np.random.default_rng(0).uniform((0, 0), (1000, 700), (12_000, 2)).T
     points = patch.evaluate(u, v) + ORIGIN
     points[:, 2] += np.random.default_rng(1).normal(0, 0.05, len(points))
-    found = named(check(horizon([patch], points).with_(fit={"frame": "map"})))
+    found = named(check(horizon([patch], points).with_(frame="map")))
     assert str(found["clustering"].text).endswith("5000 of 12000 points looked at")
     assert str(found["oscillation"].text).endswith("; 5000 of 12000 points looked at")
     assert found["clustering"].passed
@@ -401,10 +401,10 @@ def test_the_trend_of_many_points_says_how_many_it_looked_at():
     points = np.column_stack([plan, np.random.default_rng(1).normal(0, 0.05, 30_000)]) + ORIGIN
     left_out = np.setdiff1d(np.arange(30_000), np.random.default_rng(0).choice(30_000, 20_000, replace=False))
     points[left_out[0], 2] += 7.0
-    found = named(check(horizon([patch], points).with_(fit={"frame": "map"})))["trend"]
+    found = named(check(horizon([patch], points).with_(frame="map")))["trend"]
     assert str(found.text).endswith("; 20000 of 30000 points looked at")
     assert found.limit == pytest.approx(14.0, abs=0.5)
-    fewer = named(check(horizon([patch], points[:400]).with_(fit={"frame": "map"})))
+    fewer = named(check(horizon([patch], points[:400]).with_(frame="map")))
     assert not any("looked at" in str(one.text) for one in fewer.values())
 
 

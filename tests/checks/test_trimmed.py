@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from surfaces import ORIGIN, area, bored, fold, height_field, horizon, split
+from surfaces import ORIGIN, area, bored, fold, height_field, horizon, lifted, split
 
-from geofit.checks.imported import check_given
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
-from geofit.geometry.mesh import triangulate
-from geofit.geometry.trim_loops import TrimmedSurface
+from geofit.fitting.horizon_fit import HorizonFit
+from geofit.fitting.judge import judge
 from geofit.io.surface_files import read_surface_file
+from geofit.surfaces.trimmed import TrimmedSurface
 
 #: Rings in the parameters of a patch of 1,000 by 700 m: all of it nearly, its west, a hole in the east.
 ALL = np.array([[10, 10], [990, 10], [990, 690], [10, 690]], float)
@@ -22,7 +22,7 @@ EAST = np.array([[620, 180], [940, 180], [940, 520], [620, 520]], float)
 
 
 def trimmed(patch, *loops):
-    return TrimmedSurface((patch,), ORIGIN, PointSet(np.empty((0, 3))), loops=(loops,))
+    return HorizonFit(TrimmedSurface((patch,), ORIGIN, trim_loops=(loops,)))
 
 
 def gentle():
@@ -55,7 +55,7 @@ FAULTS = {
 
 
 def failing(surface, points):
-    found = check_given(surface, points, FitSettings(epsilon=1.0), "T1").accuracy
+    found = judge(surface, points, FitSettings(epsilon=1.0), "T1").accuracy
     return {one.name for one in found.checks if one.passed is False}
 
 
@@ -63,8 +63,9 @@ def failing(surface, points):
 @pytest.mark.parametrize("loops", [(WEST,), (ALL, EAST)], ids=["beside the face", "in a hole"])
 def test_a_fault_beyond_the_loops_is_none(fault, loops):
     patch = gentle()
-    broken = replace(patch, control=patch.control.copy())
-    fault(broken.control)
+    control = patch.control.copy()
+    fault(control)
+    broken = replace(patch, control=control)
     # Points that a fault would push away from the surface lie where it is whole.
     points = points_on(patch, np.array([[20, 20], [540, 680]]))
     assert failing(trimmed(patch, ALL), points) == set()
@@ -74,8 +75,9 @@ def test_a_fault_beyond_the_loops_is_none(fault, loops):
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_within_the_loops_is_found(fault):
     patch = gentle()
-    broken = replace(patch, control=patch.control.copy())
-    fault(broken.control)
+    control = patch.control.copy()
+    fault(control)
+    broken = replace(patch, control=control)
     points = points_on(patch, ALL)
     off = np.abs(trimmed(broken, ALL).distance(points.xyz)) < 1e-9
     points = points[off]
@@ -84,8 +86,8 @@ def test_a_fault_within_the_loops_is_found(fault):
 
 def test_a_surface_that_leaves_the_trend_beyond_its_loops():
     patch = gentle()
-    broken = replace(patch, control=patch.control.copy())
-    broken.control[..., 2] += np.maximum(broken.control[..., 0] - 620, 0) ** 2 / 1500
+    x, z = patch.control[..., 0], patch.control[..., 2]
+    broken = lifted(patch, z + np.maximum(x - 620, 0) ** 2 / 1500)
     points = points_on(patch, np.array([[20, 20], [540, 680]]))
     assert failing(trimmed(broken, WEST), points) == set()
     assert "trend" in failing(trimmed(broken, ALL), points)
@@ -93,9 +95,8 @@ def test_a_surface_that_leaves_the_trend_beyond_its_loops():
 
 def test_a_crossing_beyond_the_loops():
     patch = fold()
-    bent = patch.control[:, :, 2].copy()
-    crossed = replace(patch, control=patch.control.copy())
-    crossed.control[:, :, 2] = np.where(patch.control[:, :, 2] > 100, 200 - bent, bent)
+    z = patch.control[..., 2]
+    crossed = lifted(patch, np.where(z > 100, 200 - z, z))
     low = np.array([[0, 5], [0.3, 5], [0.3, 295], [0, 295]])
     points = PointSet(np.empty((0, 3)))
     assert "self-intersection" not in failing(trimmed(crossed, low), points)
@@ -105,8 +106,9 @@ def test_a_crossing_beyond_the_loops():
 
 def test_a_collapsed_edge_beyond_the_loops():
     patch = gentle()
-    broken = replace(patch, control=patch.control.copy())
-    broken.control[-1] = broken.control[-1, 0]
+    control = patch.control.copy()
+    control[-1] = control[-1, 0]
+    broken = replace(patch, control=control)
     points = points_on(patch, np.array([[20, 20], [540, 680]]))
     assert failing(trimmed(broken, WEST), points) == set()
     touching = WEST + np.where(WEST > [500, 0], [440, 0], [0, 0])
@@ -119,7 +121,7 @@ def test_a_plane_of_one_span_is_asked_inside_a_small_loop():
     plane = height_field(2, 2, degree=1, z=lambda x, y: 0.5 * x)
     small = np.array([[600, 100], [700, 100], [700, 200], [600, 200]], float)
     points = PointSet(np.column_stack([[10.0, 20, 30, 15, 5], [10.0, 60, 20, 90, 45], [0, 1, 2, 0, 1]]) + ORIGIN)
-    found = check_given(trimmed(plane, small), points, FitSettings(), "T1").accuracy
+    found = judge(trimmed(plane, small), points, FitSettings(), "T1").accuracy
     (elevations,) = [one for one in found.checks if one.name == "elevation range"]
     assert elevations.value == pytest.approx(350 - 2, abs=10)
 
@@ -127,15 +129,13 @@ def test_a_plane_of_one_span_is_asked_inside_a_small_loop():
 def overlapping():
     """Two faces that meet at x = 500, each on a patch of its own that reaches on, 30 m too high, over the other."""
     whole = gentle()
-    left, right = (replace(whole, control=whole.control.copy(), name=name) for name in ("left", "right"))
-    x = whole.control[..., 0]
-    left.control[..., 2] += 30 * np.clip((x - 620) / 100, 0, 1)
-    right.control[..., 2] += 30 * np.clip((380 - x) / 100, 0, 1)
+    x, z = whole.control[..., 0], whole.control[..., 2]
+    left = lifted(whole, z + 30 * np.clip((x - 620) / 100, 0, 1), "left")
+    right = lifted(whole, z + 30 * np.clip((380 - x) / 100, 0, 1), "right")
     halves = [np.array([[a, 10], [b, 10], [b, 690], [a, 690]], float) for a, b in ((10, 500), (500, 990))]
     bare = horizon([left, right], outline=ALL)
-    surface = TrimmedSurface(
-        bare.patches, ORIGIN, bare.points, outline=bare.outline, loops=((halves[0],), (halves[1],))
-    )
+    faces = TrimmedSurface(bare.patches, ORIGIN, outline=bare.outline, trim_loops=((halves[0],), (halves[1],)))
+    surface = HorizonFit(faces, bare.points)
     return whole, surface
 
 
@@ -145,7 +145,7 @@ def test_two_faces_whose_patches_overlap_are_one_sheet():
     height = surface.elevation(*(plan + ORIGIN[:2]).T)
     assert np.abs(height - ORIGIN[2] - whole.evaluate(*plan.T)[:, 2]).max() < 1e-9
     assert np.isnan(surface.elevation(ORIGIN[0] + 5, ORIGIN[1] + 5))
-    found = check_given(surface, points_on(whole, ALL), FitSettings(), "T1").accuracy
+    found = judge(surface, points_on(whole, ALL), FitSettings(), "T1").accuracy
     (area,) = [one for one in found.checks if one.name == "area"]
     assert area.passed
     assert area.value < 1e-6
@@ -156,7 +156,7 @@ def test_triangles_end_at_the_holes(cuts, tmp_path):
     truth, rim = bored(tmp_path / "a.brep", split(height_field(21, 17), *cuts))
     (surface,) = read_surface_file(tmp_path / "a.brep").values()
     assert isinstance(surface, TrimmedSurface)
-    mesh = triangulate(surface, 0.1)
+    mesh = surface.triangulate(0.1)
     assert area(mesh.points[mesh.triangles]) == pytest.approx(truth, rel=1e-4)
     assert np.abs(surface.distance(mesh.xyz)).max() < 1e-9
     t = mesh.triangles

@@ -80,6 +80,6 @@ def test_cancelled_is_a_geofit_error():
 
 
 def test_seconds_a_stage_are_told(truth):
-    seconds = fit_horizon(truth.points).fit["seconds"]
+    seconds = fit_horizon(truth.points).diagnostics["seconds"]
     assert {"conflicts", "partition", "field", "core", "periphery", "check"} <= set(seconds)
     assert all(value >= 0 for value in seconds.values())

@@ -174,7 +174,7 @@ def test_points_of_a_vertical_plane_over_the_map_end_in_figures_or_a_geofit_erro
 def test_points_above_each_other_have_a_surface():
     z = np.arange(5) * 10.0
     surface = fit_horizon(PointSet(np.column_stack([np.full(5, EASTING), np.full(5, NORTHING), z])))
-    assert surface.fit["frame"] == "best-plane"
+    assert surface.diagnostics["frame"] == "best-plane"
     assert surface.accuracy.max_abs < 1e-6
 
 
@@ -372,8 +372,8 @@ def test_a_translated_site_has_the_same_residuals(truth, settings):
 
 def test_a_smoothing_that_is_given_is_not_chased(truth):
     stiff = fit_horizon(truth.points, FitSettings(core="none", smoothing=1.0, epsilon=50.0), truth.boundary)
-    assert stiff.fit["smoothing"] == pytest.approx(1.0)
-    assert stiff.fit["rounds"] == 0
+    assert stiff.diagnostics["smoothing"] == pytest.approx(1.0)
+    assert stiff.diagnostics["rounds"] == 0
     assert stiff.accuracy.sigma > 0.1
 
 

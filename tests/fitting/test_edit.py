@@ -11,11 +11,11 @@ from truth import paper_arrangement
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import ExactnessError, FitError
 from geofit.fitting.edit import acted_on, support
-from geofit.surfaces.surface import HorizonSurface
+from geofit.fitting.horizon_fit import HorizonFit
 
 
 @cache
-def fitted(seed: int = 3, **settings: str) -> HorizonSurface:
+def fitted(seed: int = 3, **settings: str) -> HorizonFit:
     """A surface of nine patches: the core is the inner part of the dense sections."""
     truth = paper_arrangement(seed)
     x0, x1, y0, y1 = truth.core
@@ -24,16 +24,16 @@ def fitted(seed: int = 3, **settings: str) -> HorizonSurface:
     return fit_horizon(truth.points, FitSettings(core=core, **settings), boundary=truth.boundary)
 
 
-def patch_of(surface: HorizonSurface, name: str):
+def patch_of(surface: HorizonFit, name: str):
     return next(patch for patch in surface.patches if patch.name == name)
 
 
-def lattice(surface: HorizonSurface, count: int = 300) -> np.ndarray:
+def lattice(surface: HorizonFit, count: int = 300) -> np.ndarray:
     low, high = surface.points.xyz[:, :2].min(axis=0), surface.points.xyz[:, :2].max(axis=0)
     return np.stack(np.meshgrid(*(np.linspace(a, b, count) for a, b in zip(low, high, strict=True))), axis=-1)
 
 
-def free_control_point(surface: HorizonSurface, name: str) -> tuple[int, int]:
+def free_control_point(surface: HorizonFit, name: str) -> tuple[int, int]:
     """A control point of a patch that acts on no exact point, nearest to the patch's corner (0, 0)."""
     rows, columns, _ = patch_of(surface, name).control.shape
     for i, j in sorted(np.ndindex(rows, columns), key=sum):
@@ -45,7 +45,7 @@ def free_control_point(surface: HorizonSurface, name: str) -> tuple[int, int]:
     raise AssertionError("no free control point")
 
 
-def assert_seams_hold(surface: HorizonSurface) -> None:
+def assert_seams_hold(surface: HorizonFit) -> None:
     assert max(seam.gap for seam in surface.accuracy.seams) <= 1e-9
     assert max(seam.angle for seam in surface.accuracy.seams) <= 1e-6
 
@@ -124,7 +124,7 @@ def test_the_surface_is_pulled_through_a_peripheral_point_and_the_core_stays_exa
     assert_seams_hold(pulled)
     half = surface.pull_to(worst, share=0.5)
     assert abs(half.accuracy.residuals[worst]) == pytest.approx(distance[worst] / 2, rel=0.01)
-    assert pulled.fit["by_hand"] == 1
+    assert pulled.diagnostics["by_hand"] == 1
     assert "by hand" in str(pulled.accuracy.notes[-1])
 
 
@@ -197,7 +197,7 @@ def test_undoing_a_change_by_its_opposite_gives_the_surface_back():
     surface = fitted()
     i, j = free_control_point(surface, "north")
     back = surface.adjust("north", i, j, 4.0).adjust("north", i, j, -4.0)
-    assert back.fit["by_hand"] == 2
+    assert back.diagnostics["by_hand"] == 2
     for before, after in zip(surface.patches, back.patches, strict=True):
         np.testing.assert_allclose(after.control, before.control, atol=1e-9)
 

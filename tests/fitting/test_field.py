@@ -73,7 +73,8 @@ def test_the_noise_of_a_smooth_surface_is_found(noise, seed):
 def test_the_reported_noise_is_that_of_the_points_but_for_the_weights_shared_by_cells():
     # Crowded cells weigh less, and the noise comes out up to a third low on even data.
     noise = [
-        fit_horizon(points_of(800, seed, 0.5, hills(seed)), FitSettings(core="none")).fit["noise"] for seed in range(3)
+        fit_horizon(points_of(800, seed, 0.5, hills(seed)), FitSettings(core="none")).diagnostics["noise"]
+        for seed in range(3)
     ]
     assert 0.65 * 0.5 < np.median(noise) < 1.1 * 0.5
 
@@ -98,7 +99,7 @@ def test_a_rugged_surface_takes_the_thin_plate_s_energy(seed):
 @pytest.mark.parametrize(("seed", "height"), [(0, hills(0)), (1, rugged(1))])
 def test_lambda_does_not_depend_on_the_unit_of_length(seed, height):
     settings = FitSettings(core="none")
-    one, ten = (fit_horizon(points_of(300, seed, 0.5, height, scale), settings).fit for scale in (1.0, 10.0))
+    one, ten = (fit_horizon(points_of(300, seed, 0.5, height, scale), settings).diagnostics for scale in (1.0, 10.0))
     assert ten["energy"] == one["energy"]
     assert ten["smoothing"] == pytest.approx(one["smoothing"], rel=1e-6)
     assert ten["noise"] == pytest.approx(one["noise"], rel=1e-6)

@@ -133,7 +133,7 @@ def test_without_sections_v_follows_a_turned_study_area():
 def test_a_steep_fault_is_met_over_its_best_plane():
     points = fault(72, n=300)
     surface = fit_horizon(points, FitSettings(core="none", interior_tolerance=0.05))
-    assert surface.fit["frame"] == "best-plane"
+    assert surface.diagnostics["frame"] == "best-plane"
     assert surface.accuracy.max_abs < 0.06
     # Other points of the same fault, in its middle.
     inner = fault(72, n=900, seed=7)
@@ -145,7 +145,7 @@ def test_a_steep_fault_is_met_over_its_best_plane():
 @pytest.mark.parametrize("reverse", [(), (0, 3)])
 def test_an_overturned_fold_is_met(reverse):
     surface = fit_horizon(folded(reverse=reverse))
-    assert surface.fit["frame"] == "sections"
+    assert surface.diagnostics["frame"] == "sections"
     assert surface.accuracy.max_abs < 1e-6
 
 

@@ -11,11 +11,11 @@ from truth import paper_arrangement, rms, thin_plate
 
 import geofit
 from geofit import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.sample import horizon_truth
 from geofit.sample.truth import HORIZONS
-from geofit.surfaces.surface import HorizonSurface
 
-SITE = Path(__file__).parent.parent / "sample_data" / "site.toml"
+SITE = Path(__file__).parents[2] / "sample_data" / "site.toml"
 SEEDS = range(12)
 
 
@@ -25,18 +25,18 @@ def sample_site() -> geofit.Site:
 
 
 @cache
-def sample_surface(name: str) -> HorizonSurface:
+def sample_surface(name: str) -> HorizonFit:
     site = sample_site()
     return geofit.fit_horizon(site.horizons[name], site.settings[name], boundary=site.boundary, name=name)
 
 
 @cache
-def seeded_surface(seed: int, **settings: str) -> HorizonSurface:
+def seeded_surface(seed: int, **settings: str) -> HorizonFit:
     truth = paper_arrangement(seed)
     return geofit.fit_horizon(truth.points, FitSettings(**settings), boundary=truth.boundary)
 
 
-def failed(surface: HorizonSurface) -> list[str]:
+def failed(surface: HorizonFit) -> list[str]:
     return [check.text for check in surface.accuracy.checks if check.passed is False]
 
 
@@ -130,7 +130,7 @@ def test_step_file_read_back(name, tmp_path):
 
 def test_the_fault_is_fitted_over_its_best_plane():
     surface = sample_surface("F1")
-    assert surface.fit["frame"] == "best-plane"
+    assert surface.diagnostics["frame"] == "best-plane"
     distance = surface.distance(horizon_truth("F1").places(5_000))
     # Places beyond the outermost points count too; the surface ends there.
     assert np.percentile(np.abs(distance), 95) < 0.3
@@ -138,7 +138,7 @@ def test_the_fault_is_fitted_over_its_best_plane():
 
 def test_the_overturned_fold_is_lofted_through_its_sections():
     surface = sample_surface("M1")
-    assert surface.fit["frame"] == "sections"
+    assert surface.diagnostics["frame"] == "sections"
     assert surface.core.all()
     assert np.abs(surface.accuracy.residuals).max() < 1e-9
     distance = surface.distance(horizon_truth("M1").places(5_000))

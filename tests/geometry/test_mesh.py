@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from surfaces import ORIGIN, fold, height_field, horizon, nine, wave
 
 from geofit.data.errors import SettingsError
 from geofit.geometry.clip import inside
-from geofit.geometry.mesh import triangulate
 
 #: Concave, with corners between the mesh's vertices and one (500, -20) outside the surface.
 OUTLINE = np.array([[100, 80], [500, -20], [900, 100], [950, 600], [500, 400], [80, 650]], float)
@@ -53,7 +54,7 @@ SURFACES = {
 @pytest.mark.parametrize("tolerance", [1.0, 0.05])
 def test_triangles_stay_within_the_tolerance(name, tolerance):
     surface = SURFACES[name]()
-    mesh = triangulate(surface, tolerance)
+    mesh = surface.triangulate(tolerance)
     distance = np.abs(surface.distance(samples(mesh)))
     assert distance.max() <= tolerance
     # Not by being far too dense: half the tolerance is used somewhere.
@@ -62,7 +63,7 @@ def test_triangles_stay_within_the_tolerance(name, tolerance):
 
 @pytest.mark.parametrize("name", SURFACES)
 def test_seams_are_closed(name):
-    mesh = triangulate(SURFACES[name](), 0.2)
+    mesh = SURFACES[name]().triangulate(0.2)
     _, count = edges(mesh)
     assert count.max() == 2
     # Open edges are the rim alone: its length in plan is that of the outline or the rectangle.
@@ -75,7 +76,7 @@ def test_seams_are_closed(name):
 @pytest.mark.parametrize("name", ["one patch", "nine patches", "nine patches, outline"])
 def test_a_height_field_faces_up_and_its_vertices_are_on_the_surface(name):
     surface = SURFACES[name]()
-    mesh = triangulate(surface, 0.2)
+    mesh = surface.triangulate(0.2)
     assert normals(mesh)[:, 2].min() > 0
     assert np.abs(surface.distance(mesh.xyz)).max() < 1e-9
 
@@ -83,7 +84,7 @@ def test_a_height_field_faces_up_and_its_vertices_are_on_the_surface(name):
 def test_area_and_edge_of_the_outline():
     import shapely
 
-    mesh = triangulate(horizon(nine()[1], outline=OUTLINE), 0.2)
+    mesh = horizon(nine()[1], outline=OUTLINE).triangulate(0.2)
     part = shapely.Polygon(OUTLINE) & shapely.box(0, 0, 1000, 700)
     assert normals(mesh)[:, 2].sum() / 2 == pytest.approx(part.area, abs=1e-6)
     assert boundary_length(mesh) == pytest.approx(part.length, abs=1e-6)
@@ -91,11 +92,11 @@ def test_area_and_edge_of_the_outline():
 
 def test_every_limb_of_a_fold_is_trimmed():
     surface = horizon([fold()], outline=FOLD_OUTLINE)
-    whole, part = triangulate(surface.with_(outline=None), 0.2), triangulate(surface, 0.2)
+    whole, part = surface.with_(outline=None).triangulate(0.2), surface.triangulate(0.2)
     middles = part.points[part.triangles, :2].mean(axis=1)
     assert inside(FOLD_OUTLINE, middles).all()
     # The area in space is the area of what a fine sampling finds inside.
-    fine = triangulate(surface.with_(outline=None), 0.002)
+    fine = surface.with_(outline=None).triangulate(0.002)
     area = np.linalg.norm(normals(fine), axis=1) / 2
     held = inside(FOLD_OUTLINE, fine.points[fine.triangles, :2].mean(axis=1))
     assert np.linalg.norm(normals(part), axis=1).sum() / 2 == pytest.approx(area[held].sum(), rel=5e-3)
@@ -105,9 +106,10 @@ def test_every_limb_of_a_fold_is_trimmed():
 def test_a_vertical_surface_is_trimmed():
     """A wall over the line y = 100: the plan of its triangles has no area."""
     wall = height_field(z=lambda x, y: wave(x, y))
-    wall = type(wall)(wall.name, wall.degree, wall.knots_u, wall.knots_v, wall.control[..., [0, 2, 1]])
-    wall.control[..., 1] = 100.0
-    mesh = triangulate(horizon([wall], outline=[[100, 0], [400, 0], [400, 200], [100, 200]]), 0.5)
+    control = wall.control[..., [0, 2, 1]]
+    control[..., 1] = 100.0
+    wall = replace(wall, control=control)
+    mesh = horizon([wall], outline=[[100, 0], [400, 0], [400, 200], [100, 200]]).triangulate(0.5)
     x, z = mesh.points[:, 0], mesh.points[:, 2]
     assert (x.min(), x.max()) == pytest.approx((100, 400), abs=1e-6)
     assert np.linalg.norm(normals(mesh), axis=1).sum() / 2 == pytest.approx(300 * 700, abs=1e-3)
@@ -116,15 +118,15 @@ def test_a_vertical_surface_is_trimmed():
 
 def test_an_outline_outside_leaves_all_and_a_plane_is_two_pieces_a_span():
     surface = horizon([height_field(nu=5, nv=4, z=lambda x, y: 0.1 * x - 0.2 * y)])
-    mesh = triangulate(surface, 0.05)
+    mesh = surface.triangulate(0.05)
     around = surface.with_(outline=np.array([[-1, -1], [1001, -1], [1001, 701], [-1, 701]]) + ORIGIN[:2])
-    same = triangulate(around, 0.05)
+    same = around.triangulate(0.05)
     assert len(mesh.triangles) == len(same.triangles) == 8
 
 
 def test_refuses_a_tolerance_of_zero():
     with pytest.raises(SettingsError, match="above 0"):
-        triangulate(horizon([height_field()]), 0.0)
+        horizon([height_field()]).triangulate(0.0)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -144,7 +146,7 @@ def test_any_outline_is_followed_without_cracks(seed):
     if not polygon.is_valid:
         pytest.skip("rounding made the polygon cross itself")
     part = polygon & shapely.box(0, 0, 1000, 700)
-    mesh = triangulate(horizon(nine()[1], outline=outline), 2.0)
+    mesh = horizon(nine()[1], outline=outline).triangulate(2.0)
     assert edges(mesh)[1].max() == 2
     assert normals(mesh)[:, 2].sum() / 2 == pytest.approx(part.area, abs=1e-4)
     assert boundary_length(mesh) == pytest.approx(part.length, abs=1e-3)

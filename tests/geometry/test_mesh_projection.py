@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from surfaces import ORIGIN, fold, height_field, horizon
 
-from geofit.data.points import PointSet
-from geofit.geometry.mesh import Mesh, MeshSurface, triangulate
+from geofit.geometry.mesh import Mesh
 from geofit.geometry.mesh_projection import elevation, nearest
 from geofit.sampling.contours import contours
 from geofit.sampling.cut import cut
 from geofit.sampling.grids import elevation_grid
+from geofit.surfaces.mesh_surface import MeshSurface
 
 
 def mesh_of(points, triangles, origin=(0.0, 0.0, 0.0)):
@@ -23,7 +23,7 @@ def mesh_of(points, triangles, origin=(0.0, 0.0, 0.0)):
 @pytest.mark.parametrize("patch", [height_field(nu=9, nv=7), fold()], ids=["wavy", "overturned"])
 def test_the_nearest_place_is_that_of_trimesh(patch):
     trimesh = pytest.importorskip("trimesh")
-    mesh = triangulate(horizon([patch]), 2.0)
+    mesh = horizon([patch]).triangulate(2.0)
     low, high = mesh.points.min(axis=0), mesh.points.max(axis=0)
     rng = np.random.default_rng(1)
     target = rng.uniform(low - 0.3 * (high - low), high + 0.3 * (high - low), (300, 3))
@@ -89,9 +89,9 @@ def test_height_of_the_highest_and_nan_outside():
 
 
 def test_a_mesh_is_cut_contoured_and_gridded_as_it_stands():
-    mesh = triangulate(horizon([height_field(z=lambda x, y: 0.2 * x + 0 * y)]), 0.05)
-    surface = MeshSurface((), ORIGIN, PointSet(np.empty((0, 3))), mesh=mesh)
-    assert triangulate(surface, 9.0) is mesh
+    mesh = horizon([height_field(z=lambda x, y: 0.2 * x + 0 * y)]).triangulate(0.05)
+    surface = MeshSurface(mesh)
+    assert surface.triangulate(9.0) is mesh
     lines = contours(surface, 70.0)
     assert [line.elevation for line in lines] == [420, 490, 560]
     for line in lines:

@@ -9,10 +9,9 @@ import pytest
 from surfaces import ORIGIN, height_field, horizon, nine
 
 from geofit.cad.step import read_step, write_step
-from geofit.data.points import PointSet
-from geofit.geometry.mesh import triangulate
-from geofit.geometry.trim_loops import TrimmedSurface, nearest
+from geofit.geometry.trim_loops import nearest
 from geofit.project.export import uncut
+from geofit.surfaces.trimmed import TrimmedSurface
 
 
 def faces_of_file(path, shape):
@@ -73,7 +72,7 @@ def test_through_a_hole_to_the_face_below(tmp_path):
     disc = faces_of_file(tmp_path / "disc.step", below.wrapped)
     found = nearest((*ring.patches, *disc.patches), [[0, 0, 0.005]], (*ring.loops, *disc.loops))
     assert np.abs(found.distance) == pytest.approx([0.025])
-    assert found.part.tolist() == [1]
+    assert found.patch.tolist() == [1]
     assert not found.beyond.any()
 
 
@@ -150,7 +149,7 @@ def test_no_triangle_turns_over_where_parameters_run_unevenly():
     for seed in range(20, 25):
         rng = np.random.default_rng(seed)
         loops = [star(rng, 340, rng.integers(8, 60)), star(rng, 100, rng.integers(5, 40))]
-        mesh = triangulate(TrimmedSurface((patch,), ORIGIN, PointSet(np.empty((0, 3))), loops=(tuple(loops),)), 0.5)
+        mesh = TrimmedSurface((patch,), ORIGIN, trim_loops=(tuple(loops),)).triangulate(0.5)
         a, b, c = np.moveaxis(mesh.points[mesh.triangles], 1, 0)
         least.append(np.cross(b - a, c - a)[:, 2].min())
     assert min(least) > 0

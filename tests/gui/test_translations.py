@@ -10,7 +10,6 @@ import sys
 from pathlib import Path
 
 import pytest
-
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QDialogButtonBox, QLabel, QWidget
 

@@ -16,7 +16,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 
-from geofit import HorizonSurface, PointSet
+from geofit import HorizonFit, PointSet
 from geofit.checks.check import check
 from geofit.data.accuracy import Seam
 from geofit.data.errors import SettingsError
@@ -25,6 +25,7 @@ from geofit.data.site import Ground, Hole, Orientations, Section, Site
 from geofit.gui.view3d.colouring import rgb
 from geofit.report.style import HORIZONS
 from geofit.splines.patch import Patch
+from geofit.surfaces.patch_surface import PatchSurface
 
 ORIGIN = np.array([501_000.0, 3_100_000.0, 1_500.0])
 SLOPE = 0.2
@@ -48,7 +49,7 @@ def plane(name="W", fall=0.0, split=True):
     local = np.array([[-100.0, -50.0, 20.0], [0.0, 0.0, 0.05], [120.0, 90.0, -24.0], [60.0, -120.0, -11.0]])
     local[:, 2] -= fall
     points = PointSet(local + ORIGIN, kind=["borehole", "borehole", "outcrop", "section"], hole=["ZK1", "ZK2", "", ""])
-    surface = HorizonSurface(tuple(patches), ORIGIN, points, name=name, core=np.zeros(4, bool))
+    surface = HorizonFit(PatchSurface(tuple(patches), ORIGIN, name), points, name=name, core=np.zeros(4, bool))
     return surface.with_(accuracy=check(surface))
 
 
@@ -239,7 +240,7 @@ def test_the_net_leaves_its_surface_to_be_seen(view, qtbot):
     x, y = np.meshgrid(fine, fine, indexing="ij")
     knots = np.concatenate([[0.0], np.linspace(0, 1, 80), [1.0]])
     patch = Patch("core", (1, 1), knots, knots, np.stack([x, y, 0 * x], axis=-1))
-    view.show_surface(HorizonSurface((patch,), ORIGIN, PointSet(np.empty((0, 3))), name="W"))
+    view.show_surface(HorizonFit(PatchSurface((patch,), ORIGIN), name="W"))
     view.view("top")
     settle(view, qtbot)
     low, high = (drawn_at(view, at(s * 150.0, -s * 150.0, 0.0)).round().astype(int) for s in (-1, 1))

@@ -8,7 +8,6 @@ from surfaces import fold, horizon, nine
 
 from geofit.data.errors import InputError, MissingDependencyError
 from geofit.data.points import PointSet
-from geofit.geometry.mesh import triangulate
 from geofit.io.export.geoh5 import write_geoh5
 
 POINTS = PointSet(np.array([[5e5, 3.1e6, 400.0], [500010.5, 3100020.25, 410.125]]))
@@ -17,7 +16,7 @@ OFF = np.array([0.25, -0.5])
 
 @pytest.fixture(scope="module")
 def meshes():
-    return {"T2/T1": triangulate(horizon(nine()[1]), 2.0), "强风化": triangulate(horizon([fold()]), 2.0)}
+    return {"T2/T1": horizon(nine()[1]).triangulate(2.0), "强风化": horizon([fold()]).triangulate(2.0)}
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from surfaces import fold, horizon, nine
 
 from geofit.data.errors import InputError
 from geofit.data.points import PointSet
-from geofit.geometry.mesh import Mesh, triangulate
+from geofit.geometry.mesh import Mesh
 from geofit.io.export import dxf, landxml, triangles, tsurf, vtk
 
 
@@ -24,7 +24,7 @@ def meshes():
     first = horizon(nine()[1], outline=[[100, 80], [500, 20], [900, 100], [950, 600], [80, 650]])
     second = horizon([fold()])
     second = second.with_(origin=second.origin + np.array([700.0, -50.0, 30.0]))
-    return {"T1 top": triangulate(first, 1.0), "强风化": triangulate(second, 1.0)}
+    return {"T1 top": first.triangulate(1.0), "强风化": second.triangulate(1.0)}
 
 
 def corners(xyz, faces):

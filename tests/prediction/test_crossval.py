@@ -14,14 +14,14 @@ import geofit
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import SettingsError
 from geofit.data.prediction import OffData
+from geofit.fitting.calibration import BAND, LeftOutPoints, calibrate, factor_for, share_inside, uncalibrated
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.prediction.bands import grid_over
-from geofit.prediction.calibration import BAND, LeftOutPoints, calibrate, factor_for, share_inside, uncalibrated
 from geofit.prediction.examine import examine
 from geofit.prediction.folds import beyond_hull, block_labels, groups_of, hole_labels
 from geofit.prediction.kriging import NEIGHBOURS, Variogram, fit_variogram, krige_left_out
 from geofit.prediction.thinplate import thin_plate_left_out
 from geofit.sample import horizon_truth
-from geofit.surfaces.surface import HorizonSurface
 
 SITE = Path(__file__).parents[2] / "sample_data" / "site.toml"
 
@@ -127,7 +127,7 @@ def test_the_band_is_widened_for_the_holes():
 
 
 @cache
-def sample(name: str) -> tuple[HorizonSurface, OffData]:
+def sample(name: str) -> tuple[HorizonFit, OffData]:
     site = geofit.io.read_site(SITE)
     surface = fit_horizon(site.horizons[name], site.settings[name], boundary=site.boundary, name=name)
     return surface, examine(surface)

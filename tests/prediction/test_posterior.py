@@ -10,16 +10,16 @@ from truth import Truth, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError, SettingsError
+from geofit.fitting.calibration import uncalibrated
 from geofit.fitting.deletion import LinearFit, linear_fit
 from geofit.fitting.field import energy_band
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.posterior import posterior
 from geofit.prediction.bands import Spread, band, grid_over, sd_at, uncertainty_on
-from geofit.prediction.calibration import uncalibrated
 from geofit.prediction.drilling import greedy_holes, suggest_holes
 from geofit.splines import bspline
 from geofit.splines.blocks import BlockFactor
 from geofit.splines.tensor import RIDGES, TensorSpace
-from geofit.surfaces.surface import HorizonSurface
 
 
 def dense(band: np.ndarray) -> np.ndarray:
@@ -64,16 +64,16 @@ def small_truth() -> Truth:
 
 
 @cache
-def small_surface(**settings: str | float) -> HorizonSurface:
+def small_surface(**settings: str | float) -> HorizonFit:
     truth = small_truth()
     return fit_horizon(truth.points, FitSettings(**settings), boundary=truth.boundary)
 
 
-def linear(surface: HorizonSurface) -> LinearFit:
+def linear(surface: HorizonFit) -> LinearFit:
     return linear_fit(surface.model, posterior(surface.model))
 
 
-def brute_force(surface: HorizonSurface, fit: LinearFit, group: np.ndarray) -> np.ndarray:
+def brute_force(surface: HorizonFit, fit: LinearFit, group: np.ndarray) -> np.ndarray:
     """Errors of the same three steps, solved anew from the points that are left."""
     given = fit.posterior
     keep = np.setdiff1d(np.arange(len(given.value)), group)

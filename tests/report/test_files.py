@@ -15,6 +15,7 @@ import geofit
 from geofit import FitSettings, PointSet
 from geofit.checks.storage import equal_accuracy
 from geofit.data.files import file_stems, replacing
+from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report import fonts, plots, scene
 from geofit.report.pictures import Pictures, draw, draw_site, write_picture
 from geofit.report.result import HorizonResult, horizon_data, write_json
@@ -23,7 +24,7 @@ from geofit.report.tables import write_issues, write_residuals
 from geofit.report.view import choose_view
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
-from geofit.surfaces.surface import HorizonSurface
+from geofit.surfaces.patch_surface import PatchSurface
 
 
 @pytest.fixture(scope="module")
@@ -129,7 +130,7 @@ def test_steep_surfaces_are_seen_across_their_strike():
     u = bspline.clamped_knots([0, 400], 1)
     control = np.stack([np.stack([strike * a + down * b for b in (0, 300)]) for a in (0, 400)])
     steep = Patch("core", (1, 1), u, bspline.clamped_knots([0, 300], 1), control)
-    surface = HorizonSurface(patches=(steep,), origin=ORIGIN, points=PointSet(control.reshape(-1, 3) + ORIGIN))
+    surface = HorizonFit(PatchSurface((steep,), ORIGIN), PointSet(control.reshape(-1, 3) + ORIGIN))
     view = choose_view(surface)
     assert "060°" in view.labels[0]
     assert "75°" in view.labels[0]
@@ -141,11 +142,7 @@ def test_steep_surfaces_are_seen_across_their_strike():
 
 def test_tin_and_grid_of_equal_accuracy():
     # A plane needs its corners only; a wave ten times as exact about ten times the points.
-    flat = HorizonSurface(
-        patches=(patch("core", 0, 800, 0, 600, lambda x, y: 0.1 * x + 0 * y),),
-        origin=ORIGIN,
-        points=PointSet([]),
-    )
+    flat = HorizonFit(PatchSurface((patch("core", 0, 800, 0, 600, lambda x, y: 0.1 * x + 0 * y),), ORIGIN))
     assert equal_accuracy(flat, 0.1).tin_points <= 12
     wave = flat.with_(patches=(patch("core", 0, 800, 0, 600),))
     coarse, fine = equal_accuracy(wave, 0.5), equal_accuracy(wave, 0.05)

@@ -22,7 +22,9 @@ def _fields(template: str) -> set[str]:
 
 
 def test_every_text_has_a_chinese_one():
-    absent = {text: where for text, where in literals(("geofit", "io")).items() if text not in ZH.texts}
+    # The document's own sentences are in the catalogue of the windows.
+    told = {text: where for text, where in literals(("geofit", "io")).items() if "/project/" not in where}
+    absent = {text: where for text, where in told.items() if text not in ZH.texts}
     assert not absent, "say by said() what has values, and add to geofit/report/chinese_errors.py:\n" + "\n".join(
         f"{where}: {text!r}" for text, where in absent.items()
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from surfaces import ORIGIN, fold, height_field, horizon, nine
+from surfaces import ORIGIN, fold, height_field, horizon, lifted, nine
 
 from geofit.data.errors import SettingsError
 from geofit.sampling.contours import contours, interval_for
@@ -93,7 +93,7 @@ def test_contours_of_a_dome_are_circles():
         a, b = knots[1:-2], knots[2:-1]
         return (a - 100) * (b - 100)
 
-    dome.control[..., 2] = -(squares(dome.knots_u)[:, None] + squares(dome.knots_v)[None, :]) / 100
+    dome = lifted(dome, -(squares(dome.knots_u)[:, None] + squares(dome.knots_v)[None, :]) / 100)
     surface = horizon([dome])
     assert surface.elevation(*(ORIGIN[:2] + 130)) == pytest.approx(ORIGIN[2] - 18)
     assert x.shape == y.shape

@@ -21,15 +21,21 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from geofit.fitting.deletion import LinearFit, Prediction
+from geofit.fitting.posterior import Posterior
+
 __all__ = [
     "BAND",
     "LEAST_HELD",
     "Calibration",
     "LeftOutPoints",
     "calibrate",
+    "common_factor",
     "factor_for",
+    "gathered",
     "share_inside",
     "uncalibrated",
+    "variance_of",
 ]
 
 Floats = NDArray[np.float64]
@@ -173,3 +179,25 @@ def factor_for(left: LeftOutPoints, local: Floats | float, weight: Floats, share
     reached = np.cumsum(weight[order])
     k = int(np.searchsorted(reached, share * reached[-1] * (1 - 1e-12)))
     return max(float(np.sqrt(needed[order][min(k, len(needed) - 1)])), _LEAST)
+
+
+def common_factor(fit: LinearFit, judged: NDArray[np.bool_]) -> float:
+    """Return the factor of the standard deviation that holds 90 % of the judged points, each left out alone."""
+    alone = fit.without([np.array([k]) for k in np.flatnonzero(judged)])
+    left = gathered(fit.posterior, [alone])
+    return factor_for(left, 1.0, np.ones(len(left.point)), SHARE) if len(left.point) >= FEWEST else 1.0
+
+
+def gathered(given: Posterior, predictions: list[Prediction]) -> LeftOutPoints:
+    """Put the errors of several predictions one after another, without the points that were not left out."""
+    noise = (given.noise * given.noise_ratio) ** 2
+    point = np.tile(np.arange(len(given.value)), len(predictions))
+    error = np.concatenate([np.empty(0), *(one.error for one in predictions)])
+    variance = np.concatenate([np.empty(0), *(variance_of(one) for one in predictions)])
+    known = np.isfinite(error)
+    return LeftOutPoints(point[known], error[known], variance[known], noise[point[known]])
+
+
+def variance_of(predicted: Prediction) -> Floats:
+    """Mean square error of the surface at a point left out: the field's, and the surface's departure from the field."""
+    return np.asarray(predicted.variance + (predicted.error - predicted.field_error) ** 2)

@@ -1,0 +1,80 @@
+"""``geofit check``: points measured against a surface from a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from geofit import __version__
+from geofit.cli.app import app
+from geofit.cli.console import guarded, print_counts, print_issues, print_json, print_results
+from geofit.cli.options import SURFACE_FILES, Decimal, Json, SectionColumn, Sep, SurfaceColumn, X, Y, Z
+from geofit.cli.sources import pick, read_source
+
+__all__ = ["check"]
+
+
+@app.command()
+@guarded
+def check(
+    surface: Annotated[Path, typer.Argument(metavar="SURFACE", help=f"A surface: {SURFACE_FILES}.")],
+    points: Annotated[Path, typer.Argument(metavar="POINTS.csv", help="Table of points, m.")],
+    epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
+    horizon: Annotated[str | None, typer.Option(help="Name of the horizon, where the files hold several.")] = None,
+    x: X = None,
+    y: Y = None,
+    z: Z = None,
+    surface_column: SurfaceColumn = None,
+    section: SectionColumn = None,
+    sep: Sep = None,
+    decimal: Decimal = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for the residual table; none: not written.")] = None,
+    as_json: Json = False,
+) -> int:
+    """Measure points against the surface in a CAD file or GOCAD TSurf, ours or any other."""
+    from geofit.data.accuracy import plain
+    from geofit.data.settings import FitSettings
+    from geofit.fitting.judge import judge
+    from geofit.io.surface_files import read_surface_file
+    from geofit.report.result import HorizonResult
+
+    settings = FitSettings(epsilon=epsilon)
+    columns = {
+        "x": x,
+        "y": y,
+        "z": z,
+        "surface": surface_column,
+        "section": section,
+        "sep": sep,
+        "decimal": decimal,
+    }
+    site = read_source(points, columns, None)
+    print_issues(site.issues)
+    print_counts(site.counts)
+    name, found = pick("horizon", site.horizons, horizon, points)
+    _, shape = pick("surface", read_surface_file(surface), name if horizon else None, surface)
+    result = HorizonResult(judge(shape, found, settings, name), site)
+    if out is not None:
+        from geofit.data.files import file_stems
+        from geofit.report.tables import write_residuals
+
+        out.mkdir(parents=True, exist_ok=True)
+        write_residuals(result, out / f"{file_stems([name])[name]}_residuals.csv")
+    if as_json:
+        print_json(_summary(plain(result.accuracy), name))
+    else:
+        print_results([result])
+    return 0 if result.accuracy.passed else 1
+
+
+def _summary(accuracy: dict[str, Any], name: str) -> dict[str, Any]:
+    accuracy.pop("residuals")
+    accuracy.pop("patch")
+    return {
+        "horizon": name,
+        "verdict": "PASS" if accuracy["passed"] else "FAIL",
+        **accuracy,
+        "version": __version__,
+    }

@@ -1,0 +1,48 @@
+"""``geofit info``: what is in a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from geofit.cli.app import app
+from geofit.cli.console import guarded, print_counts, print_issues, print_json, print_table
+from geofit.cli.options import Json
+from geofit.cli.sources import read_source
+
+__all__ = ["info"]
+
+
+@app.command()
+@guarded
+def info(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="site.toml, table of points or a surface (STEP ...).")],
+    as_json: Json = False,
+) -> int:
+    """Say what is in a file."""
+    from geofit.io.surface_files import is_surface_file
+    from geofit.project.describe import describe_site, describe_surfaces
+
+    rows = describe_surfaces(file) if is_surface_file(file) else None
+    header: tuple[str, ...] = (
+        "surface",
+        "patches",
+        "control points",
+        "west..east, m",
+        "south..north, m",
+        "z, m",
+    )
+    issues: tuple[Any, ...] = ()
+    if rows is None:
+        site = read_source(file, {}, None)
+        header = ("horizon", "points", "kinds", "west..east, m", "south..north, m", "z, m")
+        rows, issues = describe_site(site), site.issues
+        print_counts(site.counts)
+    if as_json:
+        print_json([dict(zip(header, row, strict=True)) for row in rows])
+    else:
+        print_table(header, rows, left=(0, 2))
+        print_issues(issues)
+    return 0

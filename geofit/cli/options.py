@@ -1,0 +1,57 @@
+"""Options and arguments that several commands share: one name, one help text."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+
+class LanguageCode(StrEnum):
+    """Languages of the report."""
+
+    EN = "en"
+    ZH = "zh"
+
+
+class Across(StrEnum):
+    """Interpolation of the core across its sections."""
+
+    CUBIC = "cubic"
+    LINEAR = "linear"
+
+
+class Seam(StrEnum):
+    """How patches meet."""
+
+    TANGENT = "tangent"
+    POSITION = "position"
+
+
+class Frame(StrEnum):
+    """In which frame a surface is a height field."""
+
+    AUTO = "auto"
+    MAP = "map"
+    BEST_PLANE = "best-plane"
+    SECTIONS = "sections"
+
+
+Out = Annotated[Path, typer.Option(help="Folder for the results; made if it is not there.")]
+Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON on stdout instead of a table.")]
+X = Annotated[str | None, typer.Option("--x", help="CSV: column of the easting, m. Default: found by its header.")]
+Y = Annotated[str | None, typer.Option("--y", help="CSV: column of the northing, m.")]
+Z = Annotated[str | None, typer.Option("--z", help="CSV: column of the elevation, m.")]
+SurfaceColumn = Annotated[str | None, typer.Option("--surface", help="CSV: column of the horizon's name.")]
+SectionColumn = Annotated[str | None, typer.Option("--section", help="CSV: column of the section's name.")]
+Sep = Annotated[str | None, typer.Option(help="CSV: separator: one character, 'tab' or 'space'. Default: found.")]
+Decimal = Annotated[str | None, typer.Option(help="CSV: decimal mark, '.' or ','. Default: found.")]
+Tolerance = Annotated[float, typer.Option(help="Largest distance of triangles and lines from the surface, m.")]
+FORMATS = (
+    "step, iges, brep, dxf (contours), dxf-mesh, ifc, landxml, tsurf, geoh5, omf, vtp, vtm, obj, ply, stl, glb, "
+    "gpkg (contours), asc, grd, tif (grids)"
+)
+SURFACE_FILES = "STEP, IGES, BREP or GOCAD TSurf (.ts), ours or any other"
+FROM_SITE = "Default: the site file's, else"

@@ -1,0 +1,67 @@
+"""A run over the horizons of a site, and what the command line prints of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geofit.cli.console import print_counts, print_issues, print_json, print_results, say
+
+if TYPE_CHECKING:
+    from geofit.data.languages import Language
+    from geofit.data.progress import Progress
+    from geofit.data.site import Site
+
+__all__ = ["run_site"]
+
+
+def run_site(
+    site: Site,
+    out: Path,
+    horizons: tuple[str, ...],
+    changes: dict[str, Any],
+    as_json: bool,
+    progress: Progress | None,
+    language: Language | None = None,
+    *,
+    pdf: bool = False,
+    apart: bool = False,
+    bands: bool = False,
+) -> int:
+    """Fit, write and report the horizons of a site; print what was found; return the exit code."""
+    from geofit.data.accuracy import plain
+    from geofit.data.languages import EN
+    from geofit.project.run import deliver
+    from geofit.report.result import horizon_data
+
+    print_issues(site.issues, str(out / "import_issues.csv"))
+    print_counts(site.counts)
+    delivery = deliver(
+        site, out, horizons, changes, progress, language=language or EN, pdf=pdf, apart=apart, bands=bands
+    )
+    if as_json:
+        print_json(
+            {
+                "out": str(out),
+                "horizons": [horizon_data(result) for result in delivery.results],
+                "orders": [plain(order) for order in delivery.orders],
+                "cuts": [plain(cut) for cut in delivery.cuts],
+                "contradictions": [plain(one) for one in delivery.contradictions],
+                "failures": dict(delivery.failures),
+            }
+        )
+    elif delivery.results:
+        print_results(delivery.results)
+    for order in delivery.orders:
+        if order.check().passed is False:
+            say(f"Order: {order.check().text}")
+    for sentence in (*(one.text for one in delivery.contradictions), *(cut.text for cut in delivery.cuts)):
+        say(sentence)
+    for warning in delivery.warnings:
+        say(warning)
+    for name, text in delivery.failures.items():
+        say(f"geofit: {name}: {text}")
+    if delivery.results:
+        pages = f"{out / 'report.html'}{', .pdf' if pdf else ''}"
+        say(f"Report: {pages} and .json; surfaces and tables beside it")
+    return delivery.exit_code

@@ -1,0 +1,75 @@
+"""What the commands read: a site file or a table of points, and the horizon that is meant of several."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geofit.data.errors import InputError
+from geofit.data.messages import message
+
+if TYPE_CHECKING:
+    from geofit.data.site import Site
+
+__all__ = ["pick", "read_source"]
+
+
+def read_source(source: Path, columns: dict[str, str | None], boundary: Path | None) -> Site:
+    """Read a site file, or a table of points with the columns that the user names (None: guessed)."""
+    from dataclasses import replace
+
+    from geofit.data.site import Site
+    from geofit.io.boundary import read_boundary
+    from geofit.io.picks import read_points
+    from geofit.io.site_file import read_site
+
+    area = None if boundary is None else read_boundary(boundary)
+    if source.suffix.casefold() == ".toml":
+        given = [f"--{name}" for name, value in columns.items() if value is not None]
+        if given:
+            raise InputError(
+                message("cli.option-for-tables", "{option} is for tables of points", option=given[0]),
+                message("cli.site-file-names-columns", "A site file names its own columns."),
+                file=str(source),
+            )
+        site = read_site(source)
+        return site if area is None else replace(site, boundary=area)
+    picks = read_points(
+        source,
+        x=columns.get("x"),
+        y=columns.get("y"),
+        z=columns.get("z"),
+        surface=columns.get("surface"),
+        section=columns.get("section"),
+        sep=columns.get("sep"),
+        decimal=columns.get("decimal"),
+    )
+    return Site(
+        name=source.stem,
+        horizons=picks.horizons,
+        boundary=area,
+        issues=picks.issues,
+        counts=picks.counts,
+        inputs=picks.inputs,
+    )
+
+
+def pick(kind: str, found: Mapping[str, Any], wanted: str | None, file: Path) -> tuple[str, Any]:
+    """Return the named one of several horizons or surfaces, or the only one."""
+    if len(found) == 1 and (wanted is None or kind == "surface"):
+        return next(iter(found.items()))
+    if wanted is not None and wanted in found:
+        return wanted, found[wanted]
+    reason = (
+        message("cli.not-in-file", "There is no {kind} '{name}'", kind=kind, name=Verbatim(wanted))
+        if wanted
+        else message(
+            "cli.several-in-file",
+            "Found in the file, where one is needed: {count} × {kind}",
+            count=len(found),
+            kind=kind,
+        )
+    )
+    remedy = message("cli.choose-with-horizon", "Choose with --horizon: {names}.", names=", ".join(found))
+    raise InputError(reason, remedy, file=str(file))

@@ -1,0 +1,72 @@
+"""Words of many points as integer codes into a table: 4 bytes a point, however long the words are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Labels"]
+
+
+@dataclass(frozen=True, eq=False)
+class Labels:
+    """One word for each of n points.
+
+    Parameters
+    ----------
+    codes : (n,) array of int32
+        Index into the table.
+    table : tuple of str
+        The different words, in the order of their first appearance; it may hold words that no code names.
+
+    Examples
+    --------
+    >>> labels = Labels.of(["B1", "B2", "B1"])
+    >>> labels.codes.tolist(), labels.table
+    ([0, 1, 0], ('B1', 'B2'))
+    """
+
+    codes: NDArray[np.int32]
+    table: tuple[str, ...]
+
+    @classmethod
+    def of(cls, words: ArrayLike) -> Labels:
+        """Return the codes of (n,) words."""
+        table: dict[str, int] = {}
+        texts = np.asarray(words, dtype=np.str_).tolist()
+        codes = np.fromiter((table.setdefault(word, len(table)) for word in texts), np.int32, len(texts))
+        return cls(codes, tuple(table))
+
+    @classmethod
+    def same(cls, word: str, n: int) -> Labels:
+        """Return one word for all of n points."""
+        return cls(np.zeros(n, np.int32), (word,))
+
+    def __post_init__(self) -> None:
+        self.codes.setflags(write=False)
+
+    def __len__(self) -> int:
+        return len(self.codes)
+
+    def __getitem__(self, index: slice | NDArray[np.integer] | NDArray[np.bool_]) -> Labels:
+        """Return the labels of some of the points."""
+        return Labels(np.atleast_1d(self.codes[index]).copy(), self.table)
+
+    def words(self) -> NDArray[np.str_]:
+        """Return the words themselves, (n,)."""
+        words = np.array(self.table or ("",), dtype=np.str_)[self.codes]
+        words.setflags(write=False)
+        return words
+
+    @classmethod
+    def concatenate(cls, parts: Sequence[Labels]) -> Labels:
+        """Join labels, in order."""
+        table: dict[str, int] = {}
+        codes = []
+        for part in parts:
+            own = np.array([table.setdefault(word, len(table)) for word in part.table] or [0], np.int32)
+            codes.append(own[part.codes])
+        return cls(np.concatenate([np.empty(0, np.int32), *codes]), tuple(table))

@@ -1,0 +1,101 @@
+"""The check of a surface that a file gives: triangles, and patches that end at loops, measured to what is there."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from geofit.checks.check import check
+from geofit.checks.shape import RANGE_SHARE
+from geofit.data.accuracy import Accuracy, Check
+from geofit.data.messages import message
+from geofit.data.points import PointSet
+from geofit.data.settings import FitSettings
+from geofit.fitting.horizon_fit import HorizonFit
+from geofit.geometry.mesh import Mesh
+from geofit.geometry.projection import Projection
+from geofit.geometry.trim_loops import beyond_edge
+from geofit.surfaces.mesh_surface import MeshSurface
+from geofit.surfaces.patch_surface import PatchSurface
+
+__all__ = ["judge"]
+
+#: So many points beside the surface are named.
+NAMED = 20
+
+
+def judge(surface: PatchSurface | MeshSurface, points: PointSet, settings: FitSettings, name: str) -> HorizonFit:
+    """Return a surface of a file with points, settings and check, by the rules of a fit.
+
+    A point beyond the surface is measured to the surface's edge, counts in sigma with that distance, and is
+    listed: the surface says nothing about it.
+    """
+    judged = HorizonFit(surface, points, settings, name)
+    found = surface.project(points.xyz)
+    if found.beyond is None:
+        found = replace(found, beyond=beyond_edge(surface.patches, points.xyz - surface.origin, found))
+    accuracy = check(judged, projection=found)
+    if not surface.patches:
+        accuracy = replace(
+            accuracy,
+            checks=(*accuracy.checks, *_mesh_checks(surface.triangulate(), points)),
+            notes=(
+                message(
+                    "check.triangle-mesh-seams-control",
+                    "A triangle mesh: seams, control points and the tangent plane do not apply.",
+                ),
+            ),
+        )
+    return judged.with_(accuracy=_with_beyond(accuracy, points, found))
+
+
+def _with_beyond(accuracy: Accuracy, points: PointSet, found: Projection) -> Accuracy:
+    """Add the points beyond the surface, each with its place in a file."""
+    assert found.beyond is not None
+    beside = np.flatnonzero(found.beyond)
+    text = message(
+        "check.points-beyond-surface-edge",
+        "points beyond the surface's edge, measured to the edge: {count} of {total}",
+        count=beside.size,
+        total=accuracy.n,
+    )
+    added = Check("beyond the surface", None, float(beside.size), 0.0, "points", text)
+    named = [
+        message("check.beyond-surface", "beyond the surface: {point}", point=points.describe(int(i)))
+        for i in beside[:NAMED].tolist()
+    ]
+    if beside.size > NAMED:
+        named.append(
+            message(
+                "check.beyond-surface-further-points",
+                "beyond the surface: further points, {count}",
+                count=beside.size - NAMED,
+            )
+        )
+    told = (text, *named) if beside.size else ()
+    return replace(accuracy, checks=(*accuracy.checks, added), notes=(*accuracy.notes, *told))
+
+
+def _mesh_checks(mesh: Mesh, points: PointSet) -> tuple[Check, ...]:
+    """Look for triangles that are turned over or have no area, and for elevations far outside the data's range."""
+    corners = mesh.points[mesh.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    size = np.linalg.norm(normal, axis=1)
+    turned = int(((normal @ normal.sum(axis=0) < 0) | (size <= 1e-12 * size.max())).sum())
+    text = message(
+        "check.triangles-turned-without-area",
+        "{count} of {total} triangles turned over or without an area",
+        count=turned,
+        total=len(size),
+    )
+    checks = [Check("normals", turned == 0, turned, 0, "places", text)]
+    z, heights = points.xyz[:, 2], mesh.xyz[:, 2]
+    if len(z) and np.ptp(z) > 0:
+        beyond = max(float(z.min() - heights.min()), float(heights.max() - z.max()), 0.0)
+        limit = RANGE_SHARE * float(np.ptp(z))
+        text = message(
+            "check.elevations-reach-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=beyond
+        )
+        checks.append(Check("elevation range", beyond <= limit, beyond, limit, "m", text))
+    return tuple(checks)

@@ -1,0 +1,72 @@
+"""A surface that is triangles itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.geometry.mesh import Mesh
+from geofit.geometry.mesh_projection import elevation, nearest
+from geofit.geometry.projection import Projection
+from geofit.geometry.trim_loops import Loops
+from geofit.splines.patch import Patch
+
+__all__ = ["MeshSurface"]
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MeshSurface:
+    """A triangle mesh of a file as a surface; it has no patches."""
+
+    mesh: Mesh
+    name: str = "surface"
+
+    @property
+    def patches(self) -> tuple[Patch, ...]:
+        """No NURBS patches."""
+        return ()
+
+    @property
+    def loops(self) -> Loops:
+        """No trim loops."""
+        return ()
+
+    @property
+    def origin(self) -> Floats:
+        """Offset that turns the vertices into map coordinates, metres."""
+        return self.mesh.origin
+
+    @property
+    def outline(self) -> Floats | None:
+        """No outline: the triangles end where they end."""
+        return None
+
+    @property
+    def frame(self) -> str:
+        """Unknown: triangles may be a height field or not."""
+        return ""
+
+    @property
+    def bounds(self) -> tuple[Floats, Floats]:
+        """Box of the vertices, map coordinates."""
+        return self.mesh.xyz.min(axis=0), self.mesh.xyz.max(axis=0)
+
+    def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
+        """Return the height at map coordinates in metres, nan outside, the highest of several; arrays broadcast."""
+        return elevation(self.mesh, x, y)
+
+    def project(self, xyz: ArrayLike) -> Projection:
+        """Return the nearest triangles of (n, 3) map coordinates; they have no parameters."""
+        return nearest(self.mesh, np.atleast_2d(np.asarray(xyz, float)) - self.origin)
+
+    def distance(self, xyz: ArrayLike) -> Floats:
+        """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""
+        return self.project(xyz).distance
+
+    def triangulate(self, tolerance: float = 0.05) -> Mesh:
+        """Return the mesh itself, whatever the tolerance."""
+        return self.mesh
