@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Verbatim, message
 
 if TYPE_CHECKING:
     from geofit.data.site import Site
