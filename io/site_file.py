@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ from geofit.io.hints import nearest
 from geofit.io.horizon_columns import load_horizon_columns
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.mapping import load_mappings
+from geofit.io.mapping import ColumnMapping, load_mappings
 from geofit.io.orientations import load_orientations
 from geofit.io.parser_words import told_by
 from geofit.io.picks import load_picks
@@ -39,7 +39,7 @@ from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
 from geofit.io.source import Source
 from geofit.io.traces import load_traces
 
-__all__ = ["load_site", "read_site"]
+__all__ = ["build_site", "load_site", "read_site"]
 
 Floats = NDArray[np.float64]
 
@@ -90,15 +90,47 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
     """Read a site file, which may have no horizon yet; see :func:`read_site`."""
     source = Source(path=Path(path))
     journal = Journal()
-    reader = Reader(source.path)
-    top = _parse(journal.read(source), source.name)
+    return build_site(_parse(journal.read(source), source.name), source.path, journal, progress=progress)
+
+
+def build_site(
+    top: dict[str, Any],
+    path: Path,
+    journal: Journal,
+    *,
+    mappings: Sequence[ColumnMapping] | None = None,
+    progress: Progress | None = None,
+) -> Site:
+    """Read the files that the tables of a site file name.
+
+    Parameters
+    ----------
+    top : dict
+        What the site file holds, as TOML gives it.
+    path : Path
+        Where the site file is, or will be: the files that it names count from its folder.
+    journal : Journal
+        Takes what the readers find.
+    mappings : sequence of ColumnMapping, optional
+        Column mappings; None: those of the file that ``[site]`` names.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_site`.
+    """
+    reader = Reader(path)
     reader.keys(top, TOP, "The site file")
     label = reader.get(top, "site", dict, "the site file") or {}
     reader.keys(label, ("name", "crs", "mapping", "order"), "[site]")
     crs = reader.get(label, "crs", str, "[site]") or ""
     reader.target = crs if is_code(crs) else None
-    if mapping := reader.get(label, "mapping", str, "[site]"):
-        reader.mappings = load_mappings(source.path.parent / mapping)
+    if mappings is not None:
+        reader.mappings = tuple(mappings)
+    elif mapping := reader.get(label, "mapping", str, "[site]"):
+        reader.mappings = load_mappings(path.parent / mapping)
     horizons = [_horizon(reader, table) for table in reader.tables(top, "horizon")]
     names = HorizonNames([horizon.name for horizon in horizons])
     if len(set(map(str.casefold, names.names))) < len(horizons):
@@ -149,7 +181,7 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
     order, faults = _relations(reader, top, label, list(points))
     tell(progress, "read", 1.0)
     return Site(
-        name=reader.get(label, "name", str, "[site]") or source.path.parent.name,
+        name=reader.get(label, "name", str, "[site]") or path.parent.name,
         horizons=points,
         settings=settings,
         boundary=boundary,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -23,11 +23,14 @@ from geofit.io.guess import taken_as
 from geofit.io.import_plan import Part, Plan, campaigns, look_at, settle
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
-from geofit.io.site_file import load_site
+from geofit.io.site_file import build_site
+from geofit.io.source import Source
 from geofit.io.toml_text import toml_value
 
 __all__ = ["Import", "import_files"]
 
+#: The tables of a site file in order: each with its head, "[site]" or "[[picks]]".
+Tables = list[tuple[str, dict[str, Any]]]
 #: Fewer contacts make no surface: the code gets no [[horizon]] unless it is asked for.
 FEWEST_CONTACTS = 3
 
@@ -108,14 +111,18 @@ def import_files(
     while True:
         settle(plan)
         horizons = _horizons(plan, site_file, mapping_file, crs, base, top, language)
-        _write(plan, site_file, mapping_file, crs, horizons)
+        tables = _tables(plan, site_file, mapping_file, crs, horizons)
         tell(progress, "read the site", 0.6)
         try:
-            site = load_site(site_file)
+            site = _read(tables, plan, site_file)
             break
         except InputError as error:
             if not plan.drop(error):
                 raise
+    _write(tables, plan, site_file, mapping_file)
+    written = Journal()
+    written.read(Source(path=site_file))
+    site = replace(site, inputs={**written.inputs, **site.inputs})
     issues = (*site.issues, *plan.issues, *_guesses(plan))
     counts = (*site.counts, *plan.counts)
     issue_file = site_file.with_name(f"{site_file.stem}_issues.csv")
@@ -177,16 +184,16 @@ def _horizons(
     if not limits:
         return []
     # Beside a [[horizon]] only listed names are read, so those of the other files are asked for first.
-    _write(plan, site_file, mapping_file, crs, [], boreholes=False)
+    tables = _tables(plan, site_file, mapping_file, crs, [], boreholes=False)
     try:
-        others = list(load_site(site_file).horizons)
+        others = list(_read(tables, plan, site_file).horizons)
     except InputError:
         others = []  # the file at fault is dropped when the whole site is read
     named = {name.casefold() for name in others}
     for table in limits:
         # In the language that was asked for, unless another file uses the English name.
-        if table["name"].casefold() not in named:
-            table["name"] = translate(table["name"], language)
+        english = str(table["name"])
+        table["name"] = english if english.casefold() in named else translate(table["name"], language)
     limited = {table["name"].casefold() for table in limits}
     return limits + [{"name": name} for name in others if name.casefold() not in limited]
 
@@ -258,7 +265,7 @@ def _name(limit: str, code: str) -> Message:
     return message("import.base-of-stratum", "base of {code}", code=Verbatim(code))
 
 
-def _write(
+def _tables(
     plan: Plan,
     site_file: Path,
     mapping_file: Path,
@@ -266,16 +273,9 @@ def _write(
     horizons: Sequence[Mapping[str, Any]],
     *,
     boreholes: bool = True,
-) -> None:
-    """Write the mapping and the site file that refers to it."""
-    parts = [part for parts in plan.parts.values() for part in parts if part.preview.kind in SCHEMAS]
-    remarks = {
-        (i, guess.role): str(guess.reason) + (f", confidence {guess.confidence:.2f}" if not guess.stated else "")
-        for i, part in enumerate(parts)
-        for guess in part.preview.roles
-    }
-    save_mappings([part.mapping for part in parts], mapping_file, remarks)
-    blocks: list[tuple[str, dict[str, Any]]] = [
+) -> Tables:
+    """Return the tables of the site file, each with its head."""
+    blocks: Tables = [
         ("[site]", {"name": site_file.stem, **({"crs": crs} if crs else {}), "mapping": mapping_file.name})
     ]
     for key in ("boundary", "ground"):
@@ -305,8 +305,35 @@ def _write(
     blocks += [("[[grids]]", {**_file(part), "horizon": part.source.path.stem}) for part in plan.of("grid")]
     blocks += [("[[orientations]]", _file(part)) for part in plan.of("orientations")]
     blocks += [("[[horizon]]", dict(table)) for table in horizons]
+    return blocks
+
+
+def _parts(plan: Plan) -> list[Part]:
+    return [part for parts in plan.parts.values() for part in parts if part.preview.kind in SCHEMAS]
+
+
+def _read(tables: Tables, plan: Plan, site_file: Path) -> Site:
+    """Read the site that the tables describe, before anything is written."""
+    top: dict[str, Any] = {}
+    for head, table in tables:
+        if head.startswith("[["):
+            top.setdefault(head.strip("[]"), []).append(table)
+        else:
+            top[head.strip("[]")] = table
+    return build_site(top, site_file, Journal(), mappings=[part.mapping for part in _parts(plan)])
+
+
+def _write(tables: Tables, plan: Plan, site_file: Path, mapping_file: Path) -> None:
+    """Write the mapping and the site file that refers to it."""
+    parts = _parts(plan)
+    remarks = {
+        (i, guess.role): str(guess.reason) + (f", confidence {guess.confidence:.2f}" if not guess.stated else "")
+        for i, part in enumerate(parts)
+        for guess in part.preview.roles
+    }
+    save_mappings([part.mapping for part in parts], mapping_file, remarks)
     lines = []
-    for head, table in blocks:
+    for head, table in tables:
         lines += [head, *(f"{key} = {toml_value(value)}" for key, value in table.items()), ""]
     with replacing(site_file) as written:
         written.write_text("\n".join(lines), encoding="utf-8")

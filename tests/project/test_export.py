@@ -227,7 +227,7 @@ def test_the_commands(both, tmp_path, monkeypatch, capsys):
 
 
 def test_help_names_every_format():
-    from geofit.cli.main import _FORMATS
+    from geofit.cli.options import FORMATS as NAMED
 
-    words = {word.strip() for word in re.sub(r"\(.*?\)", "", _FORMATS).split(",")}
+    words = {word.strip() for word in re.sub(r"\(.*?\)", "", NAMED).split(",")}
     assert words == set(FORMATS)
