@@ -8,7 +8,7 @@ import numpy as np
 
 from geofit import FitSettings, PointSet, Site
 from geofit.checks.storage import equal_accuracy
-from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Partition, ReadBack, Seam
+from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, Partition, ReadBack, Seam
 from geofit.data.messages import message
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
 from geofit.data.site import Hole, ImportIssue, Section, TableCount
@@ -74,8 +74,8 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         by_hole={},
         by_section={f"S{i + 1}": group(d[i * 12 : i * 12 + 12]) for i in range(10)},
         over={
-            "interior tolerance 0.1 m": int((np.abs(d) > 0.1).sum()),
-            f"epsilon {epsilon:g} m": int((np.abs(d) > epsilon).sum()),
+            "interior_tolerance": Exceedance(0.1, int((np.abs(d) > 0.1).sum())),
+            "epsilon": Exceedance(epsilon, int((np.abs(d) > epsilon).sum())),
         },
         worst=tuple(np.argsort(-np.abs(d), kind="stable")[:20].tolist()),
         seams=(Seam("core", "west", 0.0, 0.0002), Seam("core", "east", 2e-10, 0.0003)),

@@ -14,7 +14,7 @@ from geofit.checks.residual_tests import by_label, residual_checks
 from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
 from geofit.checks.trend import trend
-from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Seam
+from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, Seam
 from geofit.data.labels import Labels
 from geofit.data.messages import Message, message
 from geofit.geometry.projection import Projection, project
@@ -74,8 +74,8 @@ def check(
     value = sigma(d)
     magnitude = np.abs(d)
     over = {
-        f"interior tolerance {settings.interior_tolerance:g} m": int((magnitude > settings.interior_tolerance).sum()),
-        f"epsilon {settings.epsilon:g} m": int((magnitude > settings.epsilon).sum()),
+        name: Exceedance(limit, int((magnitude > limit).sum()))
+        for name, limit in (("interior_tolerance", settings.interior_tolerance), ("epsilon", settings.epsilon))
     }
     honoured = np.ones(len(d), bool)
     honoured[[conflict.dropped for conflict in conflicts]] = False

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import Message
 
-__all__ = ["Accuracy", "Check", "Conflict", "Group", "Partition", "ReadBack", "Seam", "plain"]
+__all__ = ["Accuracy", "Check", "Conflict", "Exceedance", "Group", "Partition", "ReadBack", "Seam", "plain"]
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +26,14 @@ class Group:
     sigma: float
     max_abs: float
     mean: float
+
+
+@dataclass(frozen=True)
+class Exceedance:
+    """Points further from the surface than a tolerance: the tolerance in metres and their count."""
+
+    limit: float
+    count: int
 
 
 @dataclass(frozen=True)
@@ -84,7 +92,8 @@ class Accuracy:
 
     ``sigma = sqrt(sum d_i^2 / (n - 1))`` over all n original points (eq. 3); passed when sigma < epsilon.
     ``residuals`` (n,) are signed orthogonal distances in metres, positive above the surface; ``patch`` (n,)
-    names the patch of each point. ``over`` counts the points beyond each tolerance, by its name.
+    names the patch of each point. ``over`` counts the points beyond tolerances, by the name of the setting:
+    "interior_tolerance", "epsilon".
     ``worst`` holds the indices of the largest residuals, largest first.
     """
 
@@ -100,7 +109,7 @@ class Accuracy:
     by_kind: Mapping[str, Group]
     by_hole: Mapping[str, Group]
     by_section: Mapping[str, Group]
-    over: Mapping[str, int]
+    over: Mapping[str, Exceedance]
     worst: tuple[int, ...]
     seams: tuple[Seam, ...] = ()
     checks: tuple[Check, ...] = ()

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
-from geofit.data.accuracy import plain
+from geofit.data.accuracy import Exceedance, plain
 from geofit.data.files import replacing
 from geofit.data.messages import Message
 
@@ -267,7 +267,8 @@ class HorizonReport:
     """Everything said about one horizon; metres.
 
     ``verdict`` is PASS or FAIL by sigma against epsilon alone; ``sound`` tells whether every check holds too.
-    ``over`` counts points beyond each tolerance. ``pictures`` names those that belong here, by what they show.
+    ``over`` counts points beyond tolerances, by the name of the setting. ``pictures`` names those that
+    belong here, by what they show.
     """
 
     name: str
@@ -286,7 +287,7 @@ class HorizonReport:
     periphery_max_abs: float | None
     within_interior: float | None
     tolerances: tuple[float, float, float]
-    over: tuple[tuple[str, int], ...]
+    over: tuple[tuple[str, Exceedance], ...]
     reason: Message
     notes: tuple[Message, ...]
     groups: tuple[GroupLine, ...]

@@ -143,7 +143,7 @@ def _horizon(result: HorizonResult) -> HorizonReport:
         periphery_max_abs=float(out.max()) if len(out) else None,
         within_interior=float((out <= settings.interior_tolerance).mean()) if len(out) else None,
         tolerances=(settings.boundary_tolerance, settings.interior_tolerance, settings.epsilon),
-        over=tuple((str(name), int(n)) for name, n in a.over.items()),
+        over=tuple(a.over.items()),
         reason=surface.partition.reason if surface.partition is not None else EMPTY,
         notes=a.notes,
         groups=tuple(

@@ -134,7 +134,10 @@ def _pictures(h: HorizonReport, t: Language, missing_picture: Message | None) ->
 def _deviations(h: HorizonReport, t: Language) -> list[Block]:
     pictures = dict(h.pictures)
     boundary, interior, control = (digits.given(value) for value in h.tolerances)
-    rows = tuple((_bound(name, t), digits.count(n), digits.share(n / max(h.n, 1))) for name, n in h.over)
+    rows = tuple(
+        (_bound(name, over.limit, t), digits.count(over.count), digits.share(over.count / max(h.n, 1)))
+        for name, over in h.over
+    )
     bands = t(
         "Bands end at the tolerances of this fit: boundary {boundary} m, interior {interior} m, control error "
         "{control} m. Triangles point to where the point lies: ▲ above the surface, ▼ below.",
@@ -153,10 +156,11 @@ def _deviations(h: HorizonReport, t: Language) -> list[Block]:
     ]
 
 
-def _bound(name: str, t: Language) -> str:
-    """Return the name of a tolerance, its value and unit behind."""
-    word, *value = name.rsplit(" ", 2)
-    return " ".join([translate(word, t), *value])
+def _bound(name: str, limit: float, t: Language) -> str:
+    """Return a tolerance with its value and unit."""
+    if name == "epsilon":
+        return t("control error ε {value:g} m", value=limit)
+    return t("interior tolerance {value:g} m", value=limit)
 
 
 def _groups(h: HorizonReport, t: Language) -> list[Block]:

@@ -7,7 +7,7 @@ import pytest
 from surfaces import ORIGIN, height_field, horizon, nine, split
 
 from geofit.checks.check import check, sigma
-from geofit.data.accuracy import Conflict
+from geofit.data.accuracy import Conflict, Exceedance
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.splines.patch import Patch
@@ -41,7 +41,7 @@ def test_the_figures_of_planted_distances():
     assert found.sigma == pytest.approx(np.sqrt((0.09 + 0.16 + 0.0025) / 3), abs=1e-9)
     assert found.max_abs == pytest.approx(0.4)
     assert found.mean == pytest.approx(d.mean())
-    assert found.over == {"interior tolerance 0.1 m": 2, "epsilon 0.5 m": 0}
+    assert found.over == {"interior_tolerance": Exceedance(0.1, 2), "epsilon": Exceedance(0.5, 0)}
     assert found.worst == (1, 0, 2, 3)
     assert found.passed
     assert found.verdict == "PASS"

@@ -153,13 +153,26 @@ def test_with_replaces_columns_and_checks_them():
 
 
 @pytest.mark.parametrize(
-    ("columns", "words"),
+    ("columns", "code", "params", "text"),
     [
-        ({"kind": "borehole", "hole": "ZK12", "file": "holes.csv", "row": 7}, "borehole ZK12, holes.csv row 7"),
-        ({"kind": "section", "section": "S3", "row": 9}, "section S3, row 9"),
-        ({"kind": "adit", "hole": "PD1", "section": "S3"}, "adit PD1"),
-        ({}, "point"),
+        (
+            {"kind": "borehole", "hole": "ZK12", "file": "holes.csv", "row": 7},
+            "point.in-file",
+            {"file": "holes.csv", "row": 7},
+            "borehole ZK12, holes.csv row 7",
+        ),
+        ({"kind": "section", "section": "S3", "row": 9}, "point.in-row", {"row": 9}, "section S3, row 9"),
+        (
+            {"kind": "adit", "hole": "PD1", "section": "S3"},
+            "point.kind-name",
+            {"kind": "adit", "name": "PD1"},
+            "adit PD1",
+        ),
+        ({}, "point.kind", {"kind": "point"}, "point"),
     ],
 )
-def test_a_point_is_described_as_a_person_would_look_it_up(columns, words):
-    assert three(**columns).describe(1) == words
+def test_a_point_is_described_as_a_person_would_look_it_up(columns, code, params, text):
+    found = three(**columns).describe(1)
+    assert found.code == code
+    assert params.items() <= found.params.items()
+    assert str(found) == text

@@ -109,7 +109,7 @@ def test_a_bad_setting_is_told_in_chinese_by_its_name():
     with pytest.raises(SettingsError) as caught:
         FitSettings(epsilon=-1)
     assert str(caught.value) == "Control error (epsilon) is -1; a finite number above 0 is needed (metres)."
-    assert translate(str(caught.value), ZH) == "控制误差 ε（epsilon）为 -1；应为大于 0 的有限数（米）。"
+    assert translate(caught.value, ZH) == "控制误差 ε（epsilon）为 -1；应为大于 0 的有限数（米）。"
     assert set(LABELS) == {field.name for field in dataclasses.fields(FitSettings)}
 
 
@@ -126,9 +126,5 @@ def test_an_input_error_is_told_in_chinese_and_crosses_to_another_process():
     assert str(copy) == str(error)
     assert (copy.file, copy.row, copy.column, copy.value) == ("f.csv", 3, "x", "7")
     assert str(InputError(message("test.text", "no such file"), file="f.csv")) == "f.csv: no such file."
-    assert (
-        translate(
-            str(InputError(message("test.text", "no such file"), message("test.text", "look"), file="f.csv", row=2)), ZH
-        )
-        == "f.csv，第 2 行：no such file。look"
-    )
+    missing = InputError(message("test.text", "no such file"), message("test.text", "try again"), file="f.csv", row=2)
+    assert translate(missing, ZH) == "f.csv，第 2 行：no such file。try again"

@@ -36,7 +36,7 @@ def test_the_figures_behind_the_verdict(badge):
     assert "σ 0.0" in str(badge.text)
     assert "ε 0.5 m" in str(badge.text)
     assert f"of {a.n} points" in str(badge.text)
-    assert f"{a.over['interior tolerance 0.1 m']} over 0.1 m" in str(badge.text)
+    assert f"{a.over['interior_tolerance'].count} over 0.1 m" in str(badge.text)
     badge.show_accuracy(failing(fitted()).accuracy)
     assert badge.text.splitlines()[0] == "FAIL"
     assert "σ 0.610 m ≥ ε 0.5 m" in str(badge.text)
