@@ -7,12 +7,8 @@ part that was not examined at all is None as a whole, and the reader is told so.
 from __future__ import annotations
 
 import json
-import types
-import typing
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from geofit.data.accuracy import Exceedance, plain
 from geofit.data.files import replacing
@@ -38,7 +34,6 @@ __all__ = [
     "RejectedRow",
     "SeamLine",
     "SuggestionLine",
-    "from_json",
     "to_json",
     "write_json",
 ]
@@ -371,27 +366,7 @@ def to_json(report: AccuracyReport) -> str:
     return json.dumps(plain(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
 
 
-def from_json(text: str) -> AccuracyReport:
-    """Return the report that :func:`to_json` wrote; texts that could be told in Chinese come back in English."""
-    report: AccuracyReport = _restored(AccuracyReport, json.loads(text))
-    return report
-
-
 def write_json(report: AccuracyReport, path: Path) -> None:
     """Write the report as JSON (UTF-8)."""
     with replacing(path) as part:
         part.write_text(to_json(report), encoding="utf-8")
-
-
-def _restored(kind: Any, value: Any) -> Any:
-    """Turn what JSON holds back into a type: dataclasses, tuples of one or of several types, and None."""
-    origin, inner = typing.get_origin(kind), typing.get_args(kind)
-    if origin in (types.UnionType, typing.Union):
-        return None if value is None else _restored(next(k for k in inner if k is not type(None)), value)
-    if origin is tuple:
-        kinds = [inner[0]] * len(value) if inner[-1] is Ellipsis else inner
-        return tuple(_restored(k, v) for k, v in zip(kinds, value, strict=True))
-    if isinstance(kind, type) and is_dataclass(kind):
-        hints: Mapping[str, Any] = typing.get_type_hints(kind)
-        return kind(**{f.name: _restored(hints[f.name], value[f.name]) for f in fields(kind)})
-    return float(value) if kind is float else value

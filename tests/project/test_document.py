@@ -148,6 +148,7 @@ def test_undoing_everything_leads_back_and_states_come_back_from_their_data(done
 
 
 def test_every_command_is_told_in_words_that_can_be_translated():
+    from chinese import english_left
 
     recipe = document().recipe("low")
     samples = [

@@ -13,8 +13,9 @@ from results import examined, horizon
 
 from geofit.data.errors import MissingDependencyError
 from geofit.data.languages import EN, ZH
+from geofit.data.messages import message
 from geofit.report import fonts
-from geofit.report.accuracy_report import AccuracyReport, from_json, to_json, write_json
+from geofit.report.accuracy_report import AccuracyReport, to_json, write_json
 from geofit.report.chapters import document
 from geofit.report.digits import metres
 from geofit.report.gather import accuracy_report, today
@@ -135,8 +136,8 @@ def _exponent(value: float) -> int:
     return int(f"{abs(value):e}".split("e")[1])
 
 
-def test_the_json_comes_back_as_the_same_report(report):
-    assert from_json(to_json(report)) == report
+def test_the_json_names_every_horizon_and_holds_no_nan(report):
+    assert [one["name"] for one in json.loads(to_json(report))["horizons"]] == [one.name for one in report.horizons]
     assert json.loads(to_json(report))["horizons"][0]["verdict"] == "PASS"
     assert "NaN" not in to_json(report)
 
@@ -297,10 +298,10 @@ def test_names_from_files_cannot_break_the_page(tmp_path):
 
 def test_long_names_and_many_rows_stay_on_the_page(tmp_path):
     result = horizon()
-    points = replace(result.surface.points, file="a" * 90 + "/" + "剖面" * 30 + ".csv")
+    points = result.surface.points.with_(file="a" * 90 + "/" + "剖面" * 30 + ".csv")
     report = accuracy_report([replace(result, surface=result.surface.with_(points=points))], date=DATE)
     row = report.horizons[0].conflicts[0]
-    report = replace(report, horizons=(replace(report.horizons[0], conflicts=(replace(row, text="x" * 3000),) * 60),))
+    report = replace(report, horizons=(replace(report.horizons[0], conflicts=(replace(row, text=message("x", "x" * 3000)),) * 60),))
     write_pdf(document(report, EN), {}, tmp_path / "r.pdf")
     pdf = pdfium.PdfDocument(tmp_path / "r.pdf")
     wide, edge = 210 / 25.4 * 72, 15 / 25.4 * 72
