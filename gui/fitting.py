@@ -102,7 +102,7 @@ class Fitting(QObject):
     def _parted(self, found: Parted) -> None:
         document = self._document
         for note in found.notes:
-            _LOG.info(note)
+            _LOG.log(logging.INFO if note.severity == "info" else logging.WARNING, note)
         for recipe, surface in found.faults.items():
             self._fitted(recipe, surface)
         if not found.blocks:

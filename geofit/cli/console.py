@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 import typer
 
 from geofit.data.errors import Cancelled, GeofitError
-from geofit.data.messages import Message
+from geofit.data.messages import Message, gravest_first
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
 
@@ -204,8 +204,10 @@ def print_results(results: Sequence[HorizonResult]) -> None:
         failed = [c for c in (*a.checks, *(r.read_back.checks if r.read_back else ())) if c.passed is False]
         for check in failed:
             say(f"{r.name}: check '{check.name}' does not hold: {check.text}")
-        for note in a.notes:
-            say(f"{r.name}: {note}")
+        partition = r.surface.partition
+        lost = () if partition is None or partition.reason.severity == "info" else (partition.reason,)
+        for note in gravest_first((*lost, *a.notes)):
+            say(f"{r.name}: {'' if note.severity == 'info' else f'{note.severity}: '}{note}")
 
 
 def _time(seconds: float | None) -> str:

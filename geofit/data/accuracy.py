@@ -152,7 +152,7 @@ class ReadBack:
 def plain(value: Any) -> Any:
     """Turn dataclasses, arrays and numbers into what JSON holds.
 
-    nan and infinities become null; a message becomes its code, text and parameters.
+    nan and infinities become null; a message becomes its code, severity, text and parameters.
     """
     if isinstance(value, Message):
         return plain(value.as_data())

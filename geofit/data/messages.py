@@ -9,7 +9,7 @@ Templates are literals, so that Babel can extract them: ``pybabel extract -k mes
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from gettext import NullTranslations
 from string import Formatter
@@ -17,13 +17,24 @@ from typing import Any, Literal
 
 from geofit.data.terms import TERMS
 
-__all__ = ["EMPTY", "ENGLISH", "Message", "Severity", "Verbatim", "message", "plural_message", "render"]
+__all__ = [
+    "EMPTY",
+    "ENGLISH",
+    "Message",
+    "Severity",
+    "Verbatim",
+    "gravest_first",
+    "message",
+    "plural_message",
+    "render",
+]
 
 Severity = Literal["info", "warning", "error"]
 
 #: The catalogue of the source language: every template is its own translation.
 ENGLISH = NullTranslations()
 
+_GRAVEST_FIRST = ("error", "warning", "info")
 _ITEMS = "{first}, {second}"
 
 
@@ -84,8 +95,8 @@ class Message:
         return replace(self, severity=severity)
 
     def as_data(self) -> dict[str, Any]:
-        """Return what JSON holds of it: code, English text and parameters."""
-        return {"code": self.code, "text": str(self), "params": dict(self.params)}
+        """Return what JSON holds of it: code, severity, English text and parameters."""
+        return {"code": self.code, "severity": self.severity, "text": str(self), "params": dict(self.params)}
 
 
 #: No message; false where a condition is tested.
@@ -113,6 +124,11 @@ def plural_message(code: str, singular: str, plural: str, /, *, count: int, **pa
     ['1 point', '2 points']
     """
     return Message(code, singular, {"count": count, **_kept(params)}, plural)
+
+
+def gravest_first(messages: Iterable[Message]) -> tuple[Message, ...]:
+    """Return messages by severity: errors, warnings, information; equally grave ones in their order."""
+    return tuple(sorted(messages, key=lambda one: _GRAVEST_FIRST.index(one.severity)))
 
 
 def render(value: Any, catalogue: NullTranslations) -> Any:

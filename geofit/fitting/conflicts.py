@@ -130,5 +130,5 @@ def _describe(points: PointSet, winner: int, loser: int, difference: float) -> C
             difference=difference,
             kept=names[0],
             reason=reason,
-        )
+        ).with_severity("warning")
     return Conflict(winner, loser, difference, text)

@@ -85,7 +85,7 @@ def fit_with_core(
             message(
                 "fit.across-linear-needs-least",
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
-            ),
+            ).with_severity("warning"),
         )
     breaks = _breaks(data, core, inside, field, coarse, lines, most, settings)
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
@@ -104,7 +104,7 @@ def fit_with_core(
                 message(
                     "fit.core-linear-across-sections",
                     "a core linear across its sections cannot meet all of its points; it is cubic across",
-                ),
+                ).with_severity("warning"),
             )
     if rule is None and chart.parametric and lines.straight:
         coefficients = _lofted(space, smoothed, data, inside, lines.u)

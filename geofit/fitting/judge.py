@@ -73,7 +73,7 @@ def _with_beyond(accuracy: Accuracy, points: PointSet, found: Projection) -> Acc
                 count=beside.size - NAMED,
             )
         )
-    told = (text, *named) if beside.size else ()
+    told = [note.with_severity("warning") for note in (text, *named)] if beside.size else []
     return replace(accuracy, checks=(*accuracy.checks, added), notes=(*accuracy.notes, *told))
 
 

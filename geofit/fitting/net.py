@@ -255,7 +255,7 @@ class Periphery:
             tolerance=tolerance,
             wider=2 * noise,
         )
-        return (note,)
+        return (note.with_severity("warning"),)
 
     def _excess_notes(self, excess: Floats) -> tuple[Message, ...]:
         count = int((excess > 0).sum())
@@ -279,7 +279,7 @@ class Periphery:
             worst=float(excess.max()),
             reason=reason,
         )
-        return (note,)
+        return (note.with_severity("warning"),)
 
 
 def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:

@@ -106,7 +106,7 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
                     "fit.points-beyond-study-area",
                     "points beyond the study area: {count}; the surface is widened to hold them",
                     count=count,
-                )
+                ).with_severity("warning")
             )
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)

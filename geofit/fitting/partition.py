@@ -60,7 +60,7 @@ def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Mes
             plane,
             message(
                 "fit.no-point-lies-inside", "{reason}; no point lies inside, so all are approximated", reason=reason
-            ),
+            ).with_severity("warning"),
         )
     if inside.all():
         return split_all(
@@ -165,7 +165,7 @@ def _too_many(n: int) -> Message:
         "{n} dense points would need more control points than data to be interpolated; all points are "
         "approximated (name a smaller core to interpolate it)",
         n=n,
-    )
+    ).with_severity("warning")
 
 
 def _otsu(values: Floats) -> float | None:

@@ -123,7 +123,9 @@ def _fit_horizon(
             reason=split.reason,
             error=error.args[0],
         )
-        model = replace(problem, split=Split(None, inside, reason)).fit(kept & chart.placed, clock.stage)
+        model = replace(problem, split=Split(None, inside, reason.with_severity("warning"))).fit(
+            kept & chart.placed, clock.stage
+        )
     if not chart.placed.all():
         model = _corrected(model, clock)
     if settings.robust and not chart.parametric:
@@ -180,7 +182,7 @@ def _adjusted(model: Model, surface: HorizonFit) -> HorizonFit:
                 "sigma stays above epsilon: no further local adjustment lowers it (made: {step})",
                 step=step,
             )
-            surface = _with_note(surface, words)
+            surface = _with_note(surface, words.with_severity("warning"))
             break
         assert tried is not None
         model, surface = tried, candidate

@@ -68,7 +68,7 @@ def fit_robustly(model: Model, stage: Callable[[str, float], None]) -> Model:
         count=int(rejected.sum()),
         names=tuple([*names, "..."] if rejected.sum() > 5 else names),
     )
-    return _noted(model, text)
+    return _noted(model, text.with_severity("warning"))
 
 
 def _judge(model: Model, rejected: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -63,7 +63,7 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
                 "prediction.without-sections-no-surface",
                 "without {failed} of the sections no surface can be laid",
                 failed=failed,
-            )
+            ).with_severity("warning")
         )
     known = error[np.isfinite(error)]
     if not len(known):

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import zip_longest
+from typing import Literal
 
 from geofit.data.languages import Language, sentence, translate
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, gravest_first, message
 from geofit.report import digits
 from geofit.report.accuracy_report import CheckLine, FileCheck, GroupLine, HorizonReport
 from geofit.report.document import (
@@ -114,8 +115,14 @@ def _facts(h: HorizonReport, t: Language) -> Facts:
 
 
 def _notes(h: HorizonReport, t: Language) -> list[Block]:
-    texts: list[str | Message] = [t("Core: {reason}", reason=h.reason)] if h.reason else []
-    return [Paragraph(sentence(text, t)) for text in (*texts, *h.notes)]
+    core: list[Block] = []
+    if h.reason:
+        core = [Paragraph(sentence(t("Core: {reason}", reason=h.reason), t), _style(h.reason))]
+    return [*core, *(Paragraph(sentence(note, t), _style(note)) for note in gravest_first(h.notes))]
+
+
+def _style(note: Message) -> Literal["plain", "warning"]:
+    return "plain" if note.severity == "info" else "warning"
 
 
 def _pictures(h: HorizonReport, t: Language, missing_picture: Message | None) -> list[Block]:

@@ -178,7 +178,7 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
                     "all points of {horizon} lie on one side of {fault}",
                     horizon=name,
                     fault=fault.name,
-                )
+                ).with_severity("warning")
             )
         else:
             cutting.append(fault)
@@ -203,7 +203,9 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
             raise FitError(text)
         if len(mine) < FEW:
             notes.append(
-                message("site.rests-points", "{block} rests on {count} points only", block=title, count=len(mine))
+                message(
+                    "site.rests-points", "{block} rests on {count} points only", block=title, count=len(mine)
+                ).with_severity("warning")
             )
     rows = tuple(tuple(row) for row in signs[order].tolist())
     return Parting(tuple(cutting), tuple(names), rows, block, tuple(notes))

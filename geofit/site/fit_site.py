@@ -178,7 +178,7 @@ def _push_apart(site: Site, found: SiteFit) -> None:
             "{names}: cut by a fault, so not pushed apart from other horizons",
             names=", ".join(blocked),
         )
-        found.warnings += (text,)
+        found.warnings += (text.with_severity("warning"),)
     if len(sequence) < 2:
         if blocked:
             return
@@ -186,13 +186,13 @@ def _push_apart(site: Site, found: SiteFit) -> None:
             message(
                 "site.no-repair-order-site",
                 "no repair: the order of the site names no two fitted horizons without a fault",
-            ),
+            ).with_severity("warning"),
         )
         return
     try:
         done = repair(found.surfaces, sequence)
     except SettingsError as error:
-        found.warnings += (message("site.no-repair", "no repair: {reason}", reason=error),)
+        found.warnings += (message("site.no-repair", "no repair: {reason}", reason=error).with_severity("warning"),)
         return
     found.surfaces.update(done.surfaces)
     found.moved, found.contradictions = dict(done.moved), done.contradictions

@@ -74,7 +74,7 @@ class Contradiction:
             lack=self.lack,
             above=self.above or none,
             below=self.below or none,
-        )
+        ).with_severity("warning")
 
 
 @dataclass(frozen=True, eq=False)
