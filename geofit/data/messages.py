@@ -141,7 +141,7 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
         else:
             template = catalogue.ngettext(value.template, value.plural, int(value.params["count"]))
         return template.format(**{name: render(param, catalogue) for name, param in value.params.items()})
-    if isinstance(value, tuple) and all(isinstance(item, (Message, str)) for item in value):
+    if isinstance(value, tuple) and value and all(isinstance(item, (Message, str)) for item in value):
         return _joined([str(render(item, catalogue)) for item in value], catalogue)
     if isinstance(value, str):
         return catalogue.gettext(value) if value in TERMS and not isinstance(value, Verbatim) else str(value)
