@@ -104,7 +104,7 @@ def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
         )
     elif mean > 0:
         text = message(
-            "check.bias-surface-runs-too",
+            "check.bias-surface-runs-too-low",
             "a bias: the surface runs too low in patch {patch}, {share:.0%} of {n} approximated points lie above it, "
             "on average by {mean:.3f} m",
             patch=name,
