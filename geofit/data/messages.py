@@ -72,6 +72,9 @@ class Message:
     def __str__(self) -> str:
         return str(render(self, ENGLISH))
 
+    def __repr__(self) -> str:
+        return f"<{self.code}: {self}>"
+
     def __format__(self, spec: str) -> str:
         return format(str(self), spec)
 
@@ -140,7 +143,9 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
             template = catalogue.gettext(value.template)
         else:
             template = catalogue.ngettext(value.template, value.plural, int(value.params["count"]))
-        return template.format(**{name: render(param, catalogue) for name, param in value.params.items()})
+        # A text without parameters may show braces, as of a TOML table.
+        fields = {name: render(param, catalogue) for name, param in value.params.items()}
+        return template.format(**fields) if fields else template
     if isinstance(value, tuple) and value and all(isinstance(item, (Message, str)) for item in value):
         return _joined([str(render(item, catalogue)) for item in value], catalogue)
     if isinstance(value, str):

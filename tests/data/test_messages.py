@@ -23,5 +23,9 @@ def test_json_has_code_severity_text_and_parameters():
     }
 
 
+def test_the_repr_is_short():
+    assert repr(message("test.text", "row {row}", row=7)) == "<test.text: row 7>"
+
+
 def test_a_shape_without_axes_is_shown():
     assert str(message("test.text", "shape {shape}", shape=())) == "shape ()"
