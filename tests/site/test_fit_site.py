@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import with_code
 from truth import EASTING, NORTHING
 
 from geofit import FitSettings, PointSet
@@ -149,7 +150,9 @@ def test_throw_and_heave_stand_in_the_report(site, fits):
 def test_a_fault_that_cannot_be_laid_is_named(site):
     bad = replace(site, horizons={**site.horizons, "F1": fault()[:2]})
     found = fit_site(bad, ["T2"])
-    assert found.failures["T2"].startswith("the fault F1 cannot be laid: 2 points given")
+    failure = found.failures["T2"]
+    assert (failure.code, failure.params["fault"]) == ("site.fault-cannot-laid", "F1")
+    assert failure.params["reason"].params["given"].params["count"] == 2
     assert not found.surfaces
 
 
@@ -175,7 +178,7 @@ def test_a_repair_pushes_crossing_horizons_apart_and_checks_them_again():
     assert after.moved
     for name in after.moved:
         surface = after.surfaces[name]
-        assert any("moved by up to" in str(note) for note in surface.accuracy.notes)
+        assert with_code(surface.accuracy.notes, "site.moved-keep-order-strata").params["most"] > 0
         assert np.abs(surface.distance(surface.points.xyz) - surface.accuracy.residuals).max() < 1e-6
 
 
@@ -183,9 +186,11 @@ def test_a_repair_says_what_it_leaves_alone(site):
     found = SiteFit()
     assert compare(site, found) == ()
     plain = replace(crossing(), order=())
-    assert "no two fitted horizons" in str(fit_site(plain, ["U"], apart=True).warnings[0])
+    assert fit_site(plain, ["U"], apart=True).warnings[0].code == "site.no-repair-order-site"
     cut = fit_site(site, ["T2", "T1"], apart=True)
-    assert cut.warnings == ("T2, T1: cut by a fault, so not pushed apart from other horizons",)
+    (warning,) = cut.warnings
+    assert (warning.code, warning.severity) == ("site.cut-fault-not-pushed", "warning")
+    assert warning.params["names"] == "T2, T1"
 
 
 def test_what_exact_points_hold_stands_in_the_report_with_their_rows():

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 from truth import EASTING, NORTHING, hills
 
 from geofit import PointSet, fit_horizon
@@ -140,9 +141,9 @@ def test_exact_points_that_contradict_are_named_with_their_rows(crossing):
     worst = max(found.contradictions, key=lambda one: one.lack)
     assert np.hypot(worst.x - xyz[0, 0], worst.y - xyz[0, 1]) < 10
     assert 2.0 < worst.lack < 10.0
-    assert "section S3, wrong.csv row 77" in worst.below
-    assert f"points_1.csv row {points.row[row]}" in worst.above
-    assert "cannot be pushed apart" in str(worst.text)
+    assert str(worst.below) == "section S3, wrong.csv row 77"
+    assert (worst.above.params["file"], worst.above.params["row"]) == ("points_1.csv", points.row[row])
+    assert (worst.text.code, worst.text.severity) == ("site.contradiction", "warning")
     for surface in found.surfaces.values():
         np.testing.assert_allclose(surface.accuracy.residuals[surface.core], 0, atol=1e-8)
     # Nothing swings for what cannot be.
@@ -151,7 +152,7 @@ def test_exact_points_that_contradict_are_named_with_their_rows(crossing):
 
 def test_what_cannot_be_repaired_is_refused(crossing):
     imported = {**crossing, "base": replace(crossing["base"], model=None)}
-    with pytest.raises(SettingsError, match="'base' has no control net"):
+    with refused(SettingsError, "site.no-control-net-map", name="base"):
         repair(imported, ["top", "base"])
-    with pytest.raises(SettingsError, match="least thickness is -1"):
+    with refused(SettingsError, "site.least-thickness-give-metres", value=-1):
         repair(crossing, ["top", "base"], minimum=-1)
