@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import refused
 from surfaces import fold, horizon, nine
 
 from geofit.cad.export import write_brep, write_iges
@@ -117,5 +118,5 @@ def test_the_unit_of_the_process_stays(surfaces, tmp_path):
 
 @pytest.mark.parametrize("writer", [write_brep, write_iges])
 def test_refuses_nothing(writer, tmp_path):
-    with pytest.raises(InputError, match="No surface"):
+    with refused(InputError, "export.no-surface-write"):
         writer({}, tmp_path / "a")
