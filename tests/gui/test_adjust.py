@@ -131,7 +131,7 @@ def test_a_data_point_is_pulled_by_a_share(panel, qtbot):
     panel.show_surface(surface)
     worst = surface.accuracy.worst[0]
     panel.choose_point(worst)
-    assert surface.points.describe(worst) in panel.point.about.text()
+    assert str(surface.points.describe(worst)) in panel.point.about.text()
     assert f"{surface.accuracy.residuals[worst]:+.3f}" in panel.point.about.text()
     with qtbot.waitSignal(panel.pull_wanted, timeout=2000):
         panel.point.share.setValue(50)

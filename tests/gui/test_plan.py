@@ -68,7 +68,7 @@ def test_without_a_horizon_it_says_so(panel):
 
 def test_the_partition_is_shown_with_its_reason(shown):
     partition = fitted().partition
-    assert shown.reason.text() == partition.reason
+    assert shown.reason.text() == str(partition.reason)
     assert np.allclose(np.sort(shown.view.box.corners, axis=0), np.sort(partition.corners, axis=0), atol=1e-6)
     assert shown.buttons["auto"].isChecked()
     assert not shown.buttons["use"].isEnabled()
@@ -126,7 +126,7 @@ def test_drags_are_undone_one_by_one(shown, qtbot):
     click(qtbot, shown.buttons["undo"])
     assert np.allclose(view.box.corners, first)
     assert not shown.buttons["undo"].isEnabled()
-    assert shown.reason.text() == fitted().partition.reason
+    assert shown.reason.text() == str(fitted().partition.reason)
 
 
 @pytest.mark.parametrize("word", ["all", "none"])

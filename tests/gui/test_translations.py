@@ -14,7 +14,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.gui.language import apply_language
 from geofit.gui.panels.log import LogPanel
-from geofit.gui.words import spoken
+from geofit.gui.words import shown_error, spoken
 from geofit.gui.worker import run
 from geofit.project.provenance import DocumentError
 
@@ -74,17 +74,21 @@ def test_the_log_speaks_chinese_and_leaves_other_libraries_alone(qtbot, chinese)
     qtbot.addWidget(panel)
     try:
         log = logging.getLogger("geofit.gui.files")
-        log.info("Saved %s", "dam.geofit")
-        log.warning("There is no journal, so that a crash would lose unsaved work: %s", OSError(28, os.strerror(28)))
-        log.error(
-            "%s: %s",
-            "拟合",
-            InputError(
-                message("import.file-empty", "The file is empty"),
-                message("import.export-again", "Export it again."),
-                file="p.csv",
-            ),
+        full = OSError(28, os.strerror(28))
+        empty = InputError(
+            message("import.file-empty", "The file is empty"),
+            message("import.export-again", "Export it again."),
+            file="p.csv",
         )
+        log.info(message("log.saved", "Saved {path}", path="dam.geofit"))
+        log.warning(
+            message(
+                "log.no-journal",
+                "There is no journal, so that a crash would lose unsaved work: {error}",
+                error=shown_error(full),
+            )
+        )
+        log.error(message("log.task-error", "{task}: {error}", task="拟合", error=shown_error(empty)))
         logging.getLogger("vtk").error("bad %d", 3)
         lines = [line.split("  ", 1)[1] for line in panel.text.toPlainText().splitlines()]
     finally:

@@ -161,7 +161,7 @@ def test_broken_file_is_named_in_the_error(make_site, case):
     with pytest.raises(InputError) as caught:
         read_site(make_site(**{file: text}))
     assert all(word in str(caught.value) for word in words), str(caught.value)
-    assert not english_left(str(caught.value))
+    assert not english_left(caught.value.message)
 
 
 # what is replaced in the site file -> (by what, words of the error)
@@ -236,7 +236,7 @@ def test_broken_site_file_is_explained(make_site, case):
     with pytest.raises(InputError) as caught:
         read_site(make_site(str(text).replace(old, new)))
     assert all(word in str(caught.value) for word in words), str(caught.value)
-    assert not english_left(str(caught.value))
+    assert not english_left(caught.value.message)
 
 
 # file -> (rows appended to the sound ones, column of the issue, words of its reason)
