@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
 
-from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.errors import Cancelled, GeofitError, InputError
 from geofit.data.messages import Message, gravest_first
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
@@ -251,15 +251,15 @@ def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
 
 
 def _sentence(issue: ImportIssue) -> str:
-    place = [issue.file]
-    if issue.row:
-        place.append(f"row {issue.row}")
-    if issue.column:
-        place.append(f"column '{issue.column}'")
-    if issue.value:
-        place.append(f"value '{issue.value}'")
-    remedy = f" {issue.remedy}" if issue.remedy else ""
-    return f"{issue.severity}: {', '.join(place)}: {str(issue.reason).rstrip('.')}.{remedy}"
+    told = InputError(
+        issue.reason,
+        issue.remedy,
+        file=issue.file,
+        row=issue.row or None,
+        column=issue.column or None,
+        value=issue.value or None,
+    )
+    return f"{issue.severity}: {told}"
 
 
 def print_counts(counts: Sequence[TableCount]) -> None:
