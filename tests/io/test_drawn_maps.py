@@ -112,7 +112,7 @@ def test_adits_and_their_contacts_from_a_plan(folder):
     assert (paths.read, paths.used) == (28, 7)
     assert (contacts.read, contacts.used) == (28, 3)
     reasons = [(issue.severity, issue.reason) for issue in read.issues]
-    assert ("error", "The polyline has no elevation") in reasons
+    assert ("error", "import.polyline-no-elevation") in [(severity, reason.code) for severity, reason in reasons]
     assert any(
         severity == "error" and "50.0 m from the nearest adit, PD1" in str(reason) for severity, reason in reasons
     )
@@ -184,9 +184,9 @@ def test_one_table_of_several_sections_with_their_lines(folder):
     assert [section.name for section in read.sections] == ["C1", "C3"]
     assert counts["sections.csv"] == (6, 3, 3)
     reasons = {issue.row: issue.reason for issue in read.issues if issue.severity == "error"}
-    assert "not on the line" in reasons[4]
-    assert "another section line than row 2" in reasons[5]
-    assert "Section C2 has no line" in reasons[6]
+    assert reasons[4].code == "import.distance-not-line-section"
+    assert (reasons[5].code, reasons[5].params["row"]) == ("import.row-states-section-line", 2)
+    assert (reasons[6].code, reasons[6].params["section"]) == ("import.section-no-line-plan-2", "C2")
 
 
 def test_one_table_of_several_sections_with_a_table_of_lines(folder):
@@ -240,8 +240,8 @@ def test_a_grid_is_a_horizon(form, folder):
     np.testing.assert_allclose(points.xyz[0], [500100, 3100120, 10])
     np.testing.assert_allclose(points.xyz[-1], [500130, 3100100, 33])
     assert points.row.tolist() == [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12]
-    notes = [issue.reason for issue in read.issues if issue.file == name and "no data" in str(issue.reason)]
-    assert notes == ["1 of 12 nodes have no data and make no points"]
+    notes = [issue.reason for issue in read.issues if issue.file == name and issue.reason.code == "import.nodes-no-data-no"]
+    assert [dict(note.params) for note in notes] == [{"count": 1, "total": 12}]
     found = import_files([folder / name, folder / "ground.asc"], folder / "s.toml",
                          mappings=[ColumnMapping(file="base.*", kind="grid")])  # fmt: skip
     assert {key: len(value) for key, value in found.site.horizons.items()} == {"base": 11}
