@@ -9,7 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
 
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Verbatim, message, plural_message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
@@ -18,6 +18,7 @@ from geofit.gui.dialogs.recovery import RecoveryDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
+from geofit.gui.words import spoken
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Recipe
 from geofit.project.saving import Opened, Written, read_project, read_surfaces, save_state
@@ -186,7 +187,10 @@ class Files(QObject):
     def _recovered(self, session: Unfinished, site: Site) -> None:
         count = self._session.resume(session, site)
         self._fitting.make_missing()
-        self.told.emit(self.tr("Brought back, {count} steps.").format(count=count))
+        back = plural_message(
+            "session.brought-back", "Brought back, {count} step.", "Brought back, {count} steps.", count=count
+        )
+        self.told.emit(spoken(back))
         for name in self._document.lost():
             _LOG.warning(
                 message(
@@ -220,16 +224,25 @@ class Files(QObject):
                     title, read_surfaces, found.project, path.parent, parted, on_done=self._surfaces_read, apart=True
                 )
         errors = sum(issue.severity == "error" for issue in site.issues)
-        text = self.tr("{name}: {horizons} horizons, {errors} rows not used.")
-        self.told.emit(text.format(name=site.name, horizons=len(site.horizons), errors=errors))
+        horizons = plural_message("count.horizons", "{count} horizon", "{count} horizons", count=len(site.horizons))
+        holes = plural_message("count.holes", "{count} hole", "{count} holes", count=len(site.holes))
+        rows = plural_message("count.rows", "{count} row", "{count} rows", count=errors)
+        opened = message(
+            "session.opened",
+            "{name}: {horizons}, {rows} not used.",
+            name=Verbatim(site.name),
+            horizons=horizons,
+            rows=rows,
+        )
+        self.told.emit(spoken(opened))
         _LOG.info(
             message(
                 "log.opened",
-                "Opened {path}: {horizons} horizons, {holes} holes, {rows} rows not used",
+                "Opened {path}: {horizons}, {holes}, {rows} not used",
                 path=str(path),
-                horizons=len(site.horizons),
-                holes=len(site.holes),
-                rows=errors,
+                horizons=horizons,
+                holes=holes,
+                rows=rows,
             )
         )
 

@@ -15,6 +15,7 @@ from geofit.gui.activity import Activity
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.showing import Showing
+from geofit.gui.words import spoken
 from geofit.gui.workspace import Workspace
 from geofit.project.commands import PushApart, SetOrder
 from geofit.project.document import Document
@@ -135,8 +136,14 @@ class Ordering(QObject):
                 )
             )
         if crossing:
-            text = self.tr("{count} of {all} pairs of horizons cross; see Checks.")
-            self.told.emit(text.format(count=len(crossing), all=len(orders)))
+            text = plural_message(
+                "order.pairs-cross",
+                "{count} of {total} pairs of horizons crosses; see Checks.",
+                "{count} of {total} pairs of horizons cross; see Checks.",
+                count=len(crossing),
+                total=len(orders),
+            )
+            self.told.emit(spoken(text))
         else:
             self.told.emit(self.tr("No two horizons cross."))
 

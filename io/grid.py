@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Verbatim, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.io.horizons import HorizonNames
@@ -92,8 +92,9 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
         journal.add(
             "note",
             source.name,
-            message(
+            plural_message(
                 "import.nodes-no-data-no",
+                "{count} of {total} nodes has no data and makes no point",
                 "{count} of {total} nodes have no data and make no points",
                 count=missing,
                 total=known.size,

@@ -61,15 +61,11 @@ def pick(kind: str, found: Mapping[str, Any], wanted: str | None, file: Path) ->
         return next(iter(found.items()))
     if wanted is not None and wanted in found:
         return wanted, found[wanted]
-    reason = (
-        message("cli.not-in-file", "There is no {kind} '{name}'", kind=kind, name=Verbatim(wanted))
-        if wanted
-        else message(
-            "cli.several-in-file",
-            "Found in the file, where one is needed: {count} × {kind}",
-            count=len(found),
-            kind=kind,
-        )
-    )
+    if wanted:
+        reason = message("cli.not-in-file", "There is no {kind} '{name}'", kind=kind, name=Verbatim(wanted))
+    elif kind == "surface":
+        reason = message("cli.surfaces-in-file", "The file has {count} surfaces; one is needed", count=len(found))
+    else:
+        reason = message("cli.horizons-in-file", "The file has {count} horizons; one is needed", count=len(found))
     remedy = message("cli.choose-with-horizon", "Choose with --horizon: {names}.", names=", ".join(found))
     raise InputError(reason, remedy, file=str(file))

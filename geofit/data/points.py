@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import PointsError
 from geofit.data.labels import Labels
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Verbatim, message, plural_message
 
 __all__ = ["KINDS", "PointSet"]
 
@@ -102,11 +102,13 @@ class PointSet:
         bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         if bad.size:
             raise PointsError(
-                message(
+                plural_message(
                     "points.points-not-finite-first",
+                    "{count} of {total} points is not finite, at index {index}: {place}. Remove or complete it before "
+                    "fitting.",
                     "{count} of {total} points are not finite, the first at index {index}: {place}. Remove or "
                     "complete them before fitting.",
-                    count=bad.size,
+                    count=int(bad.size),
                     total=len(xyz),
                     index=bad[0],
                     place=xyz[bad[0]].tolist(),

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import ExactnessError, FitError, PointsError
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
@@ -196,11 +196,7 @@ def _with_note(surface: HorizonFit, note: Message) -> HorizonFit:
 
 def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     if len(points) < 3:
-        given = (
-            message("fit.given-point", "{count} point given", count=1)
-            if len(points) == 1
-            else message("fit.given-points", "{count} points given", count=len(points))
-        )
+        given = plural_message("fit.given-points", "{count} point given", "{count} points given", count=len(points))
         text = message(
             "fit.least-needed-lay-surface",
             "{given}; at least 3 are needed to lay a surface. Check the horizon's name and the filters of the import.",

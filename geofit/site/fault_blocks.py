@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, InputError
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
@@ -203,8 +203,12 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
             raise FitError(text)
         if len(mine) < FEW:
             notes.append(
-                message(
-                    "site.rests-points", "{block} rests on {count} points only", block=title, count=len(mine)
+                plural_message(
+                    "site.rests-points",
+                    "{block} rests on {count} point only",
+                    "{block} rests on {count} points only",
+                    block=title,
+                    count=len(mine),
                 ).with_severity("warning")
             )
     rows = tuple(tuple(row) for row in signs[order].tolist())

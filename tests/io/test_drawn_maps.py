@@ -240,7 +240,9 @@ def test_a_grid_is_a_horizon(form, folder):
     np.testing.assert_allclose(points.xyz[0], [500100, 3100120, 10])
     np.testing.assert_allclose(points.xyz[-1], [500130, 3100100, 33])
     assert points.row.tolist() == [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12]
-    notes = [issue.reason for issue in read.issues if issue.file == name and issue.reason.code == "import.nodes-no-data-no"]
+    notes = [
+        issue.reason for issue in read.issues if issue.file == name and issue.reason.code == "import.nodes-no-data-no"
+    ]
     assert [dict(note.params) for note in notes] == [{"count": 1, "total": 12}]
     found = import_files([folder / name, folder / "ground.asc"], folder / "s.toml",
                          mappings=[ColumnMapping(file="base.*", kind="grid")])  # fmt: skip

@@ -94,7 +94,7 @@ def test_a_reason_that_ends_with_a_full_stop_gets_no_second_one():
 def test_columns_keys_and_names_stay_as_they_are():
     assert translate(Verbatim("north"), ZH) == "north" != translate("north", ZH)
     assert translate((Verbatim("core"), message("place.row", "row {row}", row=2)), ZH) == "core，第 2 行"
-    assert translate((), ZH) == ""
+    assert translate((), ZH) == "()"
 
 
 @pytest.mark.parametrize(
