@@ -93,9 +93,16 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
                     total=90,
                 ),
             ),
-            Check("above ground", None, float("nan"), float("nan"), "m", "no ground surface was given"),
+            Check(
+                "above ground",
+                None,
+                float("nan"),
+                float("nan"),
+                "m",
+                message("test.text", "no ground surface was given"),
+            ),
         ),
-        conflicts=(Conflict(130, 131, 0.8, "the borehole is more exact than the section"),),
+        conflicts=(Conflict(130, 131, 0.8, message("test.text", "the borehole is more exact than the section")),),
     )
     corners = ((0.0, -600.0), (800.0, -600.0), (800.0, 600.0), (0.0, 600.0))
     surface = HorizonFit(
@@ -103,7 +110,12 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         points=points,
         settings=FitSettings(epsilon=epsilon),
         name=name,
-        partition=Partition(tuple((x + ORIGIN[0], y + ORIGIN[1]) for x, y in corners), 120, 80, "Dense in the middle."),
+        partition=Partition(
+            tuple((x + ORIGIN[0], y + ORIGIN[1]) for x, y in corners),
+            120,
+            80,
+            message("test.text", "Dense in the middle."),
+        ),
         core=core,
         accuracy=accuracy,
         diagnostics={"smoothing": 0.0123, "frame": "map", "iterations": 3},
@@ -134,7 +146,7 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
     back = ReadBack(
         f"{name}.step", "cd" * 32, 3, total.sigma, 3e-9, total.max_abs, accuracy.seams, True, 8, 8, 1e-7,
         False,
-        (Check("free edges", True, 8, 8, "", "all on the outline"),),
+        (Check("free edges", True, 8, 8, "", message("test.text", "all on the outline")),),
     )  # fmt: skip
     return HorizonResult(surface, site, back, equal_accuracy(surface, 0.1), 123_456, {"fit": 0.5, "pictures": 1.25})
 
