@@ -11,6 +11,8 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
+from geofit.data.messages import message
+from geofit.gui.words import shown_error
 from geofit.gui.worker import Task, run, run_apart
 
 __all__ = ["Activity"]
@@ -101,7 +103,7 @@ class Activity(QObject):
                 on_done=job.on_done,
                 on_failed=job.on_failed or partial(self._fail, job.title),
                 on_progress=self.progressed.emit,
-                on_cancelled=partial(_LOG.info, "Stopped: %s", job.title),
+                on_cancelled=partial(_LOG.info, message("log.stopped", "Stopped: {task}", task=job.title)),
             )
             self._task.ended.connect(self._after)
             # Not before there is a task: who hears of it asks whether something can be stopped.
@@ -114,5 +116,5 @@ class Activity(QObject):
         self._next()
 
     def _fail(self, title: str, error: Exception) -> None:
-        _LOG.error("%s: %s", title, error)
+        _LOG.error(message("log.task-error", "{task}: {error}", task=title, error=shown_error(error)))
         self.failed.emit(title, error)

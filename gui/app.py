@@ -10,6 +10,7 @@ from pathlib import Path
 
 from geofit import __version__
 from geofit.data.errors import GeofitError
+from geofit.data.messages import message
 from geofit.gui.ready import require_display, require_packages
 
 __all__ = ["main", "start"]
@@ -28,7 +29,13 @@ def start(file: Path | None) -> int:
     """Open the window, on a file if one is given; say on stderr what is missing if it cannot open, and return 2."""
     try:
         if file is not None and not file.is_file():
-            raise GeofitError(f"There is no file {file}. Give a site file (site.toml) or a project (*.geofit).")
+            raise GeofitError(
+                message(
+                    "window.no-such-file",
+                    "There is no file {file}. Give a site file (site.toml) or a project (*.geofit).",
+                    file=str(file),
+                )
+            )
         require_packages()
         require_display()
         from geofit.gui.desktop import Desktop

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from geofit.data.errors import GeofitError
 from geofit.data.files import file_stems
+from geofit.data.messages import message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity
 from geofit.gui.preferences import Preferences
@@ -141,7 +142,9 @@ class Delivering(QObject):
     def _surfaces(self) -> Mapping[str, HorizonFit]:
         surfaces = self._document.surfaces()
         if not surfaces:
-            self.refused.emit(GeofitError(self.tr("There is no surface to write yet. Press Fit first.")))
+            self.refused.emit(
+                GeofitError(message("window.no-surface-to-write", "There is no surface to write yet. Press Fit first."))
+            )
         return surfaces
 
     def _written(self, files: list[Path]) -> None:
@@ -149,4 +152,4 @@ class Delivering(QObject):
         names = ", ".join(file.name for file in files)
         self.told.emit(self.tr("Wrote {names}.").format(names=names))
         for file in files:
-            _LOG.info("Wrote %s", file)
+            _LOG.info(message("log.wrote", "Wrote {file}", file=str(file)))

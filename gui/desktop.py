@@ -14,6 +14,7 @@ from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QApplication
 
 from geofit import __version__
+from geofit.data.messages import message
 from geofit.gui.icons import application_icon
 from geofit.gui.language import apply_language
 from geofit.gui.main_window import MainWindow
@@ -22,6 +23,7 @@ from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
 from geofit.gui.theme import apply_theme, missing_chinese, set_font
 from geofit.gui.view3d.opengl import require_opengl
+from geofit.gui.words import shown_error
 from geofit.gui.worker import finish_all, warm
 from geofit.project.building import get_ready
 
@@ -78,8 +80,11 @@ class Desktop(QObject):
             warm(get_ready)
         if missing_chinese():
             _LOG.warning(
-                "No font on this machine has Chinese characters: they are shown as boxes. Install one "
-                "(Debian and Ubuntu: apt-get install fonts-noto-cjk) and start again."
+                message(
+                    "log.no-chinese-font",
+                    "No font on this machine has Chinese characters: they are shown as boxes. Install one "
+                    "(Debian and Ubuntu: apt-get install fonts-noto-cjk) and start again.",
+                )
             )
             self.window.panels.reveal("log")
         QTimer.singleShot(0, self, lambda: self._begin(file))
@@ -124,5 +129,5 @@ class Desktop(QObject):
             self.window.leave_without_asking()
             return
         traceback.print_exception(kind, error, trace)
-        _LOG.error("%s: %s", kind.__name__, error)
+        _LOG.error(message("log.task-error", "{task}: {error}", task=kind.__name__, error=shown_error(error)))
         self.window.fail("", error)

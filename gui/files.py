@@ -9,6 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
 
+from geofit.data.messages import Verbatim, message, plural_message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
@@ -17,6 +18,7 @@ from geofit.gui.dialogs.recovery import RecoveryDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
+from geofit.gui.words import spoken
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Recipe
 from geofit.project.saving import Opened, Written, read_project, read_surfaces, save_state
@@ -185,9 +187,18 @@ class Files(QObject):
     def _recovered(self, session: Unfinished, site: Site) -> None:
         count = self._session.resume(session, site)
         self._fitting.make_missing()
-        self.told.emit(self.tr("Brought back, {count} steps.").format(count=count))
+        back = plural_message(
+            "session.brought-back", "Brought back, {count} step.", "Brought back, {count} steps.", count=count
+        )
+        self.told.emit(spoken(back))
         for name in self._document.lost():
-            _LOG.warning("The data of %s have changed since: its surface cannot be made again as it was. Fit it.", name)
+            _LOG.warning(
+                message(
+                    "log.data-changed",
+                    "The data of {name} have changed since: its surface cannot be made again as it was. Fit it.",
+                    name=Verbatim(name),
+                )
+            )
 
     def _opened(self, path: Path, found: Site | Opened) -> None:
         self._preferences.opened(path)
@@ -198,7 +209,14 @@ class Files(QObject):
             site = found.site
             self._session.begin(site, found.site_file, found.state, path)
             for file, what in found.changed.items():
-                _LOG.warning("%s: %s since the project was saved.", file, what)
+                _LOG.warning(
+                    message(
+                        "log.file-changed",
+                        "{file}: {change} since the project was saved.",
+                        file=Verbatim(file),
+                        change=what,
+                    )
+                )
             if found.state.recipes:
                 title = self.tr("Read the surfaces of {name}").format(name=path.name)
                 parted = self._document.site
@@ -206,10 +224,26 @@ class Files(QObject):
                     title, read_surfaces, found.project, path.parent, parted, on_done=self._surfaces_read, apart=True
                 )
         errors = sum(issue.severity == "error" for issue in site.issues)
-        text = self.tr("{name}: {horizons} horizons, {errors} rows not used.")
-        self.told.emit(text.format(name=site.name, horizons=len(site.horizons), errors=errors))
+        horizons = plural_message("count.horizons", "{count} horizon", "{count} horizons", count=len(site.horizons))
+        holes = plural_message("count.holes", "{count} hole", "{count} holes", count=len(site.holes))
+        rows = plural_message("count.rows", "{count} row", "{count} rows", count=errors)
+        opened = message(
+            "session.opened",
+            "{name}: {horizons}, {rows} not used.",
+            name=Verbatim(site.name),
+            horizons=horizons,
+            rows=rows,
+        )
+        self.told.emit(spoken(opened))
         _LOG.info(
-            "Opened %s: %d horizons, %d holes, %d rows not used", path, len(site.horizons), len(site.holes), errors
+            message(
+                "log.opened",
+                "Opened {path}: {horizons}, {holes}, {rows} not used",
+                path=str(path),
+                horizons=horizons,
+                holes=holes,
+                rows=rows,
+            )
         )
 
     def _surfaces_read(self, surfaces: dict[Recipe, HorizonFit]) -> None:
@@ -222,7 +256,7 @@ class Files(QObject):
         self._session.saved(written.path, written.state)
         self._preferences.opened(written.path)
         self.told.emit(self.tr("Saved {name}.").format(name=written.path.name))
-        _LOG.info("Saved %s", written.path)
+        _LOG.info(message("log.saved", "Saved {path}", path=str(written.path)))
         then, self._after_saving = self._after_saving, None
         if then is not None and not self._document.dirty:
             then()

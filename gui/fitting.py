@@ -9,7 +9,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from geofit.data.accuracy import Accuracy
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.prediction import OffData
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
@@ -102,7 +102,7 @@ class Fitting(QObject):
     def _parted(self, found: Parted) -> None:
         document = self._document
         for note in found.notes:
-            _LOG.info("%s", spoken(note))
+            _LOG.log(logging.INFO if note.severity == "info" else logging.WARNING, note)
         for recipe, surface in found.faults.items():
             self._fitted(recipe, surface)
         if not found.blocks:
@@ -131,7 +131,7 @@ class Fitting(QObject):
 
     def _thrown(self, cuts: tuple[FaultCut, ...]) -> None:
         for cut in cuts:
-            _LOG.info("%s", spoken(cut.text))
+            _LOG.info(cut.text)
         if cuts:
             self.displaced.emit(cuts)
             self.told.emit(" · ".join(spoken(cut.text) for cut in cuts))
@@ -234,11 +234,16 @@ class Fitting(QObject):
         recipe = self._document.state.recipes.get(command.horizon)
         surface = self._document.shelf.surface(recipe)
         if recipe is None or surface is None:
-            text = said("'{name}' has no surface to adjust. Fit it first.", name=command.horizon)
+            text = message(
+                "project.no-surface-adjust-fit",
+                "'{name}' has no surface to adjust. Fit it first.",
+                name=command.horizon,
+            )
             self.refused.emit(DocumentError(text))
             return None
         if surface.model is None and not self._document.holds(recipe):
-            text = said(
+            text = message(
+                "window.read-file-data-changed",
                 "'{name}' was read from a file, and its data have changed since. Fit it again, then adjust.",
                 name=command.horizon,
             )
@@ -248,7 +253,14 @@ class Fitting(QObject):
 
     def _edited(self, command: Command, former: Recipe, recipe: Recipe, before: Accuracy, surface: HorizonFit) -> None:
         if self._document.state.recipes.get(former.horizon) != former:
-            self.refused.emit(DocumentError("The surface changed while it was adjusted. Adjust it once more."))
+            self.refused.emit(
+                DocumentError(
+                    message(
+                        "window.surface-changed-adjusted-adjust",
+                        "The surface changed while it was adjusted. Adjust it once more.",
+                    )
+                )
+            )
             return
         self._document.put(recipe, surface)
         self.push(command)
@@ -258,7 +270,9 @@ class Fitting(QObject):
         recipe = self._document.state.recipes.get(name)
         surface = self._document.shelf.surface(recipe)
         if recipe is None or surface is None:
-            text = said("'{name}' has no surface to examine. Fit it first.", name=name)
+            text = message(
+                "window.no-surface-examine-fit", "'{name}' has no surface to examine. Fit it first.", name=name
+            )
             self.refused.emit(DocumentError(text))
             return None
         return examined, (recipe, surface)

@@ -8,6 +8,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QDialog, QInputDialog, QWidget
 
+from geofit.data.messages import Verbatim, message, plural_message
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity
@@ -96,11 +97,16 @@ class Ordering(QObject):
         unready = [name for name, surface in surfaces.items() if surface.model is None]
         if len(surfaces) < 2 or unready:
             text = (
-                self.tr("'{name}' was read from a file and not fitted here. Fit it again, then push apart.").format(
-                    name=unready[0]
+                message(
+                    "window.horizon-not-fitted-here",
+                    "'{name}' was read from a file and not fitted here. Fit it again, then push apart.",
+                    name=Verbatim(unready[0]),
                 )
                 if unready
-                else self.tr("Two fitted horizons are needed to push them apart. Press Fit all first.")
+                else message(
+                    "window.two-fitted-horizons-needed",
+                    "Two fitted horizons are needed to push them apart. Press Fit all first.",
+                )
             )
             self.refused.emit(DocumentError(text))
             return
@@ -119,20 +125,42 @@ class Ordering(QObject):
         self._panels.reveal("checks")
         crossing = [order for order in orders if order.crossings]
         for order in crossing:
-            _LOG.warning("%s and %s cross at %d places", order.upper, order.lower, len(order.crossings))
+            _LOG.warning(
+                plural_message(
+                    "log.horizons-cross",
+                    "{upper} and {lower} cross at {count} place",
+                    "{upper} and {lower} cross at {count} places",
+                    count=len(order.crossings),
+                    upper=Verbatim(order.upper),
+                    lower=Verbatim(order.lower),
+                )
+            )
         if crossing:
-            text = self.tr("{count} of {all} pairs of horizons cross; see Checks.")
-            self.told.emit(text.format(count=len(crossing), all=len(orders)))
+            text = plural_message(
+                "order.pairs-cross",
+                "{count} of {total} pairs of horizons crosses; see Checks.",
+                "{count} of {total} pairs of horizons cross; see Checks.",
+                count=len(crossing),
+                total=len(orders),
+            )
+            self.told.emit(spoken(text))
         else:
             self.told.emit(self.tr("No two horizons cross."))
 
     def _repaired(self, former: dict[str, HorizonFit], minimum: float, found: Repair) -> None:
         document = self._document
         if any(document.surface(name) is not surface for name, surface in former.items()):
-            self.refused.emit(DocumentError(self.tr("A surface changed meanwhile. Push the horizons apart once more.")))
+            self.refused.emit(
+                DocumentError(
+                    message(
+                        "window.surface-changed-meanwhile",
+                        "A surface changed meanwhile. Push the horizons apart once more.",
+                    )
+                )
+            )
             return
         for one in found.contradictions:
-            _LOG.warning("%s", spoken(one.text))
+            _LOG.warning(one.text)
         if found.contradictions:
             self._panels.reveal("log")
         if not found.moved:

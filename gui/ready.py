@@ -8,6 +8,7 @@ import os
 import sys
 
 from geofit.data.errors import MissingDependencyError
+from geofit.data.messages import message, plural_message
 
 __all__ = ["INSTALL", "require_display", "require_packages"]
 
@@ -30,8 +31,14 @@ def require_packages() -> None:
     missing = [name for name in ("PySide6", "pyvistaqt") if not _installed(name)]
     if missing:
         raise MissingDependencyError(
-            f"The windows need {' and '.join(missing)}, which {'is' if len(missing) == 1 else 'are'} not installed. "
-            f"Install with: {INSTALL}"
+            plural_message(
+                "window.packages-missing",
+                "The windows need {names}, which is not installed. Install with: {install}",
+                "The windows need {names}, which are not installed. Install with: {install}",
+                count=len(missing),
+                names=" and ".join(missing),
+                install=INSTALL,
+            )
         )
 
 
@@ -54,19 +61,31 @@ def require_display() -> None:
         return
     if not os.environ.get("DISPLAY") and not os.environ.get("WAYLAND_DISPLAY"):
         raise MissingDependencyError(
-            "There is no display: neither DISPLAY nor WAYLAND_DISPLAY is set. Start geofit-gui on a desktop, over "
-            "'ssh -X', or under a virtual screen (xvfb-run geofit-gui). The command line needs no display: geofit -h."
+            message(
+                "window.no-display-neither-display",
+                "There is no display: neither DISPLAY nor WAYLAND_DISPLAY is set. Start geofit-gui on a desktop, over "
+                "'ssh -X', or under a virtual screen (xvfb-run geofit-gui). The command line needs "
+                "no display: geofit -h.",
+            )
         )
     if not os.environ.get("WAYLAND_DISPLAY") and not _answers():
         raise MissingDependencyError(
-            f"The display '{os.environ['DISPLAY']}' does not answer. Check DISPLAY, log in on that screen, or use a "
-            "virtual one (xvfb-run geofit-gui)."
+            message(
+                "window.display-does-not-answer",
+                "The display '{display}' does not answer. Check DISPLAY, log in on that screen, or use a virtual one "
+                "(xvfb-run geofit-gui).",
+                display=os.environ["DISPLAY"],
+            )
         )
     missing = [package for name, package in XCB.items() if ctypes.util.find_library(name) is None]
     if missing and not os.environ.get("WAYLAND_DISPLAY"):
         raise MissingDependencyError(
-            f"Qt needs libraries that this machine lacks. Install them (Debian and Ubuntu: apt-get install "
-            f"{' '.join(missing)}) and start again."
+            message(
+                "window.qt-libraries-missing",
+                "Qt needs libraries that this machine lacks. Install them (Debian and Ubuntu: apt-get install "
+                "{packages}) and start again.",
+                packages=" ".join(missing),
+            )
         )
 
 

@@ -8,8 +8,9 @@ from pathlib import Path
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
+from geofit.data.messages import message
 from geofit.data.site import Site
-from geofit.gui.words import spoken
+from geofit.gui.words import shown_error, spoken
 from geofit.project.commands import Command
 from geofit.project.document import Document
 from geofit.project.journal import Journal, Unfinished
@@ -40,7 +41,13 @@ class Session(QObject):
         try:
             self._journal = Journal(self._folder, self.document.state, site_file, project_file)
         except OSError as error:
-            _LOG.warning("There is no journal, so that a crash would lose unsaved work: %s", error)
+            _LOG.warning(
+                message(
+                    "log.no-journal",
+                    "There is no journal, so that a crash would lose unsaved work: {error}",
+                    error=shown_error(error),
+                )
+            )
 
     def resume(self, unfinished: Unfinished, site: Site) -> int:
         """Do again what a session did that was cut off; return how many steps came back."""
@@ -81,7 +88,13 @@ class Session(QObject):
                 self._journal.redone()
         except OSError as error:
             self._journal = None
-            _LOG.warning("The journal cannot be written any more, so that a crash would lose unsaved work: %s", error)
+            _LOG.warning(
+                message(
+                    "log.journal-lost",
+                    "The journal cannot be written any more, so that a crash would lose unsaved work: {error}",
+                    error=shown_error(error),
+                )
+            )
 
 
 class _Step(QUndoCommand):

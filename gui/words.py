@@ -3,26 +3,20 @@
 from __future__ import annotations
 
 import re
-from dataclasses import replace
-
-from PySide6.QtCore import QCoreApplication
 
 from geofit.data.errors import GeofitError
-from geofit.data.messages import Verbatim, said
-from geofit.gui.sentences import SENTENCES
-from geofit.report.language import EN, ZH, Language, tell
+from geofit.data.languages import EN, ZH, Language, translate
+from geofit.data.messages import Message, Verbatim, message
 
-__all__ = ["bare", "failure", "speak", "spoken", "spoken_language"]
+__all__ = ["bare", "failure", "shown_error", "speak", "spoken", "spoken_language"]
 
 _language: Language = EN
 
 
 def speak(code: str) -> None:
-    """Choose the language of :func:`spoken`: "en" or "zh_CN", whose translations must be at hand."""
+    """Choose the language of :func:`spoken`: "en" or "zh_CN"."""
     global _language
-    own = {text: QCoreApplication.translate("Said", text) for text in SENTENCES}
-    texts = {text: told for text, told in own.items() if told != text}
-    _language = replace(ZH, texts={**ZH.texts, **texts}) if code.startswith("zh") else EN
+    _language = ZH if code.startswith("zh") else EN
 
 
 def spoken_language() -> Language:
@@ -30,21 +24,25 @@ def spoken_language() -> Language:
     return _language
 
 
-def spoken(text: str) -> str:
-    """Return a sentence of the core as it is shown; what nobody translated stays English."""
-    return tell(text, _language)
+def spoken(text: Message | str | GeofitError) -> str:
+    """Return a message, a term or the message of an error in the user's language."""
+    return translate(text, _language)
+
+
+def shown_error(error: BaseException) -> Message | str:
+    """Return what an error says: geofit's own message, the system's with the file, or Python's with its kind."""
+    if isinstance(error, GeofitError):
+        return error.message
+    if isinstance(error, OSError) and error.strerror:
+        if not error.filename:
+            return error.strerror
+        return message("error.at-place", "{place}: {sentence}", place=Verbatim(error.filename), sentence=error.strerror)
+    return Verbatim(error if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
 
 
 def failure(error: BaseException) -> str:
-    """Return what an error says: geofit's own sentence, the system's with the file, or Python's with its kind."""
-    if isinstance(error, GeofitError):
-        return spoken(str(error))
-    if isinstance(error, OSError) and error.strerror:
-        reason = error.strerror
-        return spoken(
-            said("{place}: {sentence}", place=Verbatim(error.filename), sentence=reason) if error.filename else reason
-        )
-    return str(error) if isinstance(error, OSError) else f"{type(error).__name__}: {error}"
+    """Return what an error says in the user's language."""
+    return spoken(shown_error(error))
 
 
 def bare(text: str) -> str:

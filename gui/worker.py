@@ -22,7 +22,7 @@ from PySide6.QtCore import QCoreApplication, QObject, QRunnable, Qt, QThreadPool
 from shiboken6 import isValid
 
 from geofit.data.errors import Cancelled, GeofitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["Task", "finish_all", "run", "run_apart", "tasks", "warm"]
 
@@ -106,14 +106,18 @@ class _Job(QRunnable):
         """Run the function; whatever happens is told in the window's thread."""
         try:
             if self._line.stop.is_set():
-                raise Cancelled("Stopped before it began.")
+                raise Cancelled(message("window.stopped-began", "Stopped before it began."))
             result = self._function(*self._args, progress=self._line.listen)
         except Cancelled as stop:
             outcome: tuple[str, object] = ("cancelled", stop)
         except GeofitError as error:
             outcome = ("failed", error)
         except Exception as error:  # the last frame of this thread: the window must hear of any failure
-            _LOG.exception("%s failed", self._title or getattr(self._function, "__name__", "task"))
+            _LOG.exception(
+                message(
+                    "log.task-failed", "{task} failed", task=self._title or getattr(self._function, "__name__", "task")
+                )
+            )
             outcome = ("failed", error)
         else:
             outcome = ("done", result)
@@ -245,7 +249,7 @@ class _Helper:
         name, fraction = "start", 0.0
         while True:
             if progress(name, fraction) is False:
-                raise Cancelled("Stopped by the caller.")
+                raise Cancelled(message("window.stopped-caller", "Stopped by the caller."))
             if not self.pipe.poll(_LOOK):
                 continue
             try:
@@ -253,7 +257,8 @@ class _Helper:
             except (EOFError, OSError):
                 self._process.join(5)
                 raise GeofitError(
-                    said(
+                    message(
+                        "window.process-work-ended-exit",
                         "The process that did the work ended by itself (exit code {code}). Memory may have run out: "
                         "close other programs and try again.",
                         code=self._process.exitcode,

@@ -52,7 +52,7 @@ class Workspace(QObject):
             "histogram": self._dock("histogram", self.tr("Histogram"), self.histogram),
             "plan": self._dock("plan", self.tr("Plan"), self.plan),
             "seams": self._dock("seams", self.tr("Seams"), self.seams),
-            "checks": self._dock("checks", self.tr("Checks"), self.checks),
+            "checks": self._dock("checks", self.tr("Checks", "Workspace"), self.checks),
             "offdata": self._dock("offdata", self.tr("Off the data"), self.offdata),
             "log": self._dock("log", self.tr("Log"), self.log),
         }

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import EMPTY, Message, message
 from geofit.data.points import PointSet
 from geofit.data.site import Hole
 from geofit.io.axes import Region
@@ -41,13 +41,15 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
         xyz = np.array(entity.vertices, dtype=np.float64).reshape(-1, 3)
         trouble = _no_path(entity, xyz, region)
         if trouble:
-            remedy = said("Draw the adit as an open 3D polyline on a layer with its name.")
+            remedy = message(
+                "import.draw-adit-open-3d", "Draw the adit as an open 3D polyline on a layer with its name."
+            )
             _list(journal, source, entity, trouble, remedy)
             listed += entity.size
             continue
         keep = np.append(True, (np.diff(xyz, axis=0) != 0).any(axis=1))
         for k in np.flatnonzero(~keep).tolist():
-            reason = said("The corner repeats the one before")
+            reason = message("import.corner-repeats", "The corner repeats the one before")
             journal.add("note", source.name, reason, row=entity.first + k, column=entity.layer)
         listed += int((~keep).sum())
         same = sum(adit.name == entity.layer or adit.name.startswith(f"{entity.layer} ") for adit in adits)
@@ -55,23 +57,31 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
         adits.append(Hole(name, "adit", chainage(xyz[keep]), xyz[keep]))
     journal.count(source.name, sum(entity.size for entity in entities), listed)
     if not adits:
-        raise InputError("No polyline of the drawing is an adit", "See the listed entities.", file=source.name)
+        raise InputError(
+            message("import.no-polyline-drawing-adit", "No polyline of the drawing is an adit"),
+            message("import.see-listed-entities", "See the listed entities."),
+            file=source.name,
+        )
     return tuple(adits)
 
 
-def _no_path(entity: Entity, xyz: Floats, region: Region | None) -> str:
+def _no_path(entity: Entity, xyz: Floats, region: Region | None) -> Message:
     if entity.type == "POINT" or (trouble := problem(entity)):
-        return said("A {entity} is no path", entity=entity.type) if entity.type == "POINT" else trouble
+        return (
+            message("import.no-path", "A {entity} is no path", entity=entity.type)
+            if entity.type == "POINT"
+            else trouble
+        )
     if np.isnan(xyz[:, 2]).any():
-        return said("The polyline has no elevation")
+        return message("import.polyline-no-elevation", "The polyline has no elevation")
     if not (np.diff(xyz, axis=0) != 0).any():
-        return said("The polyline has one place only")
+        return message("import.polyline-place", "The polyline has one place only")
     if region is not None:
         west, east, south, north = region
         x, y = xyz[:, :2].mean(axis=0)
         if not (west <= x <= east and south <= y <= north):
-            return said("The polyline lies far outside the study area")
-    return ""
+            return message("import.polyline-lies-far-outside", "The polyline lies far outside the study area")
+    return EMPTY
 
 
 def drawn_contacts(
@@ -89,22 +99,32 @@ def drawn_contacts(
         horizon = horizons.match(entity.words) if entity.words else None
         if horizon is None or entity.words in (entity.layer, *(adit.name for adit in adits)):
             what = (
-                said("'{words}' is no horizon", words=entity.words)
+                message("import.no-horizon", "'{words}' is no horizon", words=entity.words)
                 if entity.words
-                else said("A {entity} names no horizon", entity=entity.type)
+                else message("import.names-no-horizon", "A {entity} names no horizon", entity=entity.type)
             )
-            _list(journal, source, entity, what, said("Write the horizon as text beside the adit."), "note")
+            _list(
+                journal,
+                source,
+                entity,
+                what,
+                message("import.write-horizon-text-beside", "Write the horizon as text beside the adit."),
+                "note",
+            )
             listed += entity.size
             continue
         adit, place, apart = _nearest(adits, np.array(entity.vertices[0][:2]))
         if not apart <= BESIDE:
-            reason = said(
+            reason = message(
+                "import.contact-stands-nearest-adit",
                 "The contact '{words}' stands {apart:.1f} m from the nearest adit, {adit}",
                 words=entity.words,
                 apart=apart,
                 adit=adit.name,
             )
-            remedy = said("Place it within {reach:g} m of the adit's axis.", reach=BESIDE)
+            remedy = message(
+                "import.place-within-adit-axis", "Place it within {reach:g} m of the adit's axis.", reach=BESIDE
+            )
             _list(journal, source, entity, reason, remedy)
             listed += 1
             continue
@@ -139,7 +159,9 @@ def _nearest(adits: tuple[Hole, ...], xy: Floats) -> tuple[Hole, Floats, float]:
     return best
 
 
-def _list(journal: Journal, source: Source, entity: Entity, reason: str, remedy: str, severity: str = "error") -> None:
+def _list(
+    journal: Journal, source: Source, entity: Entity, reason: Message, remedy: Message, severity: str = "error"
+) -> None:
     journal.add(
         "note" if severity == "note" else "error",
         source.name,

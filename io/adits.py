@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.site import Hole
 from geofit.io.adit_dxf import draw_adits, drawn_contacts
@@ -34,7 +34,11 @@ def load_adits(source: Source, journal: Journal, region: Region | None = None) -
     adits = [Hole(adit, "adit", chainage(xyz), xyz) for adit, xyz in lines.items()]
     rows.close()
     if not adits:
-        raise InputError("No adit has two usable corners", "See the listed rows.", file=source.name)
+        raise InputError(
+            message("import.no-adit-two-usable", "No adit has two usable corners"),
+            message("import.see-listed-rows", "See the listed rows."),
+            file=source.name,
+        )
     return tuple(adits)
 
 
@@ -57,8 +61,13 @@ def load_adit_contacts(
             rows.reject(
                 i,
                 "chainage",
-                said("The chainage is not on adit {adit}, which is {length:.2f} m long", adit=name[i], length=length),
-                "Correct the chainage, or complete the adit's path.",
+                message(
+                    "import.chainage-not-adit-long",
+                    "The chainage is not on adit {adit}, which is {length:.2f} m long",
+                    adit=name[i],
+                    length=length,
+                ),
+                message("import.correct-chainage-complete-adit", "Correct the chainage, or complete the adit's path."),
             )
             continue
         xyz[i] = along(adit.xyz, s[i : i + 1])[0]

@@ -10,7 +10,7 @@ import csv
 from dataclasses import dataclass, field
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Message, Verbatim, message
 from geofit.io.cells import table_of
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode, is_number
@@ -26,7 +26,7 @@ class _Group:
     header: list[str] = field(default_factory=list)
     units: list[str] = field(default_factory=list)
     rows: list[tuple[int, list[str]]] = field(default_factory=list)
-    odd: list[tuple[int, str, str]] = field(default_factory=list)
+    odd: list[tuple[int, str, Message]] = field(default_factory=list)
 
 
 def group_names(source: Source) -> tuple[str, ...]:
@@ -48,22 +48,30 @@ def read_group(source: Source, journal: Journal) -> Table:
     group = groups.get(source.table)
     if group is None:
         raise InputError(
-            said(
+            message(
+                "import.file-no-group-groups",
                 "The file has no group '{table}'; its groups are {names}",
                 table=Verbatim(source.table),
                 names=", ".join(groups),
             ),
-            "Name one of them.",
+            message("import.name-one", "Name one of them."),
             file=source.name,
         )
     journal.add(
         "note",
         source.name,
-        said("Read as AGS {edition}, {encoding}", edition=edition, encoding=encoding),
-        "State encoding where this is wrong.",
+        message("import.read-ags", "Read as AGS {edition}, {encoding}", edition=edition, encoding=encoding),
+        message("import.state-encoding-wrong", "State encoding where this is wrong."),
     )
     for line, value, reason in group.odd:
-        journal.add("error", source.name, reason, "Correct the line.", row=line, value=value[:120])
+        journal.add(
+            "error",
+            source.name,
+            reason,
+            message("import.correct-line", "Correct the line."),
+            row=line,
+            value=value[:120],
+        )
     return table_of(
         source,
         journal,
@@ -100,8 +108,11 @@ def _parse(text: str, encoding: str, source: Source, journal: Journal) -> tuple[
             _line_of_3(group, number, first, cells, source, journal)
     if not groups:
         raise InputError(
-            "The file has no AGS group",
-            'An AGS file has lines that start with "GROUP" (edition 4) or "**" (edition 3).',
+            message("import.file-no-ags-group", "The file has no AGS group"),
+            message(
+                "import.ags-file-lines-start",
+                'An AGS file has lines that start with "GROUP" (edition 4) or "**" (edition 3).',
+            ),
             file=source.name,
         )
     return groups, edition
@@ -118,7 +129,10 @@ def _line_of_4(group: _Group, number: int, first: str, cells: list[str]) -> None
         case "DATA" if group.header:
             group.rows.append((number, cells[1:]))
         case _:
-            headless, strange = said("The row stands above the headings of its group"), said("This is no AGS 4 line")
+            headless, strange = (
+                message("import.row-stands-above-headings", "The row stands above the headings of its group"),
+                message("import.no-ags-line", "This is no AGS 4 line"),
+            )
             reason = headless if first == "DATA" else strange
             group.odd.append((number, ",".join(cells), reason))
 
@@ -131,7 +145,13 @@ def _line_of_3(group: _Group, number: int, first: str, cells: list[str], source:
     elif first == "<CONT>" and group.rows:
         _continue(group, number, cells, source, journal)
     elif first.startswith("<") or not group.header:
-        group.odd.append((number, ",".join(cells), said("The line continues or heads nothing")))
+        group.odd.append(
+            (
+                number,
+                ",".join(cells),
+                message("import.line-continues-heads-nothing", "The line continues or heads nothing"),
+            )
+        )
     else:
         group.rows.append((number, cells))
 
@@ -148,11 +168,12 @@ def _continue(group: _Group, number: int, cells: list[str], source: Source, jour
                 journal.add(
                     "warning",
                     source.name,
-                    said(
+                    message(
+                        "import.cont-line-gives-number",
                         "The <CONT> line gives another number than the row above, '{number}', which is kept",
                         number=row[j],
                     ),
-                    "Correct one of the two.",
+                    message("import.correct-two", "Correct one of the two."),
                     row=number,
                     column=group.header[j] if j < len(group.header) else "",
                     value=cell,

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.rows import Rows
 
 __all__ = ["Region", "check_axes", "place_in", "region_of"]
@@ -57,7 +57,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     if known and 2 * swapped.sum() > used.size:
         i = int(used[np.flatnonzero(swapped)[0]])
         raise InputError(
-            said(
+            message(
+                "import.look-exchanged-rows-lie",
                 "x and y look exchanged: {count} of {total} rows lie far outside the study area, and inside it "
                 "with x and y swapped, the first at x = {x:.15g}, y = {y:.15g}",
                 count=swapped.sum(),
@@ -65,27 +66,36 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
                 x=x[i],
                 y=y[i],
             ),
-            "x is the easting, y the northing; exchange the columns "
-            "(in many Chinese tables X is the northing and Y the easting).",
+            message(
+                "import.easting-northing-exchange-columns",
+                "x is the easting, y the northing; exchange the columns "
+                "(in many Chinese tables X is the northing and Y the easting).",
+            ),
             file=rows.file,
             row=int(rows.line[i]),
             column=rows.table.header[rows.columns["x"]],
         )
     for i in used[swapped].tolist():
-        rows.reject(i, "x", "x and y look exchanged in this row", "x is the easting, y the northing.")
+        rows.reject(
+            i,
+            "x",
+            message("import.look-exchanged-row", "x and y look exchanged in this row"),
+            message("import.easting-northing", "x is the easting, y the northing."),
+        )
     off = used[far & ~swapped]
     if known and off.size:
         i = int(off[0])
         rows.warn(
             i,
             "x",
-            said(
+            message(
+                "import.rows-far-outside-study",
                 "Rows far outside the study area: {count}, the first at x = {x:.15g}, y = {y:.15g}",
                 count=off.size,
                 x=x[i],
                 y=y[i],
             ),
-            "Check the coordinates and the boundary.",
+            message("import.check-coordinates-boundary", "Check the coordinates and the boundary."),
         )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, listed, said
+from geofit.data.messages import Verbatim, message
 from geofit.data.site import Ground, Hole, ImportIssue, TableCount
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
@@ -179,7 +179,12 @@ def _read_collars(
         _drape(rows, x, y, z, ground)
     end = rows.numbers("depth", required=False)
     for i in np.flatnonzero(end < 0).tolist():
-        rows.reject(i, "depth", "The hole's depth is negative", "Give the length of the hole in metres.")
+        rows.reject(
+            i,
+            "depth",
+            message("import.hole-depth-negative", "The hole's depth is negative"),
+            message("import.give-length-hole-metres", "Give the length of the hole in metres."),
+        )
     check_axes(rows, x, y, region)
     first: dict[str, int] = {}
     places: dict[tuple[float, float, float], int] = {}
@@ -187,28 +192,47 @@ def _read_collars(
         if name[i] in first:
             k = first[name[i]]
             same = (x[i], y[i], z[i]) == (x[k], y[k], z[k])
-            where = said("at the same place") if same else said("at another place")
+            where = (
+                message("import.same-place", "at the same place")
+                if same
+                else message("import.at-other-place", "at another place")
+            )
             rows.reject(
                 i,
                 "hole",
-                said("The hole is listed in row {row} already, {where}", row=rows.line[k], where=where),
-                "Keep one of the rows.",
+                message(
+                    "import.hole-listed-row-already",
+                    "The hole is listed in row {row} already, {where}",
+                    row=rows.line[k],
+                    where=where,
+                ),
+                message("import.keep-rows", "Keep one of the rows."),
             )
             continue
         first[name[i]] = i
         k = places.setdefault((x[i], y[i], z[i]), i)
         if k != i:
-            reason = said(
-                "The collar lies exactly where hole {hole} (row {row}) starts", hole=name[k], row=rows.line[k]
+            reason = message(
+                "import.collar-lies-exactly-hole",
+                "The collar lies exactly where hole {hole} (row {row}) starts",
+                hole=name[k],
+                row=rows.line[k],
             )
             rows.warn(i, "hole", reason)
     attitudes = _collar_stations(rows, name, dip, declination)
     rows.close()
     for i in np.flatnonzero(~rows.ok).tolist():
         if name[i] not in first:
-            journal.refused[name[i]] = listed([Verbatim(rows.file), said("row {row}", row=rows.line[i])])
+            journal.refused[name[i]] = (
+                Verbatim(rows.file),
+                message("place.row", "row {row}", row=int(rows.line[i])),
+            )
     if not first:
-        raise InputError("No row of the collar table can be used", "See the listed rows.", file=source.name) from None
+        raise InputError(
+            message("import.no-row-collar-table", "No row of the collar table can be used"),
+            message("import.see-listed-rows", "See the listed rows."),
+            file=source.name,
+        ) from None
     return {hole: _Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole)) for hole, i in first.items() if rows.ok[i]}
 
 
@@ -218,10 +242,21 @@ def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
     z[blank] = ground.elevation(x[blank], y[blank])
     for i in blank.tolist():
         if np.isnan(z[i]):
-            rows.reject(i, "z", "The collar has no elevation and lies off the ground's grid", "Give its elevation.")
+            rows.reject(
+                i,
+                "z",
+                message(
+                    "import.collar-no-elevation-lies", "The collar has no elevation and lies off the ground's grid"
+                ),
+                message("import.give-elevation", "Give its elevation."),
+            )
         else:
-            reason = said("The collar has no elevation; the ground's, {z:.2f} m, is taken", z=z[i])
-            rows.warn(i, "z", reason, "Give its elevation.", severity="note")
+            reason = message(
+                "import.collar-no-elevation-ground",
+                "The collar has no elevation; the ground's, {z:.2f} m, is taken",
+                z=z[i],
+            )
+            rows.warn(i, "z", reason, message("import.give-elevation", "Give its elevation."), severity="note")
 
 
 def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None, declination: float) -> dict[str, Stations]:
@@ -242,14 +277,20 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
     elevations = [any(word in name for word in ("elev", "高程", "标高")) for name in named]
     if any(elevations) and any("depth" in name or "深" in name for name in named):
         raise InputError(
-            said("'{top}' and '{base}' are not both depths or both elevations", top=headers[0], base=headers[1]),
-            "State columns = { from = ..., to = ... } that are.",
+            message(
+                "import.not-depths-elevations",
+                "'{top}' and '{base}' are not both depths or both elevations",
+                top=headers[0],
+                base=headers[1],
+            ),
+            message("import.state-columns", "State columns = { from = ..., to = ... } that are."),
             file=rows.file,
         )
     if all(elevations):
-        reason = said("by their names")
+        reason = message("import.by-names", "by their names")
     elif sound.sum() >= 3 and falls.sum() > 0.6 * sound.sum() and np.ptp(mouth[sound]) > 0:
-        reason = said(
+        reason = message(
+            "import.because-intervals-descend-collar",
             "because {count} of {total} intervals descend from the collar's elevation",
             count=falls.sum(),
             total=sound.sum(),
@@ -259,8 +300,8 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
     rows.journal.add(
         "warning",
         rows.file,
-        said("The limits are taken as elevations, {reason}", reason=reason),
-        'State measure = "depth" where they are depths.',
+        message("import.limits-taken-elevations", "The limits are taken as elevations, {reason}", reason=reason),
+        message("import.state-measure-depth-depths", 'State measure = "depth" where they are depths.'),
         column=headers[0],
     )
     return True
@@ -281,8 +322,10 @@ def _to_depths(rows: Rows, name: list[str], paths: Mapping[str, WellPath], limit
         mouth = float(path.xyz[0, 2])
         depth[members] = path.depth_of(np.where((z > mouth) & (z < mouth + 0.05), mouth, z))
     for i in np.flatnonzero(np.isnan(depth) & rows.ok).tolist():
-        reason = said("The hole has no elevation {z:g} m below its collar", z=limits[i])
-        rows.reject(i, role, reason, "Correct the elevation.")
+        reason = message(
+            "import.hole-no-elevation-below", "The hole has no elevation {z:g} m below its collar", z=limits[i]
+        )
+        rows.reject(i, role, reason, message("import.correct-elevation", "Correct the elevation."))
     return depth
 
 
@@ -306,23 +349,41 @@ def _read_log(
         (
             top < 0,
             "from",
-            said("The interval starts above the collar"),
-            said("Depths count from the collar, downwards."),
+            message("import.interval-starts-above-collar", "The interval starts above the collar"),
+            message("import.depths-count-collar-downwards", "Depths count from the collar, downwards."),
         ),
-        (base < top, "to", said("The interval is reversed: it ends above its start"), said("Exchange from and to.")),
-        (base == top, "to", said("The interval has no length"), said("Correct from or to.")),
+        (
+            base < top,
+            "to",
+            message("import.interval-reversed-ends-above", "The interval is reversed: it ends above its start"),
+            message("import.exchange-from-to", "Exchange from and to."),
+        ),
+        (
+            base == top,
+            "to",
+            message("import.interval-no-length", "The interval has no length"),
+            message("import.correct-from-to", "Correct from or to."),
+        ),
     ):
         for i in np.flatnonzero(mask & rows.ok).tolist():
             rows.reject(i, role, reason, remedy)
     for i in np.flatnonzero((top > end - DEPTH_TOLERANCE) & rows.ok).tolist():
-        reason = said("The interval starts at or beyond the hole's end at {end:g} m", end=end[i])
-        rows.reject(i, "from", reason, "Correct the depth.")
+        reason = message(
+            "import.interval-starts-beyond-hole",
+            "The interval starts at or beyond the hole's end at {end:g} m",
+            end=end[i],
+        )
+        rows.reject(i, "from", reason, message("import.correct-depth", "Correct the depth."))
     for i in np.flatnonzero((base > end + DEPTH_TOLERANCE) & rows.ok).tolist():
         rows.warn(
             i,
             "to",
-            said("The interval ends {length:.2f} m beyond the hole's end; it is cut there", length=base[i] - end[i]),
-            "Correct the depth of the interval or of the hole.",
+            message(
+                "import.interval-ends-beyond-hole",
+                "The interval ends {length:.2f} m beyond the hole's end; it is cut there",
+                length=base[i] - end[i],
+            ),
+            message("import.correct-depth-interval-hole", "Correct the depth of the interval or of the hole."),
         )
         base[i] = end[i]
     order = np.lexsort((np.arange(len(name)), top, name))
@@ -331,19 +392,23 @@ def _read_log(
         if name[i] == name[k] and top[k] < base[i] - DEPTH_TOLERANCE:
             if (top[i], base[i], code[i]) == (top[k], base[k], code[k]):
                 rows.reject(
-                    k, "from", said("The interval repeats row {row}", row=rows.line[i]), "Remove one of the two."
+                    k,
+                    "from",
+                    message("import.interval-repeats-row", "The interval repeats row {row}", row=rows.line[i]),
+                    message("import.remove-two", "Remove one of the two."),
                 )
                 continue
             rows.warn(
                 k,
                 "from",
-                said(
+                message(
+                    "import.interval-overlaps-row-limits",
                     "The interval overlaps that of row {row} by {length:.2f} m; limits inside the other one are no "
                     "contacts",
                     row=rows.line[i],
                     length=min(base[i], base[k]) - top[k],
                 ),
-                "Correct from or to.",
+                message("import.correct-from-to", "Correct from or to."),
             )
     rows.close()
     order = order[rows.ok[order]]

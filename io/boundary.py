@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.area import fault_of_area
 from geofit.io.columns import BOUNDARY
 from geofit.io.journal import Journal
@@ -59,7 +59,13 @@ def load_boundary(source: Source, journal: Journal) -> Floats:
         corners = _from_table(source, journal)
     if len(corners) > 1 and np.array_equal(corners[0], corners[-1]):
         corners = corners[:-1]
-        journal.add("note", source.name, "The last corner repeats the first; the boundary closes by itself")
+        journal.add(
+            "note",
+            source.name,
+            message(
+                "import.last-corner-repeats-first", "The last corner repeats the first; the boundary closes by itself"
+            ),
+        )
     _check(corners, source.name)
     return corners
 
@@ -69,15 +75,22 @@ def _from_table(source: Source, journal: Journal) -> Floats:
     corners = np.column_stack(rows.places())
     if RING in rows.table.header and len(set(rows.table.columns[rows.table.header.index(RING)])) > 1:
         raise InputError(
-            "The map has several lines or rings; one polygon without holes is needed",
-            "Export the outline of the study area alone.",
+            message(
+                "import.map-several-lines-rings",
+                "The map has several lines or rings; one polygon without holes is needed",
+            ),
+            message("import.export-outline-study-area", "Export the outline of the study area alone."),
             file=source.name,
         )
     rows.close()
     if rows.table.read > rows.ok.sum():
         bad = next(issue for issue in journal.issues if issue.file == source.name and issue.severity == "error")
         raise InputError(
-            said("A corner of the boundary cannot be read: {reason}", reason=bad.reason),
+            message(
+                "import.corner-boundary-cannot-read",
+                "A corner of the boundary cannot be read: {reason}",
+                reason=bad.reason,
+            ),
             bad.remedy,
             file=source.name,
             row=bad.row,
@@ -94,15 +107,19 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         what, line = told_by(error)
         raise InputError(
-            said("This is no GeoJSON polygon: {error}", error=what),
-            "Export one polygon without holes.",
+            message("import.no-geojson-polygon", "This is no GeoJSON polygon: {error}", error=what),
+            message("import.export-polygon-without-holes", "Export one polygon without holes."),
             file=source.name,
             row=line,
         ) from None
     if len(rings) != 1:
         raise InputError(
-            said("The file has {count} rings; one polygon without holes is needed", count=len(rings)),
-            "Export the outline of the study area alone.",
+            message(
+                "import.file-rings-polygon-without",
+                "The file has {count} rings; one polygon without holes is needed",
+                count=len(rings),
+            ),
+            message("import.export-outline-study-area", "Export the outline of the study area alone."),
             file=source.name,
         )
     try:
@@ -111,16 +128,19 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
         corners = np.empty((0, 0))
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
         raise InputError(
-            "A corner of the polygon is no pair of finite numbers",
-            "Export the polygon again.",
+            message("import.corner-polygon-no-pair", "A corner of the polygon is no pair of finite numbers"),
+            message("import.export-polygon-again", "Export the polygon again."),
             file=source.name,
         )
     if np.abs(corners[:, 0]).max() <= 180.0 and np.abs(corners[:, 1]).max() <= 90.0:
         journal.add(
             "warning",
             source.name,
-            "The corners may be longitude and latitude; they are read as metres",
-            "Project them to the site's grid where they are degrees.",
+            message(
+                "import.corners-longitude-latitude-read",
+                "The corners may be longitude and latitude; they are read as metres",
+            ),
+            message("import.project-site-grid-degrees", "Project them to the site's grid where they are degrees."),
         )
     return corners
 
@@ -141,4 +161,8 @@ def _rings(node: Any) -> list[Any]:
 def _check(corners: Floats, name: str) -> None:
     fault = fault_of_area(corners)
     if fault is not None:
-        raise InputError(fault, "List the corners in order around the study area, each once.", file=name)
+        raise InputError(
+            fault,
+            message("import.list-corners-order-around", "List the corners in order around the study area, each once."),
+            file=name,
+        )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, unique_names
@@ -52,8 +52,13 @@ def table_of(
             journal.add(
                 "error",
                 source.name,
-                said("Cells of the row: {count}, of the header: {width}", count=len(cells), width=width),
-                "Complete the header or shorten the row.",
+                message(
+                    "import.cells-row-header",
+                    "Cells of the row: {count}, of the header: {width}",
+                    count=len(cells),
+                    width=width,
+                ),
+                message("import.complete-header-shorten-row", "Complete the header or shorten the row."),
                 row=line,
                 value=" ".join(cells)[:120],
             )
@@ -61,8 +66,12 @@ def table_of(
             kept.append((line, cells))
     if not kept and not malformed:
         raise InputError(
-            said("The table has a header ({names}) but no rows", names=", ".join(header[:40])),
-            "Export the table again with its rows.",
+            message(
+                "import.table-header-no-rows",
+                "The table has a header ({names}) but no rows",
+                names=", ".join(header[:40]),
+            ),
+            message("import.export-table-again-rows", "Export the table again with its rows."),
             file=source.name,
         )
     columns = tuple(tuple(cells[j] if j < len(cells) else "" for _, cells in kept) for j in range(width))

@@ -11,7 +11,7 @@ import numpy as np
 from geofit.caves.shots import ShotList
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message
 from geofit.io.columns import ADIT_PATH, Schema, plain_name
 from geofit.io.formats import read_any_table
 from geofit.io.guess import find_columns
@@ -79,14 +79,19 @@ def read_centreline(
         If the table has no line of two usable stations, or no column with a size.
     """
     if level not in ("axis", "floor"):
-        raise InputError(said("The level '{level}' is unknown", level=level), "Give 'axis' or 'floor'.")
+        raise InputError(
+            message("import.level-unknown", "The level '{level}' is unknown", level=level),
+            message("import.give-axis-or-floor", "Give 'axis' or 'floor'."),
+        )
     source, journal = as_source(source), journal if journal is not None else Journal()
     first_issue, first_count = len(journal.issues), len(journal.counts)
     rows = _rows(source, journal)
     if not any(role in rows.columns for role in _SIZES):
         raise InputError(
-            "The table has no size of the section",
-            "Add a column radius, or width and height, or left, right, up and down.",
+            message("import.table-size-section", "The table has no size of the section"),
+            message(
+                "import.column-radius-width", "Add a column radius, or width and height, or left, right, up and down."
+            ),
             file=source.name,
         )
     (x, y), z = rows.places(), rows.numbers("z", no_data=True)
@@ -94,7 +99,7 @@ def read_centreline(
     walls = _walls(rows, level)
     shots, previous = ShotList(across=True), dict[str, tuple[str, int]]()
     for i in np.flatnonzero(rows.ok).tolist():
-        name = station[i] or said("row {row}", row=int(rows.line[i]))
+        name = station[i] or message("place.row", "row {row}", row=int(rows.line[i]))
         xyz = (float(x[i]), float(y[i]), float(z[i]))
         if name in shots.fixed and not np.allclose(shots.fixed[name], xyz, rtol=0, atol=1e-3):
             # Numbers that start anew on each line are other stations.
@@ -106,7 +111,12 @@ def read_centreline(
             before, earlier = previous[line[i]]
             offset = np.subtract(xyz, shots.fixed[before])
             if before == name or not np.linalg.norm(offset) > 0:
-                rows.reject(i, "x", said("The station repeats row {row}", row=int(rows.line[earlier])), "Remove one.")
+                rows.reject(
+                    i,
+                    "x",
+                    message("import.station-repeats-row", "The station repeats row {row}", row=int(rows.line[earlier])),
+                    message("import.remove-one", "Remove one."),
+                )
                 continue
             shot = shots.add(before, name, offset, int(rows.line[i]))
             if earlier >= 0 and shots.walls and shots.walls[-1][1] == -1:
@@ -119,12 +129,16 @@ def read_centreline(
         journal.add(
             "warning",
             source.name,
-            said("The line {line} has one usable station only", line=Verbatim(name)),
-            "Add its other stations.",
+            message("import.line-usable-station", "The line {line} has one usable station only", line=Verbatim(name)),
+            message("import.stations", "Add its other stations."),
             value=name,
         )
     if not shots.shots:
-        raise InputError("No line has two usable stations", "See the listed rows.", file=source.name)
+        raise InputError(
+            message("import.line-usable-stations", "No line has two usable stations"),
+            message("import.see-listed-rows", "See the listed rows."),
+            file=source.name,
+        )
     return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
 
 
@@ -140,8 +154,17 @@ def _rows(source: Source, journal: Journal) -> Rows:
             journal.add(
                 "note",
                 source.name,
-                said("Column '{column}' is taken as {role}, by its name", column=Verbatim(header), role=role),
-                said("State columns = {entry} where this is wrong.", entry=f"{{ {role} = ... }}"),
+                message(
+                    "import.column-taken",
+                    "Column '{column}' is taken as {role}, by its name",
+                    column=Verbatim(header),
+                    role=role,
+                ),
+                message(
+                    "import.state-columns-wrong",
+                    "State columns = {entry} where this is wrong.",
+                    entry=f"{{ {role} = ... }}",
+                ),
                 column=header,
             )
     source = replace(source, columns=words, crs=source.crs or table.crs or None)
@@ -156,7 +179,9 @@ def _walls(rows: Rows, level: str) -> np.ndarray:
         if role in rows.columns and role not in rows.factors and "z" in rows.factors:
             value = value * rows.factors["z"]
         for i in np.flatnonzero((value < 0) & rows.ok).tolist():
-            rows.warn(i, role, said("The {role} is below 0; it is taken as missing", role=role))
+            rows.warn(
+                i, role, message("import.taken-missing", "The {role} is below 0; it is taken as missing", role=role)
+            )
         sizes[role] = np.where(value >= 0, value, np.nan)
     # Half a width is zero nowhere: such a section has no area.
     half = np.where(sizes["width"] > 0, sizes["width"] / 2, sizes["radius"])

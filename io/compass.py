@@ -16,7 +16,7 @@ import numpy as np
 from geofit.caves.shots import ShotList, polar
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message
 from geofit.io.journal import Journal
 from geofit.io.source import Source, as_source
 from geofit.io.units import METRES
@@ -86,16 +86,23 @@ def read_compass(source: Source | str | Path, journal: Journal | None = None) ->
             untouched += found == 2
     if not surveys:
         raise InputError(
-            "The file has no line FROM TO LENGTH: it is not a Compass survey",
-            "Give a .dat file of Compass; other surveys are read from .svx or from a table.",
+            message("import.file-line-length", "The file has no line FROM TO LENGTH: it is not a Compass survey"),
+            message(
+                "import.dat-file-compass",
+                "Give a .dat file of Compass; other surveys are read from .svx or from a table.",
+            ),
             file=source.name,
         )
     if untouched:
         journal.add(
             "note",
             source.name,
-            said("Shots with four walls of 0, which are taken as not measured: {count}", count=untouched),
-            "They are interpolated along the passage.",
+            message(
+                "import.shots-four-walls",
+                "Shots with four walls of 0, which are taken as not measured: {count}",
+                count=untouched,
+            ),
+            message("import.interpolated-along-passage", "They are interpolated along the passage."),
         )
     journal.count(source.name, read, read - used)
     return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
@@ -134,8 +141,12 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
         journal.add(
             "error",
             file,
-            said("The line is not a shot: two stations and {count} numbers are needed", count=needed - 2),
-            "Correct the line in the survey editor.",
+            message(
+                "import.not-a-shot",
+                "The line is not a shot: two stations and {count} numbers are needed",
+                count=needed - 2,
+            ),
+            message("import.correct-line-survey", "Correct the line in the survey editor."),
             row=row,
             value=line.strip()[:120],
         )
@@ -143,7 +154,11 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
     marks = flags.group(1).upper() if flags else ""
     if "X" in marks:
         journal.add(
-            "note", file, "The shot is flagged X: excluded from all processing", row=row, value=f"{start} {end}"
+            "note",
+            file,
+            message("import.shot-flagged-excluded", "The shot is flagged X: excluded from all processing"),
+            row=row,
+            value=f"{start} {end}",
         )
         return 0
     length, bearing, inclination = values[0], values[1], values[2]
@@ -158,8 +173,8 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
         journal.add(
             "error",
             file,
-            "The shot has no length, bearing and inclination that can be used",
-            "Complete its readings.",
+            message("import.shot-length-bearing", "The shot has no length, bearing and inclination that can be used"),
+            message("import.complete-readings", "Complete its readings."),
             row=row,
             value=f"{start} {end}",
         )
@@ -175,8 +190,10 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
         journal.add(
             "error",
             file,
-            said("The shot leads from station {station} to itself", station=Verbatim(start)),
-            "Correct one of the names.",
+            message(
+                "import.shot-leads-station", "The shot leads from station {station} to itself", station=Verbatim(start)
+            ),
+            message("import.correct", "Correct one of the names."),
             row=row,
             value=f"{start} {end}",
         )
@@ -214,8 +231,12 @@ def _angle(
         journal.add(
             "warning",
             file,
-            said("Foresight and backsight differ by {angle:.1f} degrees; their mean is used", angle=abs(difference)),
-            "Check both readings.",
+            message(
+                "import.foresight-backsight-differ",
+                "Foresight and backsight differ by {angle:.1f} degrees; their mean is used",
+                angle=abs(difference),
+            ),
+            message("import.check-readings", "Check both readings."),
             row=row,
         )
     return fore + difference / 2

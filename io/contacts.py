@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Message, Verbatim, message
 from geofit.data.points import PointSet
 from geofit.data.site import ImportIssue
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
@@ -58,7 +58,10 @@ def take_contacts(boreholes: Boreholes, *, top: str | None = None, base: str | N
     Rules: ``docs/site_file.md``, "Boreholes".
     """
     if (top is None) == (base is None):
-        raise InputError("Both or neither of top and base are given", "Give the code of one of them.")
+        raise InputError(
+            message("import.neither-top-base-given", "Both or neither of top and base are given"),
+            message("import.give-code", "Give the code of one of them."),
+        )
     journal = Journal()
     limit: Limit = "top" if top is not None else "base"
     points = load_contacts(boreholes, top or base or "", limit, journal)
@@ -71,12 +74,13 @@ def load_contacts(boreholes: Boreholes, code: str, limit: Limit, journal: Journa
     if not carrying:
         codes = sorted({str(c) for log in boreholes.logs for c in np.unique(log.code)})
         raise InputError(
-            said(
+            message(
+                "import.no-interval-code-codes",
                 "No interval has the code '{code}'; the codes are {names}",
                 code=Verbatim(code),
-                names=", ".join(codes[:40]) or said("none"),
+                names=", ".join(codes[:40]) or message("site.none", "none"),
             ),
-            nearest(code, codes, said("Name one of them.")),
+            nearest(code, codes, message("import.name-one", "Name one of them.")),
             file=", ".join(log.file for log in boreholes.logs) or None,
         )
     return PointSet.concatenate([_contacts_of(boreholes, log, code, limit, journal) for log in carrying])
@@ -95,11 +99,16 @@ def _contacts_of(boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit
         else:
             unseen.append(hole)
     if unseen:
-        why = said("starts at the collar") if limit == "top" else said("is open at the hole's end")
+        why = (
+            message("import.starts-collar", "starts at the collar")
+            if limit == "top"
+            else message("import.open-hole-end", "is open at the hole's end")
+        )
         journal.add(
             "note",
             log.file,
-            said(
+            message(
+                "import.contacts-no-sure-contact",
                 "{limit} of {code}: contacts: {count}; no sure contact (the code {why}, or its limit is "
                 "contradicted) in holes ({unseen}): {holes}",
                 limit=limit,
@@ -137,34 +146,45 @@ def _limit_in_hole(
     )
     hole, row = str(log.hole[group[0]]), int(row)
 
-    def warn(reason: str, remedy: str) -> None:
+    def warn(reason: Message, remedy: Message) -> None:
         journal.add(
-            "warning", log.file, said("Hole {hole}: {reason}", hole=hole, reason=reason), remedy, row=row, value=code
+            "warning",
+            log.file,
+            message("import.hole-reason", "Hole {hole}: {reason}", hole=hole, reason=reason),
+            remedy,
+            row=row,
+            value=code,
         )
 
     if len(runs) > 1:
-        which = said("uppermost top") if limit == "top" else said("lowest base")
+        which = (
+            message("import.uppermost-top", "uppermost top")
+            if limit == "top"
+            else message("import.lowest-base", "lowest base")
+        )
         warn(
-            said(
+            message(
+                "import.occurs-times-taken",
                 "{code} occurs {count} times; the {which} at {depth:g} m is taken",
                 code=code,
                 count=len(runs),
                 which=which,
                 depth=depth,
             ),
-            "Give the repeats codes of their own.",
+            message("import.give-repeats-own-codes", "Give the repeats codes of their own."),
         )
     tolerance = DEPTH_TOLERANCE
     other = group[log.code[group] != code]
     if ((log.top[other] < depth - tolerance) & (log.base[other] > depth + tolerance)).any():
         warn(
-            said(
+            message(
+                "import.lies-inside-interval-not",
                 "the {limit} of {code} at {depth:g} m lies inside another interval and is not used",
                 limit=limit,
                 code=code,
                 depth=depth,
             ),
-            "Mend the overlap.",
+            message("import.mend-overlap", "Mend the overlap."),
         )
         return depth, 0
     if limit == "top":
@@ -180,7 +200,8 @@ def _limit_in_hole(
     if gap > tolerance:
         side = "above" if limit == "top" else "below"
         warn(
-            said(
+            message(
+                "import.nothing-logged",
                 "nothing is logged for {gap:.2f} m {side} the {limit} of {code} at {depth:g} m",
                 gap=gap,
                 side=side,
@@ -188,7 +209,7 @@ def _limit_in_hole(
                 code=code,
                 depth=depth,
             ),
-            "Complete the log.",
+            message("import.complete-log", "Complete the log."),
         )
     return depth, row
 

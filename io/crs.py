@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError, MissingDependencyError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.extra import need
 
 __all__ = ["WGS84", "is_code", "project", "refuse_degrees"]
@@ -40,13 +40,17 @@ def project(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[
     MissingDependencyError
         If pyproj is not installed.
     """
-    pyproj = need("pyproj", "gis", said("Projecting {file}", file=file))
+    pyproj = need("pyproj", "gis", message("import.need-projection", "Projecting {file}", file=file))
     before, after = _system(pyproj, source, file), _system(pyproj, target, file)
     units = {axis.unit_name for axis in after.axis_info[:2]}
     if not after.is_projected or units != {"metre"}:
         raise InputError(
-            said("The target '{target}' is no projected system in metres", target=target),
-            "Name the grid of the site, such as a UTM zone: EPSG:32650.",
+            message(
+                "import.target-no-projected-system",
+                "The target '{target}' is no projected system in metres",
+                target=target,
+            ),
+            message("import.name-grid-site-utm", "Name the grid of the site, such as a UTM zone: EPSG:32650."),
             file=file,
         )
     if before == after:
@@ -68,11 +72,16 @@ def refuse_degrees(crs: str, file: str) -> None:
     """
     if crs == WGS84 or _is_geographic(crs):
         raise InputError(
-            said(
-                "The places are longitude and latitude ({crs}); easting and northing in metres are needed", crs=crs[:60]
+            message(
+                "import.places-longitude-latitude-easting",
+                "The places are longitude and latitude ({crs}); easting and northing in metres are needed",
+                crs=crs[:60],
             ),
-            'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
-            "(geofit fit and geofit import: --crs).",
+            message(
+                "import.project-site-grid",
+                'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
+                "(geofit fit and geofit import: --crs).",
+            ),
             file=file,
         )
 
@@ -80,7 +89,11 @@ def refuse_degrees(crs: str, file: str) -> None:
 def _is_geographic(crs: str) -> bool:
     """Whether a system counts in degrees; of one that nobody can look up here nothing is known."""
     try:
-        return bool(_system(need("pyproj", "gis", said("Projecting {file}", file="")), crs, "").is_geographic)
+        return bool(
+            _system(
+                need("pyproj", "gis", message("import.need-projection", "Projecting {file}", file="")), crs, ""
+            ).is_geographic
+        )
     except (InputError, MissingDependencyError):
         return False
 
@@ -90,7 +103,12 @@ def _system(pyproj: Any, text: str, file: str) -> Any:
         return pyproj.CRS.from_user_input(text)
     except pyproj.exceptions.CRSError as error:
         raise InputError(
-            said("The coordinate system '{text}' is unknown: {error}", text=text, error=str(error)),
-            "Give a code such as EPSG:32650.",
+            message(
+                "import.coordinate-system-unknown",
+                "The coordinate system '{text}' is unknown: {error}",
+                text=text,
+                error=error,
+            ),
+            message("import.give-code-epsg-32650", "Give a code such as EPSG:32650."),
             file=file,
         ) from None

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import EMPTY, Message, message
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.units import metres_of
@@ -82,8 +82,12 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
         unit = int(document.header.get("$INSUNITS", 0))
     except failures as error:
         raise InputError(
-            said("The drawing cannot be read: {error}", error=_clean(str(error)) or type(error).__name__),
-            "Open it in CAD, audit it and save it as DXF (2007 or later).",
+            message(
+                "import.drawing-cannot-read",
+                "The drawing cannot be read: {error}",
+                error=_clean(str(error)) or type(error).__name__,
+            ),
+            message("import.open-cad-audit-save", "Open it in CAD, audit it and save it as DXF (2007 or later)."),
             file=source.name,
         ) from None
     if unit in _UNITS and not scale_stated and source.unit is None:
@@ -91,8 +95,16 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
         journal.add(
             "warning",
             source.name,
-            said("The drawing says that its unit is {unit}; it is read as metres", unit=name),
-            said("State scale = {scale:g} (a section), or unit (a map), where that is so.", scale=per_metre),
+            message(
+                "import.drawing-says-unit-read",
+                "The drawing says that its unit is {unit}; it is read as metres",
+                unit=name,
+            ),
+            message(
+                "import.state-scale-section-unit",
+                "State scale = {scale:g} (a section), or unit (a map), where that is so.",
+                scale=per_metre,
+            ),
         )
     return entities
 
@@ -163,7 +175,8 @@ def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> t
         else:
             aside[entity.layer] = aside.get(entity.layer, 0) + entity.size
     for layer, size in aside.items():
-        reason = said(
+        reason = message(
+            "import.layer-not-among-layers",
             "Layer '{layer}' is not among the layers '{pattern}'; its points are not used ({count})",
             layer=layer,
             pattern=source.table,
@@ -173,13 +186,17 @@ def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> t
     return kept, sum(aside.values())
 
 
-def problem(entity: Entity, *, closed: bool = False) -> str:
+def problem(entity: Entity, *, closed: bool = False) -> Message:
     """Return why an entity is no line of points, empty if it is one; ``closed`` allows closed polylines."""
     if entity.type not in LINES or not entity.vertices:
-        return said("A {entity} is no LWPOLYLINE, POLYLINE, LINE or POINT", entity=entity.type)
+        return message(
+            "import.no-lwpolyline-polyline-line",
+            "A {entity} is no LWPOLYLINE, POLYLINE, LINE or POINT",
+            entity=entity.type,
+        )
     xyz = np.array(entity.vertices)
     if not np.isfinite(xyz[:, :2]).all() or np.isinf(xyz[:, 2]).any():
-        return said("A coordinate is no finite number")
+        return message("import.coordinate-no-finite-number", "A coordinate is no finite number")
     if entity.closed and not closed:
-        return said("The polyline is closed, a horizon line is open")
-    return ""
+        return message("import.polyline-closed-horizon-line", "The polyline is closed, a horizon line is open")
+    return EMPTY

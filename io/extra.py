@@ -6,12 +6,12 @@ from importlib import import_module
 from typing import Any
 
 from geofit.data.errors import MissingDependencyError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 __all__ = ["need"]
 
 
-def need(module: str, extra: str, what: str) -> Any:
+def need(module: str, extra: str, what: Message) -> Any:
     """Return an optional module.
 
     Raises
@@ -24,12 +24,13 @@ def need(module: str, extra: str, what: str) -> Any:
     except ImportError as error:
         package = module.split(".")[0]
         raise MissingDependencyError(
-            said(
+            message(
+                "import.needs-package-cannot-imported",
                 "{what} needs the package {package}, which cannot be imported ({error}). Install it: pip install "
                 "'geofit[{extra}]'",
                 what=what,
                 package=package,
-                error=str(error),
+                error=error,
                 extra=extra,
             )
         ) from None

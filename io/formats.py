@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table, read_table
@@ -103,12 +103,17 @@ def _choose(source: Source, form: str, kind: str, journal: Journal) -> Source:
             journal.add(
                 "note",
                 source.name,
-                said("The {kind} is taken from {table}", kind=kind, table=usual),
-                "State table where this is wrong.",
+                message("import.kind-taken-from", "The {kind} is taken from {table}", kind=kind, table=usual),
+                message("import.state-table-wrong", "State table where this is wrong."),
             )
             return replace(source, table=usual)
     raise InputError(
-        said("The file holds {count} tables: {names}", count=len(names), names=", ".join(names[:40]) or said("none")),
-        "Name one of them with table = ...",
+        message(
+            "import.file-holds-tables",
+            "The file holds {count} tables: {names}",
+            count=len(names),
+            names=", ".join(names[:40]) or message("site.none", "none"),
+        ),
+        message("import.name-table", "Name one of them with table = ..."),
         file=source.name,
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.cells import table_of
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode
@@ -26,7 +26,11 @@ def read_vertices(source: Source, journal: Journal) -> Table:
     text, encoding = decode(journal.read(source), source.name, source.encoding)
     lines = text.splitlines()
     if not lines or not lines[0].startswith("GOCAD"):
-        raise InputError("The file does not start with GOCAD", "Export a VSet, PLine or TSurf.", file=source.name)
+        raise InputError(
+            message("import.file-not-start-gocad", "The file does not start with GOCAD"),
+            message("import.export-vset-pline-tsurf", "Export a VSet, PLine or TSurf."),
+            file=source.name,
+        )
     rows: list[tuple[int, list[str]]] = []
     malformed, name, down = 0, source.path.stem, False
     units: list[str] = []
@@ -45,16 +49,28 @@ def read_vertices(source: Source, journal: Journal) -> Table:
             down = words[1].casefold() == "depth"
             if down:
                 journal.add(
-                    "warning", source.name, "z is positive downwards; it is turned into an elevation", row=number
+                    "warning",
+                    source.name,
+                    message(
+                        "import.positive-downwards-turned-elevation",
+                        "z is positive downwards; it is turned into an elevation",
+                    ),
+                    row=number,
                 )
         elif key in ("VRTX", "PVRTX"):
             if len(words) < 5:
                 malformed += 1
-                journal.add("error", source.name, "The vertex has no three coordinates", row=number, value=line[:120])
+                journal.add(
+                    "error",
+                    source.name,
+                    message("import.vertex-no-three-coordinates", "The vertex has no three coordinates"),
+                    row=number,
+                    value=line[:120],
+                )
                 continue
             x, y, z = words[2:5]
             rows.append((number, [name, x, y, _turned(z) if down else z]))
-    journal.add("note", source.name, said("Read as GOCAD, {encoding}", encoding=encoding))
+    journal.add("note", source.name, message("import.read-gocad", "Read as GOCAD, {encoding}", encoding=encoding))
     return table_of(source, journal, ["horizon", "x", "y", "z"], rows, units=units, malformed=malformed)
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.io.horizons import HorizonNames
@@ -82,15 +82,19 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
     name = horizons.match(horizon)
     if name is None:
         raise InputError(
-            said("The grid is of '{horizon}', which is no horizon of the site", horizon=horizon),
-            'State horizon = "..." in [[grids]], or add the [[horizon]].',
+            message(
+                "import.grid-no-horizon-site",
+                "The grid is of '{horizon}', which is no horizon of the site",
+                horizon=horizon,
+            ),
+            message("import.state-horizon-grids-add", 'State horizon = "..." in [[grids]], or add the [[horizon]].'),
             file=source.name,
         )
     own = Journal()
     grid = load_ground(source, own)
     for file, digest in own.inputs.items():
         journal.inputs[file] = digest
-    journal.take(issue for issue in own.issues if "have no data" not in issue.reason)
+    journal.take(issue for issue in own.issues if issue.reason.code != "import.cells-no-data")
     x, y = np.meshgrid(grid.x, grid.y[::-1])
     xyz = np.column_stack([x.ravel(), y.ravel(), grid.z[::-1].ravel()])
     known = np.isfinite(xyz[:, 2])
@@ -99,7 +103,13 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
         journal.add(
             "note",
             source.name,
-            said("{count} of {total} nodes have no data and make no points", count=missing, total=known.size),
+            plural_message(
+                "import.nodes-no-data-no",
+                "{count} of {total} nodes has no data and makes no point",
+                "{count} of {total} nodes have no data and make no points",
+                count=missing,
+                total=known.size,
+            ),
         )
     journal.count(source.name, known.size, missing)
     return {name: PointSet(xyz[known], kind="grid", row=np.flatnonzero(known) + 1, file=source.name)}
@@ -118,22 +128,31 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     columns, rows = _size(head, "ncols", source.name), _size(head, "nrows", source.name)
     dx, dy = (head.get(key, head.get("cellsize", float("nan"))) for key in ("dx", "dy"))
     if not (dx > 0 and dy > 0 and np.isfinite(dx + dy)):
-        raise InputError("The grid has no cellsize above 0", "Add a line 'cellsize 10'.", file=source.name)
+        raise InputError(
+            message("import.grid-no-cellsize-above", "The grid has no cellsize above 0"),
+            message("import.add-line-cellsize-10", "Add a line 'cellsize 10'."),
+            file=source.name,
+        )
     west = _corner(head, "x", dx, source.name)
     south = _corner(head, "y", dy, source.name)
     if not np.isfinite(west + south):
-        raise InputError("The grid's corner is no finite place", "Export the grid again.", file=source.name)
+        raise InputError(
+            message("import.grid-corner-no-finite", "The grid's corner is no finite place"),
+            message("import.export-grid-again", "Export the grid again."),
+            file=source.name,
+        )
     body = [(at + k + 1, line.split()) for k, line in enumerate(lines[at:]) if line.strip()]
     cells = [word for _, words in body for word in words]
     if len(cells) != columns * rows:
         raise InputError(
-            said(
+            message(
+                "import.grid-cells-ncols-nrows",
                 "The grid has {count} cells; ncols x nrows = {columns} x {rows} are needed",
                 count=len(cells),
                 columns=columns,
                 rows=rows,
             ),
-            "Export the grid again.",
+            message("import.export-grid-again", "Export the grid again."),
             file=source.name,
         )
     try:
@@ -146,10 +165,18 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     blank = ~np.isfinite(z) | (z == head.get("nodata_value", -9999.0))
     z[blank] = np.nan
     if blank.all():
-        raise InputError("No cell of the grid has an elevation", "Check nodata_value.", file=source.name)
+        raise InputError(
+            message("import.no-cell-grid-elevation", "No cell of the grid has an elevation"),
+            message("import.check-nodata-value", "Check nodata_value."),
+            file=source.name,
+        )
     if blank.any():
         journal.add(
-            "note", source.name, said("{count} of {total} cells have no data", count=int(blank.sum()), total=z.size)
+            "note",
+            source.name,
+            message(
+                "import.cells-no-data", "{count} of {total} cells have no data", count=int(blank.sum()), total=z.size
+            ),
         )
     journal.count(source.name, len(body), 0)
     x, y = np.arange(columns, dtype=np.float64), np.arange(rows, dtype=np.float64)
@@ -162,7 +189,12 @@ def _number(word: str, file: str, row: int, column: str) -> float:
         return float(word)
     except ValueError:
         raise InputError(
-            "This is no number", "Export the grid again.", file=file, row=row, column=column, value=word
+            message("import.no-number", "This is no number"),
+            message("import.export-grid-again", "Export the grid again."),
+            file=file,
+            row=row,
+            column=column,
+            value=word,
         ) from None
 
 
@@ -170,8 +202,11 @@ def _size(head: dict[str, float], key: str, file: str) -> int:
     value = head.get(key, np.nan)
     if not (np.isfinite(value) and value >= 2 and value == int(value)):
         raise InputError(
-            said("The grid's head has no whole {key} of at least 2", key=Verbatim(key)),
-            "An ESRI ASCII grid starts with ncols, nrows, xllcorner, yllcorner, cellsize.",
+            message("import.grid-head-no-whole", "The grid's head has no whole {key} of at least 2", key=Verbatim(key)),
+            message(
+                "import.esri-ascii-grid-starts",
+                "An ESRI ASCII grid starts with ncols, nrows, xllcorner, yllcorner, cellsize.",
+            ),
             file=file,
         )
     return int(value)
@@ -184,7 +219,7 @@ def _corner(head: dict[str, float], axis: str, step: float, file: str) -> float:
     if f"{axis}llcorner" in head:
         return head[f"{axis}llcorner"] + 0.5 * step
     raise InputError(
-        said("The grid has no {axis}llcorner", axis=Verbatim(axis)),
-        said("Add a line '{axis}llcorner 500000'.", axis=Verbatim(axis)),
+        message("import.grid-no-llcorner", "The grid has no {axis}llcorner", axis=Verbatim(axis)),
+        message("import.add-line-llcorner-500000", "Add a line '{axis}llcorner 500000'.", axis=Verbatim(axis)),
         file=file,
     )

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from string import ascii_uppercase
+from typing import Literal
 
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, listed, said
+from geofit.data.messages import Message, Verbatim, message
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, Schema, plain_name
 from geofit.io.guess_values import by_values
 from geofit.io.hints import nearest
@@ -26,6 +27,9 @@ SAMPLE = 400
 #: A guess below it is shown but not used.
 USABLE = 0.25
 
+#: What a guess rests on.
+Basis = Literal["stated", "name", "place", "values"]
+
 _LIMITS = {"azimuth": (-360.0, 360.0), "dip": (-90.0, 90.0)}
 
 
@@ -33,17 +37,22 @@ _LIMITS = {"azimuth": (-360.0, 360.0), "dip": (-90.0, 90.0)}
 class RoleGuess:
     """One role of a table and the column that seems to hold it.
 
-    ``confidence`` runs from 0 to 1; ``others`` are headers of columns that might hold the role as well;
-    ``stated`` is True where the user named the column.
+    ``confidence`` runs from 0 to 1; ``basis`` is what it rests on, and ``reason`` states it; ``others`` are headers of
+    columns that might hold the role as well.
     """
 
     role: str
     index: int
     column: str
     confidence: float
-    reason: str
+    reason: Message
+    basis: Basis
     others: tuple[str, ...] = ()
-    stated: bool = False
+
+    @property
+    def stated(self) -> bool:
+        """Whether the user named the column."""
+        return self.basis == "stated"
 
 
 def sample_of(table: Table) -> list[int]:
@@ -66,7 +75,10 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
         If the source names a role or a column that is not there.
     """
     stated = _stated(table, schema, source)
-    found = {role: RoleGuess(role, j, table.header[j], 1.0, "stated", stated=True) for role, j in stated.items()}
+    found = {
+        role: RoleGuess(role, j, table.header[j], 1.0, message("import.stated", "stated"), "stated")
+        for role, j in stated.items()
+    }
     unknown = not stated and _unknown(table)
     if unknown and (told := by_values(table, schema.name)):
         return {
@@ -76,6 +88,7 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
                 table.header[guess.index],
                 guess.confidence,
                 guess.reason,
+                "values",
                 tuple(table.header[j] for j in guess.others),
             )
             for role, guess in told.items()
@@ -83,7 +96,8 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
     if not table.named:
         if not stated and len(table.header) == len(schema.required):
             return {
-                role: RoleGuess(role, j, table.header[j], 0.5, "by its place") for j, role in enumerate(schema.required)
+                role: RoleGuess(role, j, table.header[j], 0.5, message("import.by-place", "by its place"), "place")
+                for j, role in enumerate(schema.required)
             }
         return found
     names = [plain_name(name)[0] for name in table.header] if not _lettered(table) else []
@@ -104,7 +118,7 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
         rivals.sort(reverse=True)
         confidence, _, j, why = rivals[0]
         others = tuple(table.header[k] for _, _, k, _ in rivals[1:])
-        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), why, others)
+        found[role] = RoleGuess(role, j, table.header[j], round(confidence, 2), why, "name", others)
     return found
 
 
@@ -125,29 +139,33 @@ def _lettered(table: Table) -> bool:
     return len(table.header) > 2 and "".join(table.header) == ascii_uppercase[: len(table.header)]
 
 
-def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, str]:
+def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, Message]:
     """Return how well the values of a named column suit a role, 0.1 to 1, and why it is taken or doubted."""
     cells = [table.columns[j][i].strip() for i in rows]
     filled = tuple(cell for cell in cells if cell)
-    why = said("by its name")
+    why = message("import.by-name", "by its name")
     if not filled:
-        return (0.1, said("by its name; all its cells are empty")) if rows else (1.0, why)
+        return (0.1, message("import.name-cells-empty", "by its name; all its cells are empty")) if rows else (1.0, why)
     fill = len(filled) / len(cells)
     merit = 0.3 + 0.7 * fill
     if fill < 0.9:
-        why = said("by its name; {share:.0%} of its cells are filled", share=fill)
+        why = message("import.name-cells-filled", "by its name; {share:.0%} of its cells are filled", share=fill)
     if role in WORDS:
         return merit, why
     values, bad = parse_numbers(filled, table.decimal)
     share = 1.0 - len(bad) / len(filled)
     if share < 0.9:
         merit *= max(share, 0.1)
-        why = said("by its name; {share:.0%} of its cells are no numbers", share=1 - share)
+        why = message(
+            "import.name-cells-no-numbers", "by its name; {share:.0%} of its cells are no numbers", share=1 - share
+        )
     low, high = _LIMITS.get(role, (-np.inf, np.inf))
     inside = np.mean((values >= low) & (values <= high)) if share > 0 else 1.0
     if inside < 0.5 and share > 0.5:
         merit *= 0.3
-        why = said("by its name; its values are not between {low:g} and {high:g}", low=low, high=high)
+        why = message(
+            "import.name-values-not", "by its name; its values are not between {low:g} and {high:g}", low=low, high=high
+        )
     return merit, why
 
 
@@ -160,13 +178,13 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
         If a required column is missing, or the source names a role or a column that is not there.
     """
     guesses = guess_roles(table, schema, source)
-    if guesses and all(guess.reason == "by its place" for guess in guesses.values()):
+    if guesses and all(guess.basis == "place" for guess in guesses.values()):
         order = ", ".join(schema.required)
         journal.add(
             "warning",
             table.name,
-            said("No header: the columns are taken as {order}", order=order),
-            "Add a header.",
+            message("import.no-header-columns-taken", "No header: the columns are taken as {order}", order=order),
+            message("import.add-header", "Add a header."),
             row=1,
         )
         return {role: guess.index for role, guess in guesses.items()}
@@ -177,10 +195,14 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
         columns[role] = guess.index
         if not guess.stated:
             journal.add(
-                "warning" if guess.reason.startswith("by its values") else "note",
+                "warning" if guess.basis == "values" else "note",
                 table.name,
                 taken_as(guess),
-                said("State columns = {entry} where this is wrong.", entry=f"{{ {role} = ... }}"),
+                message(
+                    "import.state-columns-wrong",
+                    "State columns = {entry} where this is wrong.",
+                    entry=f"{{ {role} = ... }}",
+                ),
                 column=guess.column,
             )
     if schema.name == "picks":
@@ -193,9 +215,10 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
     return columns
 
 
-def taken_as(guess: RoleGuess) -> str:
+def taken_as(guess: RoleGuess) -> Message:
     """Say which column was taken as what, why, how surely, and which other ones it could be."""
-    text = said(
+    text = message(
+        "import.column-taken-confidence",
         "Column '{column}' is taken as {role}, {reason}, confidence {confidence:.2f}",
         column=Verbatim(guess.column),
         role=guess.role,
@@ -204,8 +227,8 @@ def taken_as(guess: RoleGuess) -> str:
     )
     if not guess.others:
         return text
-    others = listed(said("'{name}'", name=Verbatim(name)) for name in guess.others)
-    return said("{text}; also possible: {others}", text=text, others=others)
+    others = tuple(message("place.quoted-name", "'{name}'", name=Verbatim(name)) for name in guess.others)
+    return message("import.column-alternatives", "{text}; also possible: {others}", text=text, others=others)
 
 
 def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> dict[str, int]:
@@ -222,12 +245,13 @@ def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> d
     journal.add(
         "warning",
         table.name,
-        said(
+        message(
+            "import.taken-longitude-latitude-epsg",
             "'{x}' and '{y}' are taken as longitude and latitude (EPSG:4326) and projected",
             x=Verbatim(table.header[found["x"]]),
             y=Verbatim(table.header[found["y"]]),
         ),
-        "State crs and columns where this is wrong.",
+        message("import.state-crs-columns-wrong", "State crs and columns where this is wrong."),
     )
     return found
 
@@ -247,11 +271,15 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
         journal.add(
             "warning",
             table.name,
-            said(
+            message(
+                "import.same-horizons-place-hole",
                 "'{column}' is the same for all horizons of one place: it may be the hole's own",
                 column=Verbatim(table.header[columns["z"]]),
             ),
-            "State columns = { z = ... } with the elevation of the horizon.",
+            message(
+                "import.state-columns-elevation-horizon",
+                "State columns = { z = ... } with the elevation of the horizon.",
+            ),
             column=table.header[columns["z"]],
         )
 
@@ -262,8 +290,13 @@ def _stated(table: Table, schema: Schema, source: Source) -> dict[str, int]:
     for role, wanted in source.columns.items():
         if role not in roles:
             raise InputError(
-                said("A {kind} table has no column role '{role}'", kind=schema.name, role=Verbatim(role)),
-                nearest(role, roles, said("The roles are {names}.", names=", ".join(roles))),
+                message(
+                    "import.table-no-column-role",
+                    "A {kind} table has no column role '{role}'",
+                    kind=schema.name,
+                    role=Verbatim(role),
+                ),
+                nearest(role, roles, message("import.known-roles", "The roles are {names}.", names=", ".join(roles))),
                 file=table.name,
             )
         columns[role] = locate(table, role, wanted)
@@ -288,13 +321,18 @@ def locate(table: Table, role: str, wanted: str | int) -> int:
     if 1 <= number <= len(table.header):
         return number - 1
     raise InputError(
-        said(
+        message(
+            "import.no-column-columns",
             "There is no column '{wanted}' for {role}; the columns are {names}",
             wanted=Verbatim(wanted),
             role=Verbatim(role),
             names=shown(table.header),
         ),
-        said("Name one of them, or give its number from 1 to {count}.", count=len(table.header)),
+        message(
+            "import.name-give-number",
+            "Name one of them, or give its number from 1 to {count}.",
+            count=len(table.header),
+        ),
         file=table.name,
     )
 
@@ -302,21 +340,29 @@ def locate(table: Table, role: str, wanted: str | int) -> int:
 def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
     if {"x", "y"} & set(missing) and any(plain_name(name)[0] in GEOGRAPHIC for name in table.header):
         return InputError(
-            "Longitude and latitude are degrees; easting and northing in metres are needed",
-            'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
-            "(geofit fit and geofit import: --crs).",
+            message(
+                "import.longitude-latitude-degrees-easting",
+                "Longitude and latitude are degrees; easting and northing in metres are needed",
+            ),
+            message(
+                "import.project-to-site-grid",
+                'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
+                "(geofit fit and geofit import: --crs).",
+            ),
             file=table.name,
         )
-    names = listed(said("'{name}'", name=Verbatim(role)) for role in missing)
+    names = tuple(message("place.quoted-name", "'{name}'", name=Verbatim(role)) for role in missing)
     what = (
-        said(
+        message(
+            "import.no-column-found-table",
             "No column for {names} was found in this {kind} table; its columns are {found}",
             names=names,
             kind=schema.name,
             found=shown(table.header),
         )
         if table.named
-        else said(
+        else message(
+            "import.no-column-found-table-without",
             "No column for {names} was found in this {kind} table without a header; its columns: {count}",
             names=names,
             kind=schema.name,
@@ -325,15 +371,16 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
     )
     example = ", ".join(f'{role} = "..."' for role in missing)
     on_ground = schema.name == "collar" and missing == ["z"]
-    remedy = said(
+    remedy = message(
+        "import.name-column-header-state",
         "Name the column in the header, or state columns = {{ {example} }} (--x, --y, --z, --surface, "
         "--section for a bare CSV; a column's number counted from 1 will do).",
         example=example,
     )
-    ground = said("Or give the ground ([ground], a grid): collars stand on it.")
+    ground = message("import.give-ground-ground-grid", "Or give the ground ([ground], a grid): collars stand on it.")
     return InputError(
         what,
-        said("{first} {second}", first=remedy, second=ground) if on_ground else remedy,
+        message("import.first-second", "{first} {second}", first=remedy, second=ground) if on_ground else remedy,
         file=table.name,
         row=int(table.lines[0]) - 1 if table.named and len(table) and table.lines[0] > 1 else None,
         column=missing[0],

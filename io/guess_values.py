@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.messages import Message, message
 from geofit.io.tables import Table, parse_numbers
 
 __all__ = ["CONFIDENCE", "ValueGuess", "by_values"]
@@ -31,7 +32,7 @@ class ValueGuess:
 
     index: int
     confidence: float
-    reason: str
+    reason: Message
     others: tuple[int, ...] = ()
 
 
@@ -81,11 +82,17 @@ def _place(columns: list[_Column]) -> dict[str, ValueGuess]:
     if len(large) != 2 or not small:
         return {}
     first, second = large
-    why = "by its values, the size of map coordinates"
+    why = message("import.by-size-of-coordinates", "by its values, the size of map coordinates")
     # Northings have seven digits; eastings six, or eight with the zone in front.
     turned = 1e6 <= first.size < 1e7 and not 1e6 <= second.size < 1e7
     if turned:
-        first, second, why = second, first, f"{why}; seven digits are a northing"
+        first, second, why = (
+            second,
+            first,
+            message(
+                "import.by-size-seven-digits", "by its values, the size of map coordinates; seven digits are a northing"
+            ),
+        )
     after = [column for column in small if column.index > max(first.index, second.index)] or small
     z = after[0]
     sure = CONFIDENCE if len(small) == 1 else UNSURE
@@ -93,7 +100,10 @@ def _place(columns: list[_Column]) -> dict[str, ValueGuess]:
         "x": ValueGuess(first.index, CONFIDENCE, why),
         "y": ValueGuess(second.index, CONFIDENCE, why),
         "z": ValueGuess(
-            z.index, sure, "by its values, the size of elevations", tuple(c.index for c in small if c is not z)
+            z.index,
+            sure,
+            message("import.by-size-of-elevations", "by its values, the size of elevations"),
+            tuple(c.index for c in small if c is not z),
         ),
     }
 
@@ -106,7 +116,7 @@ def _picks(columns: list[_Column]) -> dict[str, ValueGuess]:
     found = _place(columns)
     repeated = [column for column in _texts(columns) if column.words <= 0.5 * len(column.cells)]
     if found and len(repeated) == 1:
-        why = "by its values, words that repeat"
+        why = message("import.by-words-that-repeat", "by its values, words that repeat")
         found["horizon"] = ValueGuess(repeated[0].index, CONFIDENCE, why)
     return found
 
@@ -116,7 +126,12 @@ def _collar(columns: list[_Column]) -> dict[str, ValueGuess]:
     names = [column for column in _texts(columns) if column.words == len(column.cells)]
     if not found or len(names) != 1:
         return {}
-    return {"hole": ValueGuess(names[0].index, CONFIDENCE, "by its values, words of which none repeats"), **found}
+    return {
+        "hole": ValueGuess(
+            names[0].index, CONFIDENCE, message("import.by-unique-words", "by its values, words of which none repeats")
+        ),
+        **found,
+    }
 
 
 def _intervals(columns: list[_Column]) -> dict[str, ValueGuess]:
@@ -133,13 +148,21 @@ def _intervals(columns: list[_Column]) -> dict[str, ValueGuess]:
     codes = [c for c in texts if c is not hole and c.words <= max(0.5 * len(c.cells), 3)]
     if len(pairs) != 1 or not codes:
         return {}
-    (top, base), why = pairs[0], "by its values, depths that follow each other down a hole"
+    (top, base), why = (
+        pairs[0],
+        message("import.by-consecutive-depths", "by its values, depths that follow each other down a hole"),
+    )
     sure = CONFIDENCE if len(codes) == 1 else UNSURE
     return {
-        "hole": ValueGuess(hole.index, CONFIDENCE, "by its values, words in runs"),
+        "hole": ValueGuess(hole.index, CONFIDENCE, message("import.by-words-in-runs", "by its values, words in runs")),
         "from": ValueGuess(top.index, CONFIDENCE, why),
         "to": ValueGuess(base.index, CONFIDENCE, why),
-        "code": ValueGuess(codes[0].index, sure, "by its values, words that repeat", tuple(c.index for c in codes[1:])),
+        "code": ValueGuess(
+            codes[0].index,
+            sure,
+            message("import.by-words-that-repeat", "by its values, words that repeat"),
+            tuple(c.index for c in codes[1:]),
+        ),
     }
 
 

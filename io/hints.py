@@ -5,14 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-from geofit.data.messages import Said, Verbatim, said
+from geofit.data.messages import Message, Verbatim, message
 
 __all__ = ["nearest"]
 
 
-def nearest(wanted: str, known: Iterable[str], all_of_them: Said, cutoff: float = 0.6) -> Said:
+def nearest(wanted: str, known: Iterable[str], all_of_them: Message, cutoff: float = 0.6) -> Message:
     """Return a remedy: the nearest of the known names where one comes near, then the sentence that names them all."""
     near = get_close_matches(wanted, list(known), 1, cutoff)
     if not near:
         return all_of_them
-    return said("{first} {second}", first=said("Did you mean '{name}'?", name=Verbatim(near[0])), second=all_of_them)
+    return message(
+        "import.first-second",
+        "{first} {second}",
+        first=message("import.did-you-mean", "Did you mean '{name}'?", name=Verbatim(near[0])),
+        second=all_of_them,
+    )

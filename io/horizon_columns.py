@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message
 from geofit.data.points import PointSet
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import HORIZON_COLUMNS
@@ -38,14 +38,21 @@ def load_horizon_columns(
     """
     if not source.horizons:
         raise InputError(
-            "No column is named as a horizon", 'State horizons = ["..."] with their headers.', file=source.name
+            message("import.no-column-named-horizon", "No column is named as a horizon"),
+            message("import.state-horizons-headers", 'State horizons = ["..."] with their headers.'),
+            file=source.name,
         )
     depths = source.measure == "depth"
     rows = read_rows(source, HORIZON_COLUMNS, journal)
     if depths and "z" not in rows.columns:
         raise InputError(
-            "Depths need the elevation that they count from, and there is no column for it",
-            "State columns = { z = ... } with the elevation of the collar.",
+            message(
+                "import.depths-need-elevation-count",
+                "Depths need the elevation that they count from, and there is no column for it",
+            ),
+            message(
+                "import.state-columns-elevation-collar", "State columns = { z = ... } with the elevation of the collar."
+            ),
             file=source.name,
         )
     (x, y), mouth = rows.places(), rows.numbers("z", no_data=True) if depths else np.zeros(len(rows))
@@ -57,20 +64,35 @@ def load_horizon_columns(
         header = rows.table.header[j]
         name = horizons.match(header)
         if name is None:
-            reason = said(
-                "Column '{column}' is no horizon of the site; its values are not used", column=Verbatim(header)
+            reason = message(
+                "import.column-no-horizon-site",
+                "Column '{column}' is no horizon of the site; its values are not used",
+                column=Verbatim(header),
             )
-            journal.add("warning", rows.file, reason, "Add a [[horizon]] of its name.", column=header)
+            journal.add(
+                "warning",
+                rows.file,
+                reason,
+                message("import.add-horizon-name", "Add a [[horizon]] of its name."),
+                column=header,
+            )
             continue
         if name in found:
             raise InputError(
-                said("Two columns are of horizon '{name}'", name=name), "Name each horizon once.", file=source.name
+                message("import.two-columns-horizon", "Two columns are of horizon '{name}'", name=name),
+                message("import.name-horizon-once", "Name each horizon once."),
+                file=source.name,
             )
         values = _values(rows, j, depths)
         found[name] = mouth - values if depths else values
     used = np.any([np.isfinite(z) for z in found.values()], axis=0) if found else np.zeros(len(rows), dtype=bool)
     for i in np.flatnonzero(~used & rows.ok).tolist():
-        rows.reject(i, "horizons", "The row holds no horizon's value", "Complete the row or remove it.")
+        rows.reject(
+            i,
+            "horizons",
+            message("import.row-holds-no-horizon", "The row holds no horizon's value"),
+            message("import.complete-row-remove", "Complete the row or remove it."),
+        )
     rows.close()
     rows.require_any()
     _count_blanks(rows, found)
@@ -91,11 +113,18 @@ def load_horizon_columns(
 def _tell_measure(rows: Rows, places: list[int], depths: bool) -> None:
     names = ", ".join(dict.fromkeys(rows.table.header[j] for j in places))
     if depths:
-        reason = said("Depths of {names} are taken straight down from z", names=names)
+        reason = message(
+            "import.depths-taken-straight-down", "Depths of {names} are taken straight down from z", names=names
+        )
         rows.journal.add("note", rows.file, reason)
     elif rows.source.measure is None:
-        reason = said("The values of {names} are taken as elevations", names=names)
-        rows.journal.add("note", rows.file, reason, 'State measure = "depth" where they are depths.')
+        reason = message("import.values-taken-elevations", "The values of {names} are taken as elevations", names=names)
+        rows.journal.add(
+            "note",
+            rows.file,
+            reason,
+            message("import.state-measure-depth-depths", 'State measure = "depth" where they are depths.'),
+        )
 
 
 def _values(rows: Rows, j: int, depths: bool) -> Floats:
@@ -104,17 +133,21 @@ def _values(rows: Rows, j: int, depths: bool) -> Floats:
     values, bad = parse_numbers(cells, rows.table.decimal)
     wrong = [i for i in bad.tolist() if cells[i].strip()]
     values[np.isin(values, NO_DATA)] = np.nan
-    reasons = dict.fromkeys(wrong, said("The cell is no finite number; it makes no pick"))
+    reasons = dict.fromkeys(
+        wrong, message("import.cell-no-finite-number", "The cell is no finite number; it makes no pick")
+    )
     if depths:
         above = np.flatnonzero(values < 0).tolist()
-        reasons |= dict.fromkeys(above, said("The depth is negative; it makes no pick"))
+        reasons |= dict.fromkeys(
+            above, message("import.depth-negative-no-pick", "The depth is negative; it makes no pick")
+        )
         values[above] = np.nan
     for i, reason in sorted(reasons.items()):
         rows.journal.add(
             "warning",
             rows.file,
             reason,
-            "Correct the cell.",
+            message("import.correct-cell", "Correct the cell."),
             row=int(rows.line[i]),
             column=header,
             value=cells[i].strip(),
@@ -131,5 +164,9 @@ def _count_blanks(rows: Rows, found: dict[str, Floats]) -> None:
         rows.journal.add(
             "note",
             rows.file,
-            said("Cells without a value in the rows that are used, which make no pick: {counts}", counts=counts),
+            message(
+                "import.cells-without-value-rows",
+                "Cells without a value in the rows that are used, which make no pick: {counts}",
+                counts=counts,
+            ),
         )

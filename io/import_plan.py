@@ -10,7 +10,7 @@ from typing import Any
 
 from geofit.data.errors import InputError
 from geofit.data.files import legible
-from geofit.data.messages import Verbatim, listed, said
+from geofit.data.messages import EMPTY, Message, Verbatim, message
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, plain_name
 from geofit.io.grid import load_ground
@@ -50,7 +50,9 @@ class Plan:
         """Return the tables of a kind, in the order of the files."""
         return self.parts.get(kind, [])
 
-    def set_aside(self, name: str, read: int, reason: str, remedy: str, severity: Any = "error", **place: Any) -> None:
+    def set_aside(
+        self, name: str, read: int, reason: Message, remedy: Message, severity: Any = "error", **place: Any
+    ) -> None:
         """List a table that is not used; all its rows count as listed."""
         place = {"row": 0, "column": "", "value": "", **place}
         self.issues.append(ImportIssue(file=name, severity=severity, reason=reason, remedy=remedy, **place))
@@ -65,7 +67,7 @@ class Plan:
                     self.set_aside(
                         part.source.name,
                         part.preview.read,
-                        said("The file is not used: {reason}", reason=error.reason),
+                        message("import.file-not-used", "The file is not used: {reason}", reason=error.reason),
                         error.remedy,
                         row=error.row or 0,
                         column=error.column or "",
@@ -82,8 +84,8 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
         plan.set_aside(
             legible(name),
             0,
-            said("The name of the file is not UTF-8, and a site file cannot name it"),
-            said("Rename the file."),
+            message("import.file-not-utf", "The name of the file is not UTF-8, and a site file cannot name it"),
+            message("import.rename-file", "Rename the file."),
         )
         return
     source = Source(path=path, name=name, target=crs or None)
@@ -101,7 +103,13 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
             mapping = replace(own, file=name, table=preview.table, columns={**mapping.columns, **own.columns})
         part = Part(name, preview, mapping, part_source)
         if preview.kind == "skip":
-            plan.set_aside(part_source.name, preview.read, "The mapping leaves this table out", "", "note")
+            plan.set_aside(
+                part_source.name,
+                preview.read,
+                message("import.mapping-leaves-table", "The mapping leaves this table out"),
+                EMPTY,
+                "note",
+            )
         elif preview.kind == "":
             plan.set_aside(part_source.name, preview.read, *_not_recognised(preview))
         else:
@@ -115,7 +123,7 @@ def _relative(path: Path, folder: Path) -> str:
         return path.resolve().as_posix()
 
 
-def _not_recognised(preview: TablePreview) -> tuple[str, str]:
+def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
     """Return why a table is of no kind, by the kind that it comes nearest to."""
     names = {plain_name(name)[0] for name in preview.header}
     nearest, best = "", 0.0
@@ -127,22 +135,29 @@ def _not_recognised(preview: TablePreview) -> tuple[str, str]:
         if share > best or (share == best > 0 and len(SCHEMAS[kind].required) > len(SCHEMAS[nearest].required)):
             nearest, missing, best = kind, absent, share
     if names & GEOGRAPHIC and not preview.crs:
-        return said(
+        return message(
+            "import.file-not-used-places",
             "The file is not used: its places are longitude and latitude ({names})",
-            names=listed(Verbatim(name) for name in preview.header if plain_name(name)[0] in GEOGRAPHIC),
-        ), said("Name the grid of the site, in metres, with --crs, such as EPSG:32650: they are projected to it.")
+            names=tuple(Verbatim(name) for name in preview.header if plain_name(name)[0] in GEOGRAPHIC),
+        ), message(
+            "import.grid-site-crs",
+            "Name the grid of the site, in metres, with --crs, such as EPSG:32650: they are projected to it.",
+        )
     if best >= 0.5:
-        return said(
+        return message(
+            "import.file-not-used-nearest",
             "The file is not used: nearest to a {kind} table, but without {names}",
             kind=nearest,
-            names=listed(said("'{name}'", name=Verbatim(role)) for role in missing),
+            names=tuple(message("place.quoted-name", "'{name}'", name=Verbatim(role)) for role in missing),
         ), _REMEDY
-    return said(
-        "The file is not used: its columns ({names}) are of no known kind", names=", ".join(preview.header[:12])
+    return message(
+        "import.file-not-used-columns",
+        "The file is not used: its columns ({names}) are of no known kind",
+        names=", ".join(preview.header[:12]),
     ), _REMEDY
 
 
-_REMEDY = said("Name its kind and columns in a mapping file (--mapping).")
+_REMEDY = message("import.name-kind-columns-mapping", "Name its kind and columns in a mapping file (--mapping).")
 
 
 def settle(plan: Plan) -> None:
@@ -152,10 +167,13 @@ def settle(plan: Plan) -> None:
         for part in plan.of(kind)[1:]:
             plan.parts[kind].remove(part)
             first = plan.of(kind)[0].source.name
-            remedy = said("Import one of them.")
+            remedy = message("import.import-only-one", "Import one of them.")
             if kind == "ground":
-                remedy = said('State kind = "grid" in a mapping file (--mapping) where it is a horizon.')
-            reason = said("The {kind} is taken from {file} already", kind=kind, file=first)
+                remedy = message(
+                    "import.state-kind-grid-mapping",
+                    'State kind = "grid" in a mapping file (--mapping) where it is a horizon.',
+                )
+            reason = message("import.taken-already", "The {kind} is taken from {file} already", kind=kind, file=first)
             plan.set_aside(part.source.name, _rows_of(part), reason, remedy)
     lacking = [
         ("survey", "collar"),
@@ -168,8 +186,10 @@ def settle(plan: Plan) -> None:
                 plan.set_aside(
                     part.source.name,
                     part.preview.read,
-                    said("The {kind} table has no {needed} table", kind=kind, needed=needed),
-                    said("Add the {needed} table.", needed=needed),
+                    message(
+                        "import.table-no-table", "The {kind} table has no {needed} table", kind=kind, needed=needed
+                    ),
+                    message("import.add-table", "Add the {needed} table.", needed=needed),
                 )
     _place_sections(plan)
 
@@ -205,20 +225,27 @@ def _place_sections(plan: Plan) -> None:
             stem = part.source.path.stem
             part.section = known.get(stem.casefold(), "")
             if part.section in placed:
-                reason = said(
-                    "Section '{name}' is taken from {file} already", name=part.section, file=placed[part.section]
+                reason = message(
+                    "import.section-taken-already",
+                    "Section '{name}' is taken from {file} already",
+                    name=part.section,
+                    file=placed[part.section],
                 )
-                remedy = said("Import one of them.")
+                remedy = message("import.import-only-one", "Import one of them.")
             elif not part.section:
-                reason = said("The section has no line in plan")
-                remedy = said(
+                reason = message("import.section-no-line-plan", "The section has no line in plan")
+                remedy = message(
+                    "import.add-table-section-corners",
                     "Add a table section, x, y with the corners of section '{name}', or write [[section]] with its "
                     "line into the site file.",
                     name=stem,
                 )
                 if kind == "drawing":
-                    a_map = said('A map: state kind = "traces", "adit path" or "adit contacts" in a mapping file.')
-                    remedy = said("{first} {second}", first=remedy, second=a_map)
+                    a_map = message(
+                        "import.map-state-kind-traces",
+                        'A map: state kind = "traces", "adit path" or "adit contacts" in a mapping file.',
+                    )
+                    remedy = message("import.first-second", "{first} {second}", first=remedy, second=a_map)
             else:
                 placed[part.section] = part.source.name
                 continue
@@ -245,8 +272,13 @@ def campaigns(plan: Plan) -> list[tuple[Part, Part | None, list[Part]]]:
                 plan.set_aside(
                     part.source.name,
                     part.preview.read,
-                    said("The {kind} is taken from {file} already", kind=kind, file=surveys[k].source.name),
-                    "Join the survey tables.",
+                    message(
+                        "import.taken-already",
+                        "The {kind} is taken from {file} already",
+                        kind=kind,
+                        file=surveys[k].source.name,
+                    ),
+                    message("import.join-survey-tables", "Join the survey tables."),
                 )
     return [(collar, surveys.get(k), intervals.get(k, [])) for k, collar in enumerate(collars)]
 

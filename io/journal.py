@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
-from geofit.data.messages import folded, said
+from geofit.data.languages import folded
+from geofit.data.messages import EMPTY, Message, message
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.source import Source
 
@@ -24,14 +25,14 @@ class Journal:
     """One list for all files of one reading; handed down to every reader, which appends to it.
 
     ``found`` holds what was listed; of findings that are alike but for their row the first :data:`MOST`.
-    ``refused`` says of holes whose collar was not used where that row stands.
+    ``refused`` gives file and row of each collar that was not used, by the name of its hole.
     """
 
     found: list[ImportIssue] = field(default_factory=list)
     counts: list[TableCount] = field(default_factory=list)
     inputs: dict[str, str] = field(default_factory=dict)
-    refused: dict[str, str] = field(default_factory=dict)
-    _alike: dict[tuple[Severity, str, str, str], tuple[int, int]] = field(default_factory=dict)
+    refused: dict[str, tuple[Message | str, ...]] = field(default_factory=dict)
+    _alike: dict[tuple[Severity, str, str, str], tuple[int, int, Message]] = field(default_factory=dict)
 
     def read(self, source: Source) -> bytes:
         """Return the bytes of a file and keep their SHA-256."""
@@ -43,17 +44,17 @@ class Journal:
         self,
         severity: Severity,
         file: str,
-        reason: str,
-        remedy: str = "",
+        reason: Message,
+        remedy: Message = EMPTY,
         *,
         row: int = 0,
         column: str = "",
         value: str = "",
     ) -> None:
         """List one finding; beyond :data:`MOST` that are alike it is counted, with the last row."""
-        alike = (severity, file, getattr(reason, "template", reason), column)
-        count, _ = self._alike.get(alike, (0, 0))
-        self._alike[alike] = (count + 1, row)
+        alike = (severity, file, reason.code, column)
+        count, *_ = self._alike.get(alike, (0, row, reason))
+        self._alike[alike] = (count + 1, row, reason)
         if count < MOST:
             self.found.append(ImportIssue(file, row, folded(column), folded(value), severity, reason, remedy))
 
@@ -71,9 +72,14 @@ class Journal:
                 folded(column),
                 "",
                 severity,
-                said("{count} more of this kind, the last in this row: {reason}", count=count - MOST, reason=reason),
+                message(
+                    "import.more-alike",
+                    "{count} more of this kind, the last in this row: {reason}",
+                    count=count - MOST,
+                    reason=reason,
+                ),
             )
-            for (severity, file, reason, column), (count, row) in self._alike.items()
+            for (severity, file, _, column), (count, row, reason) in self._alike.items()
             if count > MOST
         ]
         return self.found + more

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.cells import number_text, table_of
 from geofit.io.extra import need
 from geofit.io.journal import Journal
@@ -49,7 +49,9 @@ def read_log(source: Source, journal: Journal) -> Table:
         return table_of(source, journal, list(_WELL), [(1, cells)], units=units)
     if source.table != "CURVES":
         raise InputError(
-            said("A LAS file has no table '{table}'", table=source.table), "Name WELL or CURVES.", file=source.name
+            message("import.las-file-no-table", "A LAS file has no table '{table}'", table=source.table),
+            message("import.name-well-curves", "Name WELL or CURVES."),
+            file=source.name,
         )
     depth = np.asarray(log.index, dtype=np.float64)
     step = float(depth[-1] - depth[-2]) if len(depth) > 1 else 0.0
@@ -66,8 +68,12 @@ def read_log(source: Source, journal: Journal) -> Table:
     journal.add(
         "note",
         source.name,
-        said("{count} samples; each is an interval that reaches to the next sample", count=len(depth)),
-        "Give an interval table where the log has one.",
+        message(
+            "import.samples-interval-reaches-next",
+            "{count} samples; each is an interval that reaches to the next sample",
+            count=len(depth),
+        ),
+        message("import.give-interval-table-log", "Give an interval table where the log has one."),
     )
     return table_of(source, journal, header, rows, units=["", unit, unit, *(str(c.unit) for c in curves)])
 
@@ -78,7 +84,7 @@ def _cell(value: Any) -> str:
 
 def _open(source: Source, journal: Journal) -> tuple[Any, int]:
     """Return the log and the line of its first sample."""
-    lasio = need("lasio", "las", said("Reading the log {file}", file=source.name))
+    lasio = need("lasio", "las", message("import.reading-log", "Reading the log {file}", file=source.name))
     text, _ = decode(journal.read(source), source.name, source.encoding)
     failures = (
         lasio.exceptions.LASHeaderError,
@@ -98,12 +104,18 @@ def _open(source: Source, journal: Journal) -> tuple[Any, int]:
             size = len(np.asarray(log.index, dtype=np.float64))
     except failures as error:
         raise InputError(
-            said("The log cannot be read: {error}", error=str(error) or type(error).__name__),
-            "Export it as LAS 2.0.",
+            message(
+                "import.log-cannot-read", "The log cannot be read: {error}", error=str(error) or type(error).__name__
+            ),
+            message("import.export-las", "Export it as LAS 2.0."),
             file=source.name,
         ) from None
     if not size:
-        raise InputError("The log has no sample", "Export it with its ~ASCII section.", file=source.name)
+        raise InputError(
+            message("import.log-no-sample", "The log has no sample"),
+            message("import.export-ascii-section", "Export it with its ~ASCII section."),
+            file=source.name,
+        )
     lines = text.splitlines()
     start = next((i for i, line in enumerate(lines) if line.lstrip().upper().startswith("~A")), 0)
     return log, start + 2

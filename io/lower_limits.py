@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.rows import Rows
 
 __all__ = ["tops_from_above"]
@@ -30,8 +30,11 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
     rows.journal.add(
         "note",
         rows.file,
-        "There are lower limits only; upper limits were taken from the row above, 0 at the first row of a hole",
-        "State columns = { from = ... } where there are upper limits.",
+        message(
+            "import.lower-limits-upper-limits",
+            "There are lower limits only; upper limits were taken from the row above, 0 at the first row of a hole",
+        ),
+        message("import.state-columns-upper-limits", "State columns = { from = ... } where there are upper limits."),
         column=rows.table.header[rows.columns["to"]],
     )
     holes, stray = _rows_of_holes(hole, collars)
@@ -43,7 +46,8 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
         _sort(rows, holes, base, known, len(back), len(steps))
     else:
         for i, k in back:
-            reason = said(
+            reason = message(
+                "import.lower-limit-row-lies",
                 "The lower limit of row {last} lies above that of row {first}; one of the two is wrong",
                 first=rows.line[i],
                 last=rows.line[k],
@@ -51,7 +55,7 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
             for wrong in (i, k):
                 known[wrong] = False
                 if rows.ok[wrong]:
-                    rows.reject(wrong, "to", reason, "Correct the depth.")
+                    rows.reject(wrong, "to", reason, message("import.correct-depth", "Correct the depth."))
     top = np.full(len(base), np.nan)
     for members in holes.values():
         top[members[0]] = 0.0
@@ -59,10 +63,12 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
             if known[above]:
                 top[i] = base[above]
             elif rows.ok[i]:
-                reason = said(
-                    "The upper limit is not known: row {row}, the one above, gives none", row=rows.line[above]
+                reason = message(
+                    "import.upper-limit-not-known",
+                    "The upper limit is not known: row {row}, the one above, gives none",
+                    row=rows.line[above],
                 )
-                rows.reject(i, "from", reason, "Correct that row.")
+                rows.reject(i, "from", reason, message("import.correct-row", "Correct that row."))
     return top
 
 
@@ -91,13 +97,16 @@ def _sort(
     rows.journal.add(
         "warning",
         rows.file,
-        said(
+        message(
+            "import.rows-not-order-depth",
             "The rows are not in order of depth ({back} of {steps} steps within a hole go up); those of each hole were "
             "sorted by depth",
             back=back,
             steps=steps,
         ),
-        'State measure = "elevation" where the limits are elevations.',
+        message(
+            "import.state-measure-elevation-limits", 'State measure = "elevation" where the limits are elevations.'
+        ),
         column=rows.table.header[rows.columns["to"]],
     )
     for members in holes.values():

@@ -11,7 +11,7 @@ from typing import Any
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message
 from geofit.io.columns import SCHEMAS
 from geofit.io.hints import nearest
 from geofit.io.parser_words import told_by
@@ -61,8 +61,10 @@ class ColumnMapping:
         object.__setattr__(self, "horizons", tuple(self.horizons))
         if self.kind not in KINDS:
             raise InputError(
-                said("A mapping has no kind '{kind}'", kind=Verbatim(self.kind)),
-                nearest(self.kind, KINDS, said("The kinds are {names}.", names=", ".join(KINDS))),
+                message("import.mapping-no-kind", "A mapping has no kind '{kind}'", kind=Verbatim(self.kind)),
+                nearest(
+                    self.kind, KINDS, message("import.known-kinds", "The kinds are {names}.", names=", ".join(KINDS))
+                ),
                 file=self.file,
             )
 
@@ -169,30 +171,46 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
     except UnicodeDecodeError as error:
         what, _ = told_by(error)
         raise InputError(
-            said("The mapping is not UTF-8: {error}", error=what), "Save it as UTF-8.", file=source.name
+            message("import.mapping-not-utf", "The mapping is not UTF-8: {error}", error=what),
+            message("import.save-utf", "Save it as UTF-8."),
+            file=source.name,
         ) from None
     except RecursionError:
-        raise InputError("The file is nested too deeply", "See docs/formats_in.md.", file=source.name) from None
+        raise InputError(
+            message("import.file-nested-deeply", "The file is nested too deeply"),
+            message("import.see-docs-formats-md", "See docs/formats_in.md."),
+            file=source.name,
+        ) from None
     except tomllib.TOMLDecodeError as error:
         what, line = told_by(error)
         raise InputError(
-            said("The mapping is no TOML: {error}", error=what), "See docs/formats_in.md.", file=source.name, row=line
+            message("import.mapping-no-toml", "The mapping is no TOML: {error}", error=what),
+            message("import.see-docs-formats-md", "See docs/formats_in.md."),
+            file=source.name,
+            row=line,
         ) from None
     version, tables = top.pop("version", VERSION), top.pop("table", [])
     if not isinstance(version, int) or version > VERSION:
         raise InputError(
-            said(
-                "The mapping is of version {version}; this geofit reads up to {known}", version=version, known=VERSION
+            message(
+                "import.mapping-version-geofit-reads",
+                "The mapping is of version {version}; this geofit reads up to {known}",
+                version=version,
+                known=VERSION,
             ),
-            "Use a newer geofit.",
+            message("import.use-newer-geofit", "Use a newer geofit."),
             file=source.name,
         )
     if top or not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise InputError(
-            said("A mapping holds version and [[table]] only, not '{key}'", key=Verbatim(next(iter(top))))
+            message(
+                "import.mapping-holds-version-table",
+                "A mapping holds version and [[table]] only, not '{key}'",
+                key=Verbatim(next(iter(top))),
+            )
             if top
-            else said("A mapping holds version and [[table]] only"),
-            "See docs/formats_in.md.",
+            else message("import.mapping-holds-version-table-2", "A mapping holds version and [[table]] only"),
+            message("import.see-docs-formats-md", "See docs/formats_in.md."),
             file=source.name,
         )
     return tuple(_mapping(table, source.name) for table in tables)
@@ -203,12 +221,15 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
     for key, value in table.items():
         if key not in known:
             raise InputError(
-                said("[[table]] of a mapping has no key '{key}'", key=Verbatim(key)),
-                nearest(key, known, said("The keys are {names}.", names=", ".join(known))),
+                message("import.table-mapping-no-key", "[[table]] of a mapping has no key '{key}'", key=Verbatim(key)),
+                nearest(key, known, message("import.known-keys", "The keys are {names}.", names=", ".join(known))),
                 file=file,
                 column=key,
             )
-        kind = {"columns": said("a table of headers or numbers"), "horizons": said("a list of headers or numbers")}
+        kind = {
+            "columns": message("import.table-headers-numbers", "a table of headers or numbers"),
+            "horizons": message("import.list-headers-numbers", "a list of headers or numbers"),
+        }
         match key:
             case "columns":
                 sound = isinstance(value, dict) and all(type(column) in (str, int) for column in value.values())
@@ -218,13 +239,14 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
                 sound = isinstance(value, str)
         if not sound:
             raise InputError(
-                said(
+                message(
+                    "import.key-where-kind",
                     "{key} in {where} must be {kind}",
                     key=Verbatim(key),
-                    where=said("a mapping"),
-                    kind=kind.get(key, said("a text")),
+                    where=message("import.a-mapping", "a mapping"),
+                    kind=kind.get(key, message("import.a-text", "a text")),
                 ),
-                "Correct its value.",
+                message("import.correct-value", "Correct its value."),
                 file=file,
                 column=key,
                 value=str(value),
@@ -232,8 +254,8 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
     for key in ("file", "kind"):
         if key not in table:
             raise InputError(
-                said("A [[table]] of the mapping has no '{key}'", key=Verbatim(key)),
-                said('Write {key} = "...".', key=Verbatim(key)),
+                message("import.table-mapping-no", "A [[table]] of the mapping has no '{key}'", key=Verbatim(key)),
+                message("import.write-key", 'Write {key} = "...".', key=Verbatim(key)),
                 file=file,
             )
     return ColumnMapping(**table)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Orientations
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import ORIENTATIONS
@@ -38,7 +38,11 @@ def load_orientations(source: Source, journal: Journal, region: Region | None = 
     horizon = rows.text("horizon", required=False)
     rows.close()
     if not rows.ok.any():
-        raise InputError("No row of the orientations can be used", "See the listed rows.", file=source.name)
+        raise InputError(
+            message("import.no-row-orientations-used", "No row of the orientations can be used"),
+            message("import.see-listed-rows", "See the listed rows."),
+            file=source.name,
+        )
     used = np.flatnonzero(rows.ok)
     return Orientations(
         np.column_stack([x, y, z])[used],
@@ -55,11 +59,12 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
         return _from_normals(rows)
     if "dip" not in rows.columns or not {"azimuth", "strike"} & set(rows.columns):
         raise InputError(
-            said(
+            message(
+                "import.no-columns-attitude-found",
                 "No columns for an attitude were found in this orientations table; its columns are {names}",
                 names=shown(rows.table.header),
             ),
-            "Name dip with azimuth or strike, or the normal nx, ny, nz.",
+            message("import.name-dip-azimuth-strike", "Name dip with azimuth or strike, or the normal nx, ny, nz."),
             file=rows.file,
         )
     dip = rows.numbers("dip")
@@ -70,14 +75,27 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
         rows.journal.add(
             "warning",
             rows.file,
-            "The strike is read by the right-hand rule: the plane dips to the right of it",
-            "Give the azimuth of the dip where that is wrong.",
+            message(
+                "import.strike-read-right-hand",
+                "The strike is read by the right-hand rule: the plane dips to the right of it",
+            ),
+            message("import.give-azimuth-dip-wrong", "Give the azimuth of the dip where that is wrong."),
             column=rows.table.header[rows.columns["strike"]],
         )
     for i in np.flatnonzero(~((dip >= 0) & (dip <= 90)) & rows.ok).tolist():
-        rows.reject(i, "dip", "The dip is not between 0 and 90 degrees", "Give the angle below the horizontal.")
+        rows.reject(
+            i,
+            "dip",
+            message("import.dip-not-90-degrees", "The dip is not between 0 and 90 degrees"),
+            message("import.give-angle-below-horizontal", "Give the angle below the horizontal."),
+        )
     for i in np.flatnonzero((np.abs(azimuth) > 450.0) & rows.ok).tolist():
-        rows.reject(i, "azimuth", "The azimuth is not between 0 and 360 degrees", "Give degrees from north.")
+        rows.reject(
+            i,
+            "azimuth",
+            message("import.azimuth-not-360-degrees", "The azimuth is not between 0 and 360 degrees"),
+            message("import.give-degrees-north", "Give degrees from north."),
+        )
     return azimuth % 360.0, dip
 
 
@@ -85,7 +103,12 @@ def _from_normals(rows: Rows) -> tuple[Floats, Floats]:
     n = np.column_stack([rows.numbers("nx"), rows.numbers("ny"), rows.numbers("nz")])
     length = np.linalg.norm(n, axis=1)
     for i in np.flatnonzero(~(length > 0) & rows.ok).tolist():
-        rows.reject(i, "nx", "The normal has no length", "Give the three components of the plane's normal.")
+        rows.reject(
+            i,
+            "nx",
+            message("import.normal-no-length", "The normal has no length"),
+            message("import.give-three-components-plane", "Give the three components of the plane's normal."),
+        )
     up = n * np.where(n[:, 2:] < 0, -1.0, 1.0)
     azimuth = np.degrees(np.arctan2(up[:, 0], up[:, 1])) % 360.0
     return azimuth, np.degrees(np.arctan2(np.hypot(up[:, 0], up[:, 1]), up[:, 2]))

@@ -5,15 +5,17 @@ from __future__ import annotations
 import json
 import re
 
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 __all__ = ["told_by"]
 
 
-def told_by(error: Exception) -> tuple[str, int | None]:
+def told_by(error: Exception) -> tuple[Message | str, int | None]:
     """Return what a parser says is wrong, and the line of the file where it says so."""
     if isinstance(error, UnicodeDecodeError):
-        return said("byte {place} belongs to no character", place=error.start + 1), None
+        return message(
+            "import.byte-belongs-no-character", "byte {place} belongs to no character", place=error.start + 1
+        ), None
     if isinstance(error, json.JSONDecodeError):
         return error.msg, error.lineno
     what, place = re.fullmatch(r"(.*?)(?: \(at (.*)\))?", str(error), re.DOTALL).groups()  # type: ignore[union-attr]

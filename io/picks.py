@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.files import legible
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.site import ImportIssue, TableCount
@@ -121,11 +122,20 @@ def load_picks(
     (x, y), z = rows.places(), rows.numbers("z", no_data=True)
     if source.measure == "depth":
         z = -z
-        journal.add("note", source.name, "z is a depth below 0; it is turned into an elevation")
+        journal.add(
+            "note",
+            source.name,
+            message("import.depth-below-turned-elevation", "z is a depth below 0; it is turned into an elevation"),
+        )
     tell(progress, "check rows", 0.6)
     accuracy = rows.numbers("accuracy", required=False)
     for i in np.flatnonzero((accuracy <= 0) & rows.ok).tolist():
-        rows.reject(i, "accuracy", "The accuracy is not above 0", "Give one standard deviation in metres.")
+        rows.reject(
+            i,
+            "accuracy",
+            message("import.accuracy-not-above", "The accuracy is not above 0"),
+            message("import.give-standard-deviation-metres", "Give one standard deviation in metres."),
+        )
     names = horizons.of(rows) if "horizon" in rows.columns else [alone or ""] * len(rows)
     check_axes(rows, x, y, region)
     kinds = [cell.casefold() or kind for cell in rows.text("kind", required=False)]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.io.journal import MOST, Journal
 
@@ -20,8 +20,8 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
         journal.add(
             "warning",
             str(points.file[0]),
-            said("Horizon {horizon} has one point only", horizon=horizon),
-            "Three or more are needed for a surface.",
+            message("import.horizon-point", "Horizon {horizon} has one point only", horizon=horizon),
+            message("import.three-needed-surface", "Three or more are needed for a surface."),
             row=int(points.row[0]),
             value=horizon,
         )
@@ -34,13 +34,14 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
         journal.add(
             "warning",
             str(points.file[order[repeated[MOST]]]),
-            said(
+            message(
+                "import.horizon-points-place",
                 "Horizon {horizon}: {count} points lie at the place of another; the first {most} are listed",
                 horizon=horizon,
                 count=len(repeated),
                 most=MOST,
             ),
-            "Remove what is repeated.",
+            message("import.remove-what-repeated", "Remove what is repeated."),
         )
     for k in repeated[:MOST].tolist():
         i, j = int(order[k]), int(order[k + 1])
@@ -50,20 +51,29 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
             journal.add(
                 "note",
                 str(points.file[j]),
-                said("Horizon {horizon}: the point repeats {before}", horizon=horizon, before=before),
+                message(
+                    "import.horizon-point-repeats",
+                    "Horizon {horizon}: the point repeats {before}",
+                    horizon=horizon,
+                    before=before,
+                ),
                 row=int(points.row[j]),
             )
         else:
             journal.add(
                 "warning",
                 str(points.file[j]),
-                said(
+                message(
+                    "import.horizon-two-elevations-place",
                     "Horizon {horizon}: two elevations at one place, {rise:+.3f} m against {before}",
                     horizon=horizon,
                     rise=rise,
                     before=before,
                 ),
-                "Correct one of them, or state accuracies: the fit keeps the more accurate one.",
+                message(
+                    "import.correct-state-accuracies-fit",
+                    "Correct one of them, or state accuracies: the fit keeps the more accurate one.",
+                ),
                 row=int(points.row[j]),
                 column="z",
                 value=f"{points.xyz[j, 2]:.15g}",

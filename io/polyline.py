@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.rows import Rows
 
 __all__ = ["along", "chainage", "named_lines"]
@@ -34,11 +34,18 @@ def named_lines(rows: Rows, role: str, places: Floats, what: str) -> dict[str, F
     for name in dict.fromkeys(names[rows.ok].tolist()):
         corners = np.flatnonzero(rows.ok & (names == name))
         for k in np.flatnonzero((np.diff(places[corners], axis=0) == 0).all(axis=1)).tolist():
-            rows.reject(int(corners[k + 1]), "x", "The corner repeats the one before", "Remove one of the two.")
+            rows.reject(
+                int(corners[k + 1]),
+                "x",
+                message("import.corner-repeats", "The corner repeats the one before"),
+                message("import.remove-two", "Remove one of the two."),
+            )
         corners = corners[rows.ok[corners]]
         if len(corners) < 2:
-            reason = said("{what} {name} has one corner only", what=what, name=name)
-            rows.reject(int(corners[0]), role, reason, "Two or more corners are needed.")
+            reason = message("import.one-corner-only", "{what} {name} has one corner only", what=what, name=name)
+            rows.reject(
+                int(corners[0]), role, reason, message("import.two-corners-needed", "Two or more corners are needed.")
+            )
         else:
             lines[name] = places[corners]
     return lines

@@ -260,7 +260,7 @@ def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> fl
     """Return how likely a table is of a kind: its columns' confidence, and what is telling about each kind."""
     found = [guesses[role].confidence for role in schema.required if role in guesses]
     merit = min(found, default=0.0) * 0.5 + sum(found) / max(len(schema.required), 1) * 0.5
-    if any(guess.reason.startswith("by its values") for guess in guesses.values()):
+    if any(guess.basis == "values" for guess in guesses.values()):
         return merit
     if not table.named:
         return merit if schema.name == "picks" else 0.5 * merit

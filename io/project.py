@@ -32,7 +32,7 @@ from geofit import __version__
 from geofit.data.accuracy import plain
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems, replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.parser_words import told_by
@@ -183,8 +183,12 @@ def save_project(
             part.write_text(text + "\n", encoding="utf-8", newline="\n")
     except OSError as error:
         raise InputError(
-            said("The project cannot be written: {error}", error=error.strerror or str(error)),
-            "Make the folder, or name another.",
+            message(
+                "project.project-cannot-written",
+                "The project cannot be written: {error}",
+                error=error.strerror or str(error),
+            ),
+            message("project.folder-name", "Make the folder, or name another."),
             file=str(target),
         ) from None
     for surface_file in former - {result.surface for result in saved.results}:
@@ -222,39 +226,44 @@ def open_project(path: str | PathLike[str]) -> Project:
         data = json.loads(source.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(
-            said("The project cannot be read: {error}", error=error.strerror or str(error)),
-            "Check the path.",
+            message(
+                "project.project-cannot-read", "The project cannot be read: {error}", error=error.strerror or str(error)
+            ),
+            message("import.check-path", "Check the path."),
             file=str(source),
         ) from None
     except (ValueError, RecursionError) as error:
         what, line = told_by(error)
         raise InputError(
-            said("This is no project file: {error}", error=what),
-            "Open a *.geofit file, or mend its JSON.",
+            message("project.no-project-file", "This is no project file: {error}", error=what),
+            message("project.open-geofit-file-mend", "Open a *.geofit file, or mend its JSON."),
             file=str(source),
             row=line,
         ) from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise InputError(
-            said("The file does not say '{format}'", format=FORMAT), "Open a *.geofit file.", file=str(source)
+            message("project.file-not-say", "The file does not say '{format}'", format=FORMAT),
+            message("project.open-geofit-file", "Open a *.geofit file."),
+            file=str(source),
         )
     version = data.get("version")
     if not isinstance(version, int) or isinstance(version, bool) or version < 0:
         raise InputError(
-            "The project has no version",
-            said("It should stand as a number up to {known}.", known=VERSION),
+            message("project.project-no-version", "The project has no version"),
+            message("project.should-stand-number", "It should stand as a number up to {known}.", known=VERSION),
             file=str(source),
         )
     if version > VERSION:
         raise InputError(
-            said(
+            message(
+                "project.project-saved-newer-geofit",
                 "The project was saved by a newer geofit: its version is {version}, this geofit ({program}) "
                 "reads up to {known}",
                 version=version,
                 program=__version__,
                 known=VERSION,
             ),
-            "Update geofit: pip install -U geofit",
+            message("project.update-geofit-pip-install", "Update geofit: pip install -U geofit"),
             file=str(source),
         )
     try:
@@ -263,10 +272,13 @@ def open_project(path: str | PathLike[str]) -> Project:
         return _project(data)
     except (KeyError, TypeError, ValueError, AttributeError, SettingsError) as error:
         raise InputError(
-            said(
-                "The project does not hold what version {version} should: {error}", version=version, error=repr(error)
+            message(
+                "project.project-not-hold-version",
+                "The project does not hold what version {version} should: {error}",
+                version=version,
+                error=repr(error),
             ),
-            "Undo the last change by hand, or open a copy.",
+            message("project.undo-last-change-hand", "Undo the last change by hand, or open a copy."),
             file=str(source),
         ) from None
 
@@ -361,8 +373,8 @@ def _write_surface(name: str, surface: HorizonFit, target: Path) -> ProjectResul
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            said("The folder cannot be made: {error}", error=error.strerror or str(error)),
-            "Save elsewhere.",
+            message("run.folder-cannot", "The folder cannot be made: {error}", error=error.strerror or str(error)),
+            message("project.save-elsewhere", "Save elsewhere."),
             file=str(folder),
         ) from None
     stem = file_stems([name])[name]

@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.io.crs import is_code
 from geofit.io.extra import need
@@ -28,7 +28,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
     MissingDependencyError
         If rasterio is not installed.
     """
-    rasterio = need("rasterio", "gis", said("Reading the raster {file}", file=source.name))
+    rasterio = need("rasterio", "gis", message("import.reading-raster", "Reading the raster {file}", file=source.name))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a raster without georeference is refused below
@@ -37,34 +37,53 @@ def read_raster(source: Source, journal: Journal) -> Ground:
                 place, crs, bands = raster.transform, raster.crs, raster.count
     except (rasterio.errors.RasterioError, OSError, ValueError, MemoryError) as error:
         raise InputError(
-            said("The raster cannot be read: {error}", error=str(error)),
-            "Open it in a GIS and save it as GeoTIFF.",
+            message("import.raster-cannot-read", "The raster cannot be read: {error}", error=error),
+            message("import.open-gis-save-geotiff", "Open it in a GIS and save it as GeoTIFF."),
             file=source.name,
         ) from None
     if place.is_identity or place.b or place.d or place.a <= 0 or place.e >= 0:
         raise InputError(
-            "The raster has no place on the map, or is turned"
+            message("import.raster-no-place-map", "The raster has no place on the map, or is turned")
             if not place.is_identity
-            else "The raster has no georeference",
-            "Save it from a GIS as a GeoTIFF with north up.",
+            else message("import.raster-no-georeference", "The raster has no georeference"),
+            message("import.save-gis-geotiff-north", "Save it from a GIS as a GeoTIFF with north up."),
             file=source.name,
         )
     _check_crs(source, crs, journal)
     if min(band.shape) < 2:
-        raise InputError("The raster has less than 2 x 2 cells", "Export it again.", file=source.name)
+        raise InputError(
+            message("import.raster-less-cells", "The raster has less than 2 x 2 cells"),
+            message("import.export-again", "Export it again."),
+            file=source.name,
+        )
     z = np.ma.filled(np.ma.asarray(band, dtype=np.float64), np.nan)[::-1].copy()
     z[~np.isfinite(z)] = np.nan
     if np.isnan(z).all():
-        raise InputError("No cell of the raster has an elevation", "Check its no-data value.", file=source.name)
+        raise InputError(
+            message("import.no-cell-raster-elevation", "No cell of the raster has an elevation"),
+            message("import.check-no-data-value", "Check its no-data value."),
+            file=source.name,
+        )
     if np.isnan(z).any():
         journal.add(
             "note",
             source.name,
-            said("{count} of {total} cells have no data", count=int(np.isnan(z).sum()), total=z.size),
+            message(
+                "import.cells-no-data",
+                "{count} of {total} cells have no data",
+                count=int(np.isnan(z).sum()),
+                total=z.size,
+            ),
         )
     if bands > 1:
         journal.add(
-            "warning", source.name, said("The raster has {count} bands; the first is the elevation", count=bands)
+            "warning",
+            source.name,
+            message(
+                "import.raster-bands-first-elevation",
+                "The raster has {count} bands; the first is the elevation",
+                count=bands,
+            ),
         )
     rows, columns = z.shape
     journal.count(source.name, rows, 0)
@@ -77,22 +96,35 @@ def read_raster(source: Source, journal: Journal) -> Ground:
 def _check_crs(source: Source, crs: object, journal: Journal) -> None:
     if crs is None:
         return
-    journal.add("note", source.name, said("The coordinate system of the raster is {crs}", crs=str(crs)[:120]))
+    journal.add(
+        "note",
+        source.name,
+        message("import.coordinate-system-raster", "The coordinate system of the raster is {crs}", crs=str(crs)[:120]),
+    )
     if getattr(crs, "is_geographic", False):
         raise InputError(
-            said("The raster is in longitude and latitude ({crs}); metres are needed", crs=str(crs)[:60]),
-            "Warp it to the site's grid (gdalwarp -t_srs EPSG:...).",
+            message(
+                "import.raster-longitude-latitude-metres",
+                "The raster is in longitude and latitude ({crs}); metres are needed",
+                crs=str(crs)[:60],
+            ),
+            message("import.warp-site-grid-gdalwarp", "Warp it to the site's grid (gdalwarp -t_srs EPSG:...)."),
             file=source.name,
         )
     if source.target and is_code(source.target):
-        pyproj = need("pyproj", "gis", said("Reading the raster {file}", file=source.name))
+        pyproj = need("pyproj", "gis", message("import.reading-raster", "Reading the raster {file}", file=source.name))
         try:
             same = pyproj.CRS.from_user_input(source.target).to_2d() == pyproj.CRS.from_user_input(str(crs)).to_2d()
         except pyproj.exceptions.CRSError:
             return
         if not same:
             raise InputError(
-                said("The raster is in {crs}, the site in {target}", crs=str(crs)[:60], target=source.target),
-                said("Warp it (gdalwarp -t_srs {target}).", target=source.target),
+                message(
+                    "import.raster-site",
+                    "The raster is in {crs}, the site in {target}",
+                    crs=str(crs)[:60],
+                    target=source.target,
+                ),
+                message("import.warp-gdalwarp-srs", "Warp it (gdalwarp -t_srs {target}).", target=source.target),
                 file=source.name,
             )

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import EMPTY, Message, Verbatim, message
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
 from geofit.io.crs import WGS84, is_code, project, refuse_degrees
 from geofit.io.formats import read_any_table
@@ -55,9 +55,9 @@ class Rows:
         cells = self.table.columns[self.columns[role]]
         cleaned = {cell: unicodedata.normalize("NFKC", cell).strip() for cell in set(cells)}
         if required and "" in cleaned.values():
-            empty = said("The {role} is empty", role=role)
+            empty = message("row.empty-cell", "The {role} is empty", role=role)
             for i in [i for i, cell in enumerate(cells) if not cleaned[cell]]:
-                self.reject(i, role, empty, "Complete the cell.")
+                self.reject(i, role, empty, message("row.complete-cell", "Complete the cell."))
         return [cleaned[cell] for cell in cells]
 
     def numbers(self, role: str, *, required: bool = True, no_data: bool = False) -> Floats:
@@ -70,17 +70,26 @@ class Rows:
         cells = self.table.columns[self.columns[role]]
         values, bad = parse_numbers(cells, self.table.decimal)
         # One sentence for all rows: a column of words may have a million of them.
-        empty, wrong = said("The {role} is empty", role=role), said("The {role} is no finite number", role=role)
-        remedy = said("Give a number with the decimal mark '{mark}' and no unit.", mark=self.table.decimal)
+        empty, wrong = (
+            message("row.empty-cell", "The {role} is empty", role=role),
+            message("row.not-a-number", "The {role} is no finite number", role=role),
+        )
+        remedy = message(
+            "import.give-number-decimal-mark",
+            "Give a number with the decimal mark '{mark}' and no unit.",
+            mark=self.table.decimal,
+        )
         for i in bad.tolist():
             if cells[i].strip():
                 self.reject(i, role, wrong, remedy)
             elif required:
-                self.reject(i, role, empty, "Complete the cell.")
+                self.reject(i, role, empty, message("row.complete-cell", "Complete the cell."))
         if no_data:
-            unknown = said("The {role} is a mark for 'no data'", role=role)
+            unknown = message("row.no-data-mark", "The {role} is a mark for 'no data'", role=role)
             for i in np.flatnonzero(np.isin(values, NO_DATA)).tolist():
-                self.reject(i, role, unknown, "Complete the cell or remove the row.")
+                self.reject(
+                    i, role, unknown, message("import.complete-cell-remove-row", "Complete the cell or remove the row.")
+                )
         return values * self.factors[role] if role in self.factors else values
 
     def places(self) -> tuple[Floats, Floats]:
@@ -100,41 +109,58 @@ class Rows:
         east, north = project(x, y, crs, target, self.file)
         lost = np.isnan(east) & np.isfinite(x) & np.isfinite(y)
         for i in np.flatnonzero(lost & self.ok).tolist():
-            reason = said("The place cannot be projected from {crs} to {target}", crs=crs, target=target)
-            self.reject(i, "x", reason, "Correct the coordinates.")
+            reason = message(
+                "import.place-cannot-projected",
+                "The place cannot be projected from {crs} to {target}",
+                crs=crs,
+                target=target,
+            )
+            self.reject(i, "x", reason, message("import.correct-coordinates", "Correct the coordinates."))
         return east, north
 
-    def reject(self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "error") -> None:
+    def reject(
+        self, i: int, role: str, reason: Message, remedy: Message = EMPTY, *, severity: Severity = "error"
+    ) -> None:
         """List row i and do not use it."""
         self.ok[i] = False
         self._list(severity, i, role, reason, remedy)
 
-    def warn(self, i: int, role: str, reason: str, remedy: str = "", *, severity: Severity = "warning") -> None:
+    def warn(
+        self, i: int, role: str, reason: Message, remedy: Message = EMPTY, *, severity: Severity = "warning"
+    ) -> None:
         """List row i but use it."""
         self._list(severity, i, role, reason, remedy)
 
     def require_known(self, role: str, names: Sequence[str], known: Iterable[str], where: str) -> None:
         """Reject the rows whose hole, adit or horizon is not known; ``where`` says what should name it."""
         present = list(known)
-        lookup, hints = set(present), dict[str, str]()
+        lookup, hints = set(present), dict[str, Message]()
         for i in np.flatnonzero(self.ok).tolist():
             name = names[i]
             if name in lookup:
                 continue
             if name in self.journal.refused:
                 place = self.journal.refused[name]
-                hints[name] = said("Its own row was not used ({place}): mend that first.", place=place)
+                hints[name] = message(
+                    "import.row-not-used-mend", "Its own row was not used ({place}): mend that first.", place=place
+                )
             if name not in hints:
                 near = get_close_matches(name, present, 1) if len(hints) < 20 else []
                 hints[name] = (
-                    said("Did you mean '{name}'?", name=Verbatim(near[0]))
+                    message("import.did-you-mean", "Did you mean '{name}'?", name=Verbatim(near[0]))
                     if near
-                    else said("Add it to the {where}.", where=where)
+                    else message("row.add-name", "Add it to the {where}.", where=where)
                 )
             self.reject(
                 i,
                 role,
-                said("The {role} '{name}' is not in the {where}", role=role, name=Verbatim(name), where=where),
+                message(
+                    "row.unknown-name",
+                    "The {role} '{name}' is not in the {where}",
+                    role=role,
+                    name=Verbatim(name),
+                    where=where,
+                ),
                 hints[name],
             )
 
@@ -157,16 +183,21 @@ class Rows:
             None,
         )
         raise InputError(
-            said("None of the rows can be used; row {row}: {reason}", row=first.row, reason=first.reason)
+            message(
+                "import.none-rows-used-row",
+                "None of the rows can be used; row {row}: {reason}",
+                row=first.row,
+                reason=first.reason,
+            )
             if first
-            else said("None of the rows can be used"),
-            first.remedy if first else "",
+            else message("import.none-rows-used", "None of the rows can be used"),
+            first.remedy if first else EMPTY,
             file=self.file,
             column=first.column if first else None,
             value=first.value if first else None,
         )
 
-    def _list(self, severity: Severity, i: int, role: str, reason: str, remedy: str) -> None:
+    def _list(self, severity: Severity, i: int, role: str, reason: Message, remedy: Message) -> None:
         j = self.columns.get(role)
         self.journal.add(
             severity,

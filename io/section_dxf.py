@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.dxf import on_layers, open_drawing, problem
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
@@ -51,7 +51,11 @@ def read_drawing(
     """
     entities = open_drawing(source, journal, scale_stated=scale_stated)
     if not entities:
-        raise InputError("The drawing is empty", "Draw the horizons in model space.", file=source.name)
+        raise InputError(
+            message("import.drawing-empty", "The drawing is empty"),
+            message("import.draw-horizons-model-space", "Draw the horizons in model space."),
+            file=source.name,
+        )
     entities, listed = on_layers(entities, source, journal)
     xyz: list[tuple[float, float, float]] = []
     names: list[str] = []
@@ -60,18 +64,21 @@ def read_drawing(
         layer = entity.layer
         horizon, trouble = horizons.match(layer.strip()), problem(entity, closed=closed)
         if horizon is None or trouble:
-            stranger = said("Layer '{layer}' is no horizon of the site", layer=layer)
+            stranger = message("import.layer-no-horizon-site", "Layer '{layer}' is no horizon of the site", layer=layer)
             reason = trouble if horizon is not None else stranger
             journal.add(
                 "error" if horizon is not None else "note",
                 source.name,
-                said(
+                message(
+                    "import.not-used-points",
                     "{reason}; {entity} is not used (points: {count})",
                     reason=reason,
                     entity=entity.type,
                     count=entity.size,
                 ),
-                "Draw the horizon as a polyline on the layer with its name.",
+                message(
+                    "import.draw-horizon-polyline-layer", "Draw the horizon as a polyline on the layer with its name."
+                ),
                 row=entity.first,
                 column=layer,
                 value=entity.type,
@@ -82,14 +89,20 @@ def read_drawing(
             journal.add(
                 "warning",
                 source.name,
-                "The polyline has arcs; only its corners are used",
-                "Add corners along the arcs.",
+                message("import.polyline-arcs-corners-used", "The polyline has arcs; only its corners are used"),
+                message("import.add-corners-along-arcs", "Add corners along the arcs."),
                 row=entity.first,
                 column=layer,
             )
         for number, vertex in enumerate(entity.vertices, entity.first):
             if xyz and names[-1] == horizon and np.array_equal(xyz[-1], vertex, equal_nan=True):
-                journal.add("note", source.name, "The point repeats the one before", row=number, column=layer)
+                journal.add(
+                    "note",
+                    source.name,
+                    message("import.point-repeats", "The point repeats the one before"),
+                    row=number,
+                    column=layer,
+                )
                 listed += 1
                 continue
             xyz.append(vertex)

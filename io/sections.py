@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.site import Section
 from geofit.io.axes import Region, check_axes, place_in
@@ -93,7 +93,12 @@ def load_sections(
             line = _own_line(rows, own, ends)
         if line is None:
             for i in own.tolist():
-                rows.reject(i, "section", said("Section {section} has no line in plan", section=each), _NO_LINE)
+                rows.reject(
+                    i,
+                    "section",
+                    message("import.section-no-line-plan-2", "Section {section} has no line in plan", section=each),
+                    _NO_LINE,
+                )
             continue
         section, own = Section(each, line), own[rows.ok[own]]
         for i in own[_off_line(section, distance[own])].tolist():
@@ -103,15 +108,16 @@ def load_sections(
     rows.close()
     if not rows.ok.any():
         raise InputError(
-            "None of the rows of the sections can be used",
-            "See the listed rows.",
+            message("import.none-rows-sections-used", "None of the rows of the sections can be used"),
+            message("import.see-listed-rows", "See the listed rows."),
             file=source.name,
         )
     return sections, horizons.split(rows, horizon, xyz, kind="section", section=name)
 
 
-_NO_LINE = said(
-    "Add its corners to [[section_lines]] (section, x, y), or columns x0, y0, x1, y1 with the ends of its line."
+_NO_LINE = message(
+    "import.add-corners-section-lines",
+    "Add its corners to [[section_lines]] (section, x, y), or columns x0, y0, x1, y1 with the ends of its line.",
 )
 
 
@@ -123,7 +129,9 @@ def _ends(rows: Rows, region: Region | None) -> Floats:
     known = np.isfinite(ends).all(axis=1)
     if region is not None and known.any() and place_in(ends[known][:, :2], region) == "exchanged":
         raise InputError(
-            "x and y of the section lines look exchanged", "x is the easting, y the northing.", file=rows.file
+            message("import.section-lines-look-exchanged", "x and y of the section lines look exchanged"),
+            message("import.easting-northing", "x is the easting, y the northing."),
+            file=rows.file,
         )
     return ends
 
@@ -134,8 +142,17 @@ def _own_line(rows: Rows, own: NDArray[np.intp], ends: Floats) -> Floats | None:
     if not stated.size or np.array_equal(ends[stated[0], :2], ends[stated[0], 2:]):
         return None
     for i in stated[(ends[stated] != ends[stated[0]]).any(axis=1)].tolist():
-        reason = said("The row states another section line than row {row}", row=rows.line[stated[0]])
-        rows.reject(i, "x0", reason, "A section has one line; give bent ones in [[section_lines]].")
+        reason = message(
+            "import.row-states-section-line",
+            "The row states another section line than row {row}",
+            row=rows.line[stated[0]],
+        )
+        rows.reject(
+            i,
+            "x0",
+            reason,
+            message("import.section-line-give-bent", "A section has one line; give bent ones in [[section_lines]]."),
+        )
     return np.asarray(ends[stated[0]].reshape(2, 2))
 
 
@@ -220,14 +237,17 @@ def _off_line(section: Section, distance: Floats) -> NDArray[np.bool_]:
     return np.asarray((distance < -END_TOLERANCE) | (distance > length + END_TOLERANCE))
 
 
-def _off_line_text(section: Section, distance: float) -> tuple[str, str]:
+def _off_line_text(section: Section, distance: float) -> tuple[Message, Message]:
     length = chainage(section.line)[-1]
     return (
-        said(
+        message(
+            "import.distance-not-line-section",
             "The distance {distance:.2f} m is not on the line of section {section} ({length:.2f} m long)",
             distance=distance,
             section=section.name,
             length=length,
         ),
-        said("Correct the distance, the line, or the drawing's scale and origin."),
+        message(
+            "import.correct-distance-line-drawing", "Correct the distance, the line, or the drawing's scale and origin."
+        ),
     )

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.site import Section
 from geofit.io.axes import Region, place_in
@@ -37,21 +37,32 @@ def read_sections(
         lines |= load_lines(reader.source(table, "[section_lines]", kind="section lines"), journal, region)
     sections: list[Section] = []
     for table in reader.tables(top, "section"):
-        name = reader.need(table, "name", str, "[[section]]", 'Write name = "...".')
-        where = said("section '{name}'", name=name)
+        name = reader.need(table, "name", str, "[[section]]", message("import.write-name", 'Write name = "...".'))
+        where = message("place.section", "section '{name}'", name=name)
         if any(section.name == name for section in sections):
-            raise reader.fail(said("Two sections have the name '{name}'", name=name), "Give each its own.", "name")
+            raise reader.fail(
+                message("import.two-sections-name", "Two sections have the name '{name}'", name=name),
+                message("import.give-each-own-name", "Give each its own."),
+                "name",
+            )
         source = reader.source(table, where, ("name", "line", "scale", "origin"), "section")
-        remedy = "Write line = [[x, y], [x, y]], the corners of the section line in plan."
+        remedy = message("import.write-line", "Write line = [[x, y], [x, y]], the corners of the section line in plan.")
         if "line" not in table and name in lines:
             line = lines[name]
         else:
             line = _pairs(
-                reader, reader.need(table, "line", list, where, remedy), said("line of {where}", where=where), remedy
+                reader,
+                reader.need(table, "line", list, where, remedy),
+                message("place.line", "line of {where}", where=where),
+                remedy,
             )
         if len(line) < 2 or not (np.diff(line, axis=0) != 0).any(axis=1).all():
             raise reader.fail(
-                said("The line of {where} needs two or more different corners", where=where),
+                message(
+                    "import.line-needs-two-different",
+                    "The line of {where} needs two or more different corners",
+                    where=where,
+                ),
                 remedy,
                 "line",
                 line.tolist(),
@@ -65,51 +76,69 @@ def read_sections(
         for one in found:
             if any(section.name == one.name for section in sections):
                 raise InputError(
-                    said("Two sections have the name '{name}'", name=one.name), "Give each its own.", file=source.name
+                    message("import.two-sections-name", "Two sections have the name '{name}'", name=one.name),
+                    message("import.give-each-own-name", "Give each its own."),
+                    file=source.name,
                 )
         sections += found
         gather(gathered, points)
     for table in reader.tables(top, "level"):
         elevation = reader.get(table, "elevation", float, "[[level]]")
         if elevation is None:
-            raise reader.fail("A [[level]] has no elevation", "Write elevation = 1200.0.", "elevation")
-        where = said("level {elevation:g}", elevation=elevation)
+            raise reader.fail(
+                message("import.level-no-elevation", "A [[level]] has no elevation"),
+                message("import.write-elevation-1200", "Write elevation = 1200.0."),
+                "elevation",
+            )
+        where = message("place.level", "level {elevation:g}", elevation=elevation)
         source = reader.source(table, where, ("elevation", "scale", "origin"), "traces")
         drawing = _drawing(reader, table, where)
         gather(gathered, load_level(source, elevation, drawing, names, journal, region))
     return tuple(sections)
 
 
-def _drawing(reader: Reader, table: Mapping[str, Any], where: str) -> Drawing:
+def _drawing(reader: Reader, table: Mapping[str, Any], where: Message | str) -> Drawing:
     scale = reader.get(table, "scale", float, where)
     if scale is not None and scale <= 0:
         raise reader.fail(
-            said("scale in {where} must be above 0", where=where), "Give drawing units a metre.", "scale", scale
+            message("import.scale-above", "scale in {where} must be above 0", where=where),
+            message("import.give-drawing-units-metre", "Give drawing units a metre."),
+            "scale",
+            scale,
         )
-    remedy = "Write origin = [u, v], the drawing's coordinates of distance 0 and elevation 0."
-    origin = _pairs(reader, [table.get("origin", [0.0, 0.0])], said("origin of {where}", where=where), remedy)[0]
+    remedy = message(
+        "import.write-origin", "Write origin = [u, v], the drawing's coordinates of distance 0 and elevation 0."
+    )
+    origin = _pairs(
+        reader, [table.get("origin", [0.0, 0.0])], message("place.origin", "origin of {where}", where=where), remedy
+    )[0]
     return Drawing(scale=1.0 if scale is None else scale, origin=(float(origin[0]), float(origin[1])))
 
 
-def _pairs(reader: Reader, value: Any, where: str, remedy: str) -> Floats:
+def _pairs(reader: Reader, value: Any, where: Message | str, remedy: Message) -> Floats:
     try:
         pairs = np.array(value, dtype=np.float64)
     except (ValueError, TypeError):
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
-        raise reader.fail(said("The {where} is no list of finite pairs", where=where), remedy, value=value)
+        raise reader.fail(
+            message("import.no-list-finite-pairs", "The {where} is no list of finite pairs", where=where),
+            remedy,
+            value=value,
+        )
     return pairs
 
 
-def _check_line(reader: Reader, line: Floats, where: str, region: Region | None) -> None:
+def _check_line(reader: Reader, line: Floats, where: Message | str, region: Region | None) -> None:
     if region is not None and place_in(line, region) == "exchanged":
         raise reader.fail(
-            said(
+            message(
+                "import.look-exchanged-line-lies",
                 "x and y look exchanged in the line of {where}: it lies far outside the study area, and inside "
                 "it with x and y swapped",
                 where=where,
             ),
-            "x is the easting, y the northing.",
+            message("import.easting-northing", "x is the easting, y the northing."),
             "line",
             line.tolist(),
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError, SettingsError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message
 from geofit.data.points import KINDS, PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
@@ -29,7 +29,7 @@ from geofit.io.hints import nearest
 from geofit.io.horizon_columns import load_horizon_columns
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
-from geofit.io.mapping import load_mappings
+from geofit.io.mapping import ColumnMapping, load_mappings
 from geofit.io.orientations import load_orientations
 from geofit.io.parser_words import told_by
 from geofit.io.picks import load_picks
@@ -39,7 +39,7 @@ from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
 from geofit.io.source import Source
 from geofit.io.traces import load_traces
 
-__all__ = ["load_site", "read_site"]
+__all__ = ["build_site", "load_site", "read_site"]
 
 Floats = NDArray[np.float64]
 
@@ -84,7 +84,8 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
     site = load_site(path, progress)
     if not site.horizons:
         raise Reader(Path(path)).fail(
-            "The site has no horizon", "Add a [[horizon]] table and files that hold its points."
+            message("import.site-no-horizon", "The site has no horizon"),
+            message("import.add-horizon-table-files", "Add a [[horizon]] table and files that hold its points."),
         )
     return site
 
@@ -93,19 +94,55 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
     """Read a site file, which may have no horizon yet; see :func:`read_site`."""
     source = Source(path=Path(path))
     journal = Journal()
-    reader = Reader(source.path)
-    top = _parse(journal.read(source), source.name)
+    return build_site(_parse(journal.read(source), source.name), source.path, journal, progress=progress)
+
+
+def build_site(
+    top: dict[str, Any],
+    path: Path,
+    journal: Journal,
+    *,
+    mappings: Sequence[ColumnMapping] | None = None,
+    progress: Progress | None = None,
+) -> Site:
+    """Read the files that the tables of a site file name.
+
+    Parameters
+    ----------
+    top : dict
+        What the site file holds, as TOML gives it.
+    path : Path
+        Where the site file is, or will be: the files that it names count from its folder.
+    journal : Journal
+        Takes what the readers find.
+    mappings : sequence of ColumnMapping, optional
+        Column mappings; None: those of the file that ``[site]`` names.
+    progress : callable, optional
+        Called as ``progress(stage, fraction)``.
+
+    Raises
+    ------
+    InputError
+        As :func:`read_site`.
+    """
+    reader = Reader(path)
     reader.keys(top, TOP, "The site file")
     label = reader.get(top, "site", dict, "the site file") or {}
     reader.keys(label, ("name", "crs", "mapping", "order"), "[site]")
     crs = reader.get(label, "crs", str, "[site]") or ""
     reader.target = crs if is_code(crs) else None
-    if mapping := reader.get(label, "mapping", str, "[site]"):
-        reader.mappings = load_mappings(source.path.parent / mapping)
+    if mappings is not None:
+        reader.mappings = tuple(mappings)
+    elif mapping := reader.get(label, "mapping", str, "[site]"):
+        reader.mappings = load_mappings(path.parent / mapping)
     horizons = [_horizon(reader, table) for table in reader.tables(top, "horizon")]
     names = HorizonNames([horizon.name for horizon in horizons])
     if len(set(map(str.casefold, names.names))) < len(horizons):
-        raise reader.fail("Two [[horizon]] tables have one name", "Give each its own.", "name")
+        raise reader.fail(
+            message("import.two-horizon-tables-name", "Two [[horizon]] tables have one name"),
+            message("import.give-each-own-name", "Give each its own."),
+            "name",
+        )
 
     tell(progress, "read boundary and ground", 0.0)
     boundary, ground, region = _surroundings(reader, top, journal)
@@ -148,7 +185,7 @@ def load_site(path: str | Path, progress: Progress | None = None) -> Site:
     order, faults = _relations(reader, top, label, list(points))
     tell(progress, "read", 1.0)
     return Site(
-        name=reader.get(label, "name", str, "[site]") or source.path.parent.name,
+        name=reader.get(label, "name", str, "[site]") or path.parent.name,
         horizons=points,
         settings=settings,
         boundary=boundary,
@@ -171,34 +208,49 @@ def _parse(data: bytes, name: str) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         what, _ = told_by(error)
         raise InputError(
-            said("The site file is not UTF-8: {error}", error=what), "Save it as UTF-8.", file=name
+            message("import.site-file-not-utf", "The site file is not UTF-8: {error}", error=what),
+            message("import.save-utf", "Save it as UTF-8."),
+            file=name,
         ) from None
     except RecursionError:
-        raise InputError("The file is nested too deeply", "See docs/site_file.md.", file=name) from None
+        raise InputError(
+            message("import.file-nested-deeply", "The file is nested too deeply"),
+            message("import.see-docs-site-file", "See docs/site_file.md."),
+            file=name,
+        ) from None
     except tomllib.TOMLDecodeError as error:
         what, line = told_by(error)
         raise InputError(
-            said("The site file is no TOML: {error}", error=what), "See docs/site_file.md.", file=name, row=line
+            message("import.site-file-no-toml", "The site file is no TOML: {error}", error=what),
+            message("import.see-docs-site-file", "See docs/site_file.md."),
+            file=name,
+            row=line,
         ) from None
 
 
 def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
-    name = reader.need(table, "name", str, "[[horizon]]", 'Write name = "...".').strip()
-    where = said("horizon '{name}'", name=name)
+    name = reader.need(table, "name", str, "[[horizon]]", message("import.write-name", 'Write name = "...".')).strip()
+    where = message("place.horizon", "horizon '{name}'", name=name)
     if not name:
-        raise reader.fail("A [[horizon]] has an empty name", 'Write name = "...".', "name")
+        raise reader.fail(
+            message("import.horizon-empty-name", "A [[horizon]] has an empty name"),
+            message("import.write-name", 'Write name = "...".'),
+            "name",
+        )
     reader.keys(table, HORIZON, where)
     top, base = (reader.get(table, key, str, where) for key in ("top", "base"))
     if top is not None and base is not None:
         raise reader.fail(
-            said("{where} has both top and base", where=where), "Keep the one that is this horizon.", "base"
+            message("import.top-base", "{where} has both top and base", where=where),
+            message("import.keep-horizon", "Keep the one that is this horizon."),
+            "base",
         )
     accuracy = reader.get(table, "accuracy", dict, where) or {}
     for kind in accuracy:
-        if not reader.get(accuracy, kind, float, said("accuracy of {where}", where=where)) > 0:
+        if not reader.get(accuracy, kind, float, message("place.accuracy", "accuracy of {where}", where=where)) > 0:
             raise reader.fail(
-                said("accuracy of {where} must be above 0", where=where),
-                "Give one standard deviation in metres.",
+                message("import.accuracy-above", "accuracy of {where} must be above 0", where=where),
+                message("import.give-standard-deviation-metres", "Give one standard deviation in metres."),
                 kind,
                 accuracy[kind],
             )
@@ -206,7 +258,8 @@ def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
         settings = FitSettings(**{key: table[key] for key in SETTINGS if key in table})
     except (SettingsError, TypeError) as error:
         raise reader.fail(
-            said("{where}: {error}", where=where, error=str(error)), "Correct it in the site file."
+            message("import.where-error", "{where}: {error}", where=where, error=error),
+            message("import.correct-site-file", "Correct it in the site file."),
         ) from None
     return _Horizon(name, top, base, {kind: float(value) for kind, value in accuracy.items()}, settings)
 
@@ -232,15 +285,23 @@ def _compare(reader: Reader, boundary: Floats, ground: Region) -> None:
         x, y = boundary.mean(axis=0)
         swapped = place == "exchanged"
         raise reader.fail(
-            said(
+            message(
+                "import.boundary-around-lies-far",
                 "The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid, and on it with x "
                 "and y exchanged",
                 x=x,
                 y=y,
             )
             if swapped
-            else said("The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid", x=x, y=y),
-            "Exchange x and y of the boundary." if swapped else "Give both in the same coordinates.",
+            else message(
+                "import.boundary-around-lies-far-off",
+                "The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid",
+                x=x,
+                y=y,
+            ),
+            message("import.exchange-boundary", "Exchange x and y of the boundary.")
+            if swapped
+            else message("import.give-same-coordinates", "Give both in the same coordinates."),
             "boundary",
         )
 
@@ -251,24 +312,48 @@ def _boreholes(
     where = "[boreholes]"
     reader.keys(table, ("collar", "survey", "intervals", "dip", "declination", "desurvey"), where)
     if "collar" not in table:
-        raise reader.fail(said("{where} has no 'collar'", where=where), 'Write collar = "collar.csv".', "collar")
+        raise reader.fail(
+            message("import.no-collar", "{where} has no 'collar'", where=where),
+            message("import.write-collar-collar-csv", 'Write collar = "collar.csv".'),
+            "collar",
+        )
     dip = reader.get(table, "dip", str, where)
     if dip not in (None, "down-positive", "down-negative"):
-        raise reader.fail("The sign of the dips is unknown", 'Write "down-positive" or "down-negative".', "dip", dip)
+        raise reader.fail(
+            message("import.sign-dips-unknown", "The sign of the dips is unknown"),
+            message("import.write-down-positive-down", 'Write "down-positive" or "down-negative".'),
+            "dip",
+            dip,
+        )
     method = reader.get(table, "desurvey", str, where) or METHODS[0]
     if method not in METHODS:
         raise reader.fail(
-            "The way to desurvey is unknown", said("Write {names}.", names=" or ".join(METHODS)), "desurvey", method
+            message("import.way-desurvey-unknown", "The way to desurvey is unknown"),
+            message("import.write-names", "Write {names}.", names=" or ".join(METHODS)),
+            "desurvey",
+            method,
         )
     intervals = table.get("intervals", [])
     intervals = intervals if isinstance(intervals, list) else [intervals]
     return load_boreholes(
-        reader.source(table["collar"], said("{key} in {where}", key=Verbatim("collar"), where=where), kind="collar"),
-        reader.source(table["survey"], said("{key} in {where}", key=Verbatim("survey"), where=where), kind="survey")
+        reader.source(
+            table["collar"],
+            message("import.key-where", "{key} in {where}", key=Verbatim("collar"), where=where),
+            kind="collar",
+        ),
+        reader.source(
+            table["survey"],
+            message("import.key-where", "{key} in {where}", key=Verbatim("survey"), where=where),
+            kind="survey",
+        )
         if "survey" in table
         else None,
         [
-            reader.source(entry, said("{key} in {where}", key=Verbatim("intervals"), where=where), kind="intervals")
+            reader.source(
+                entry,
+                message("import.key-where", "{key} in {where}", key=Verbatim("intervals"), where=where),
+                kind="intervals",
+            )
             for entry in intervals
         ],
         dip,
@@ -294,12 +379,16 @@ def _gather_contacts(
         logged = [campaign for campaign in boreholes if campaign.logs]
         if not logged:
             raise reader.fail(
-                said(
+                message(
+                    "import.horizon-limit-site-no",
                     "horizon '{name}' is a limit of '{code}', but the site has no intervals",
                     name=horizon.name,
                     code=code,
                 ),
-                'Add intervals = ["lithology.csv"] to [boreholes], or remove top and base.',
+                message(
+                    "import.add-intervals-lithology-csv",
+                    'Add intervals = ["lithology.csv"] to [boreholes], or remove top and base.',
+                ),
                 "top" if horizon.top is not None else "base",
             )
         limit: Limit = "top" if horizon.top is not None else "base"
@@ -321,15 +410,25 @@ def _adits(
         return ()
     reader.keys(table, ("path", "contacts"), "[adits]")
     if "path" not in table:
-        raise reader.fail("[adits] has no 'path'", 'Write path = "adits.csv".', "path")
+        raise reader.fail(
+            message("import.adits-no-path", "[adits] has no 'path'"),
+            message("import.write-path-adits-csv", 'Write path = "adits.csv".'),
+            "path",
+        )
     adits = load_adits(
-        reader.source(table["path"], said("{key} in {where}", key=Verbatim("path"), where="[adits]"), kind="adit path"),
+        reader.source(
+            table["path"],
+            message("import.key-where", "{key} in {where}", key=Verbatim("path"), where="[adits]"),
+            kind="adit path",
+        ),
         journal,
         region,
     )
     if "contacts" in table:
         contacts = reader.source(
-            table["contacts"], said("{key} in {where}", key=Verbatim("contacts"), where="[adits]"), kind="adit contacts"
+            table["contacts"],
+            message("import.key-where", "{key} in {where}", key=Verbatim("contacts"), where="[adits]"),
+            kind="adit contacts",
         )
         gather(gathered, load_adit_contacts(contacts, adits, names, journal))
     return adits
@@ -346,11 +445,17 @@ def _relations(
     for fault, cut in faults.items():
         if fault in cut:
             raise reader.fail(
-                said("The fault '{fault}' is said to cut itself", fault=fault), "Name the horizons that it cuts.", fault
+                message("import.fault-said-cut", "The fault '{fault}' is said to cut itself", fault=fault),
+                message("import.name-horizons-cuts", "Name the horizons that it cuts."),
+                fault,
             )
         if fault in order:
             raise reader.fail(
-                said("The fault '{fault}' stands in the order of strata", fault=fault), "Take it out of it.", "order"
+                message(
+                    "import.fault-stands-order-strata", "The fault '{fault}' stands in the order of strata", fault=fault
+                ),
+                message("import.take-out", "Take it out of it."),
+                "order",
             )
     return order, faults
 
@@ -361,15 +466,31 @@ def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horiz
     for name in names:
         if name not in horizons:
             raise reader.fail(
-                said("{key} in {where} names '{name}', which is no horizon", key=Verbatim(key), where=where, name=name),
-                nearest(str(name), horizons, said("The horizons are: {names}.", names=", ".join(horizons))),
+                message(
+                    "import.names-unknown-horizon",
+                    "{key} in {where} names '{name}', which is no horizon",
+                    key=Verbatim(key),
+                    where=where,
+                    name=name,
+                ),
+                nearest(
+                    str(name),
+                    horizons,
+                    message("run.known-horizons", "The horizons are: {names}.", names=", ".join(horizons)),
+                ),
                 key,
                 name,
             )
         if names.count(name) > 1:
             raise reader.fail(
-                said("{key} in {where} names '{name}' twice", key=Verbatim(key), where=where, name=name),
-                "Name each horizon once.",
+                message(
+                    "import.names-twice",
+                    "{key} in {where} names '{name}' twice",
+                    key=Verbatim(key),
+                    where=where,
+                    name=name,
+                ),
+                message("import.name-horizon-once", "Name each horizon once."),
                 key,
             )
     return tuple(names)
@@ -385,8 +506,8 @@ def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> Point
     """Return the points with the site file's accuracy where their own file states none."""
     if not len(points):
         raise reader.fail(
-            said("Horizon '{name}' has no point in any file", name=horizon.name),
-            "Correct its name or code, or remove its [[horizon]] table.",
+            message("import.horizon-no-point-file", "Horizon '{name}' has no point in any file", name=horizon.name),
+            message("import.correct-name-code-remove", "Correct its name or code, or remove its [[horizon]] table."),
             "name",
         )
     accuracy = np.array(points.accuracy)
@@ -394,12 +515,13 @@ def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> Point
     for kind, value in horizon.accuracy.items():
         if kind not in kinds:
             raise reader.fail(
-                said(
+                message(
+                    "import.accuracy-unknown-kind",
                     "accuracy of horizon '{name}' names the kind '{kind}', which no point has",
                     name=horizon.name,
                     kind=Verbatim(kind),
                 ),
-                nearest(kind, kinds, said("The kinds are {names}.", names=", ".join(kinds))),
+                nearest(kind, kinds, message("import.known-kinds", "The kinds are {names}.", names=", ".join(kinds))),
                 kind,
             )
         accuracy[(points.kind == kind) & np.isnan(accuracy)] = value

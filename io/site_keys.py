@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Message, Verbatim, message
 from geofit.data.settings import FitSettings
 from geofit.io.hints import nearest
 from geofit.io.mapping import ColumnMapping
@@ -41,7 +41,12 @@ TOP = (
     "faults",
 )
 
-_KINDS = {str: said("a text"), dict: said("a table"), list: said("a list"), float: said("a number")}
+_KINDS = {
+    str: message("import.a-text", "a text"),
+    dict: message("import.a-table", "a table"),
+    list: message("import.a-list", "a list"),
+    float: message("import.a-number", "a number"),
+}
 
 
 class Reader:
@@ -55,22 +60,27 @@ class Reader:
         self.mappings: tuple[ColumnMapping, ...] = ()
         self.target: str | None = None
 
-    def fail(self, reason: str, remedy: str, key: str | None = None, value: Any = None) -> InputError:
+    def fail(self, reason: Message, remedy: Message, key: str | None = None, value: Any = None) -> InputError:
         """Return the error for a key."""
         return InputError(reason, remedy, file=self.file, column=key, value=None if value is None else str(value))
 
-    def keys(self, table: Mapping[str, Any], allowed: Iterable[str], where: str) -> None:
+    def keys(self, table: Mapping[str, Any], allowed: Iterable[str], where: Message | str) -> None:
         """Refuse keys that are not allowed, naming the nearest that is."""
         allowed = list(allowed)
         for key in table:
             if key not in allowed:
                 raise self.fail(
-                    said("{where} has no key '{key}'", where=where, key=Verbatim(key)),
-                    nearest(key, allowed, said("The keys are {names}.", names=", ".join(allowed)), cutoff=0.5),
+                    message("import.no-key", "{where} has no key '{key}'", where=where, key=Verbatim(key)),
+                    nearest(
+                        key,
+                        allowed,
+                        message("import.known-keys", "The keys are {names}.", names=", ".join(allowed)),
+                        cutoff=0.5,
+                    ),
                     key,
                 )
 
-    def get(self, table: Mapping[str, Any], key: str, kind: type, where: str) -> Any:
+    def get(self, table: Mapping[str, Any], key: str, kind: type, where: Message | str) -> Any:
         """Return the value of a key of the right kind, None if it is absent."""
         value = table.get(key)
         if value is None:
@@ -78,18 +88,26 @@ class Reader:
         numeric = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
         if not (numeric if kind is float else isinstance(value, kind)):
             raise self.fail(
-                said("{key} in {where} must be {kind}", key=Verbatim(key), where=where, kind=_KINDS[kind]),
-                "Correct its value.",
+                message(
+                    "import.key-where-kind",
+                    "{key} in {where} must be {kind}",
+                    key=Verbatim(key),
+                    where=where,
+                    kind=_KINDS[kind],
+                ),
+                message("import.correct-value", "Correct its value."),
                 key,
                 value,
             )
         return float(value) if kind is float else value
 
-    def need(self, table: Mapping[str, Any], key: str, kind: type, where: str, remedy: str) -> Any:
+    def need(self, table: Mapping[str, Any], key: str, kind: type, where: Message | str, remedy: Message) -> Any:
         """Return the value of a key that must be there."""
         value = self.get(table, key, kind, where)
         if value is None:
-            raise self.fail(said("{where} has no '{key}'", where=where, key=Verbatim(key)), remedy, key)
+            raise self.fail(
+                message("import.missing-key", "{where} has no '{key}'", where=where, key=Verbatim(key)), remedy, key
+            )
         return value
 
     def tables(self, top: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
@@ -98,13 +116,13 @@ class Reader:
         value = [value] if isinstance(value, dict) else value
         if not isinstance(value, list) or not all(isinstance(table, dict) for table in value):
             raise self.fail(
-                said("'{key}' is no table", key=Verbatim(key)),
-                said("Write [{key}] or [[{key}]] above its keys.", key=Verbatim(key)),
+                message("import.no-table", "'{key}' is no table", key=Verbatim(key)),
+                message("import.write-above-keys", "Write [{key}] or [[{key}]] above its keys.", key=Verbatim(key)),
                 key,
             )
         return value
 
-    def source(self, value: Any, where: str, more: Iterable[str] = (), kind: str = "") -> Source:
+    def source(self, value: Any, where: Message | str, more: Iterable[str] = (), kind: str = "") -> Source:
         """Return the file that a text or a table with ``file`` names; ``more`` keys are someone else's.
 
         ``kind`` is the mapping's name for its rows.
@@ -113,16 +131,23 @@ class Reader:
             value = {"file": value}
         if not isinstance(value, dict):
             raise self.fail(
-                said("{where} must name a file", where=where), 'Write "name.csv" or { file = "name.csv" }.', value=value
+                message("import.name-file", "{where} must name a file", where=where),
+                message("import.write-name-csv", 'Write "name.csv" or { file = "name.csv" }.'),
+                value=value,
             )
         self.keys(value, (*TABLE, *more), where)
-        file = self.need(value, "file", str, where, 'Write file = "name.csv".')
+        file = self.need(value, "file", str, where, message("import.write-file", 'Write file = "name.csv".'))
         columns = self.get(value, "columns", dict, where) or {}
         for role, column in columns.items():
             if not isinstance(column, (str, int)) or isinstance(column, bool):
                 raise self.fail(
-                    said("Column '{role}' in {where} must be a header or a number", role=Verbatim(role), where=where),
-                    "Correct its value.",
+                    message(
+                        "import.column-header-number",
+                        "Column '{role}' in {where} must be a header or a number",
+                        role=Verbatim(role),
+                        where=where,
+                    ),
+                    message("import.correct-value", "Correct its value."),
                     role,
                     column,
                 )

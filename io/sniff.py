@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.parser_words import told_by
 
 __all__ = [
@@ -63,27 +63,36 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
             return data.decode(encoding).removeprefix("\ufeff"), encoding
         except LookupError:
             raise InputError(
-                said("The encoding {encoding!r} is unknown", encoding=encoding),
-                "Give utf-8, utf-16, gb18030 or cp1252.",
+                message("import.encoding-unknown", "The encoding {encoding!r} is unknown", encoding=encoding),
+                message("import.give-utf-utf-16", "Give utf-8, utf-16, gb18030 or cp1252."),
                 file=name,
             ) from None
         except UnicodeError as error:
             what, _ = told_by(error)
             raise InputError(
-                said("The file is not written in {encoding}: {error}", encoding=encoding, error=what),
-                "Leave the encoding out.",
+                message(
+                    "import.file-not-written",
+                    "The file is not written in {encoding}: {error}",
+                    encoding=encoding,
+                    error=what,
+                ),
+                message("import.leave-encoding", "Leave the encoding out."),
                 file=name,
             ) from None
     if data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
-        raise InputError("This is a workbook, not a text table", "Save the sheet as CSV UTF-8.", file=name)
+        raise InputError(
+            message("import.workbook-not-text-table", "This is a workbook, not a text table"),
+            message("import.save-sheet-csv-utf", "Save the sheet as CSV UTF-8."),
+            file=name,
+        )
     for codec in _candidates(data):
         try:
             return data.decode(codec), codec
         except UnicodeError:
             continue
     raise InputError(
-        "The file is no text in UTF-8, UTF-16, GB18030 or Windows-1252",
-        "Save it as CSV UTF-8, or state its encoding.",
+        message("import.file-no-text-utf", "The file is no text in UTF-8, UTF-16, GB18030 or Windows-1252"),
+        message("import.save-csv-utf-state", "Save it as CSV UTF-8, or state its encoding."),
         file=name,
     )
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from geofit.data.errors import InputError
 from geofit.data.files import is_file, legible
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["Source", "as_source"]
 
@@ -62,26 +62,26 @@ class Source:
         object.__setattr__(self, "sep", words.get(self.sep, self.sep) if self.sep is not None else None)
         if self.sep is not None and len(self.sep) != 1:
             raise InputError(
-                said("The separator {sep!r} is not one character", sep=self.sep),
-                "Give one character, 'tab' or 'space'.",
+                message("import.separator-not-character", "The separator {sep!r} is not one character", sep=self.sep),
+                message("import.give-character-tab-space", "Give one character, 'tab' or 'space'."),
                 file=self.name,
             )
         if self.decimal not in (None, ".", ","):
             raise InputError(
-                said("The decimal mark {decimal!r} is unknown", decimal=self.decimal),
-                "Give '.' or ','.",
+                message("import.decimal-mark-unknown", "The decimal mark {decimal!r} is unknown", decimal=self.decimal),
+                message("import.give-decimal-mark", "Give '.' or ','."),
                 file=self.name,
             )
         if self.measure not in (None, "depth", "elevation"):
             raise InputError(
-                said("The measure {measure!r} is unknown", measure=self.measure),
-                "Give 'depth' or 'elevation'.",
+                message("import.measure-unknown", "The measure {measure!r} is unknown", measure=self.measure),
+                message("import.give-depth-elevation", "Give 'depth' or 'elevation'."),
                 file=self.name,
             )
         if self.decimal == "," and self.sep == ",":
             raise InputError(
-                "The comma cannot be both separator and decimal mark",
-                "Name the separator between the cells.",
+                message("import.comma-cannot-separator-decimal", "The comma cannot be both separator and decimal mark"),
+                message("import.name-separator-cells", "Name the separator between the cells."),
                 file=self.name,
             )
 
@@ -89,16 +89,23 @@ class Source:
         """Return the bytes of the file."""
         try:
             if self.path.exists() and not is_file(self.path) and not self.path.is_dir():
-                raise InputError("It is a pipe or a device, not a file", "Name a file.", file=self.name)
+                raise InputError(
+                    message("import.pipe-device-not", "It is a pipe or a device, not a file"),
+                    message("import.name-a-file", "Name a file."),
+                    file=self.name,
+                )
             return self.path.read_bytes()
         except ValueError:
             raise InputError(
-                "The name of the file has a NUL character", "Name a file.", file=self.name.replace("\0", "?")
+                message("import.file-nul-character", "The name of the file has a NUL character"),
+                message("import.name-a-file", "Name a file."),
+                file=self.name.replace("\0", "?"),
             ) from None
         except FileNotFoundError:
             raise InputError(
-                "There is no such file",
-                said(
+                message("import.file-missing", "There is no such file"),
+                message(
+                    "import.looked-names-site-file",
                     "It was looked for at {path}; names in a site file count from the site file's folder.",
                     path=self.path,
                 ),
@@ -106,8 +113,12 @@ class Source:
             ) from None
         except OSError as error:
             raise InputError(
-                said("The file cannot be opened: {error}", error=error.strerror or str(error)),
-                "Name a file that you may read.",
+                message(
+                    "import.file-cannot-opened",
+                    "The file cannot be opened: {error}",
+                    error=error.strerror or str(error),
+                ),
+                message("import.name-file-read", "Name a file that you may read."),
                 file=self.name,
             ) from None
 

@@ -8,7 +8,7 @@ from os import PathLike
 from pathlib import Path
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.surfaces.mesh_surface import MeshSurface
 from geofit.surfaces.patch_surface import PatchSurface
 
@@ -52,8 +52,14 @@ def read_surface(path: str | PathLike[str], name: str = "") -> PatchSurface | Me
     if not name and len(found) == 1:
         return next(iter(found.values()))
     if name not in found:
-        reason = said("The file has no surface '{name}'", name=name) if name else said("The file has several surfaces")
-        raise InputError(reason, said("Name one of: {names}.", names=", ".join(found)), file=str(path))
+        reason = (
+            message("import.file-surface", "The file has no surface '{name}'", name=name)
+            if name
+            else message("import.file-surfaces", "The file has several surfaces")
+        )
+        raise InputError(
+            reason, message("import.name-one-of", "Name one of: {names}.", names=", ".join(found)), file=str(path)
+        )
     return found[name]
 
 
@@ -89,7 +95,11 @@ def read_surfaces(
         for name, surface in _read(file).items():
             unique = name if name not in found else f"{file.stem} {name}"
             if unique in found:
-                raise InputError("The file is given twice", "Name each file once.", file=str(file))
+                raise InputError(
+                    message("export.file-given-twice", "The file is given twice"),
+                    message("export.name-file-once", "Name each file once."),
+                    file=str(file),
+                )
             found[unique] = replace(surface, name=unique)
     return found
 
@@ -108,8 +118,12 @@ def _read(path: Path) -> Mapping[str, PatchSurface | MeshSurface]:
             return read_tsurf(path)
         case ending:
             raise InputError(
-                said("A surface is not read from a file that ends in '{ending}'", ending=ending),
-                said("Give a file that ends in {names}.", names=", ".join(ENDINGS)),
+                message(
+                    "import.surface-not-read-file",
+                    "A surface is not read from a file that ends in '{ending}'",
+                    ending=ending,
+                ),
+                message("import.give-file-ends", "Give a file that ends in {names}.", names=", ".join(ENDINGS)),
                 file=str(path),
             )
     return read(path)

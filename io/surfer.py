@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.io.journal import Journal
 from geofit.io.source import Source
@@ -39,42 +39,57 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
             columns, rows, corners, z, blank = _binary_7(data)
     except (struct.error, ValueError, IndexError, OverflowError) as error:
         raise InputError(
-            said("The Surfer grid is damaged: {error}", error=str(error) or type(error).__name__),
-            "Export the grid again.",
+            message(
+                "import.surfer-grid-damaged",
+                "The Surfer grid is damaged: {error}",
+                error=str(error) or type(error).__name__,
+            ),
+            message("import.export-grid-again", "Export the grid again."),
             file=source.name,
         ) from None
     west, east, south, north = corners
     if columns < 2 or rows < 2 or z.size != columns * rows:
         raise InputError(
-            said(
+            message(
+                "import.grid-cells-columns-rows",
                 "The grid has {count} cells; columns x rows = {columns} x {rows} are needed, 2 x 2 at least",
                 count=z.size,
                 columns=columns,
                 rows=rows,
             ),
-            "Export the grid again.",
+            message("import.export-grid-again", "Export the grid again."),
             file=source.name,
         )
     if not (np.isfinite(corners).all() and east > west and north > south):
         raise InputError(
-            said(
+            message(
+                "import.grid-corners-no-area",
                 "The grid's corners are no area: x {west:g} to {east:g}, y {south:g} to {north:g}",
                 west=west,
                 east=east,
                 south=south,
                 north=north,
             ),
-            "Export the grid again.",
+            message("import.export-grid-again", "Export the grid again."),
             file=source.name,
         )
     z = np.where(np.isfinite(z) & (z < BLANK) & (z != blank), z, np.nan)
     if np.isnan(z).all():
-        raise InputError("No cell of the grid has an elevation", "Export the grid again.", file=source.name)
+        raise InputError(
+            message("import.no-cell-grid-elevation", "No cell of the grid has an elevation"),
+            message("import.export-grid-again", "Export the grid again."),
+            file=source.name,
+        )
     if np.isnan(z).any():
         journal.add(
             "note",
             source.name,
-            said("{count} of {total} cells have no data", count=int(np.isnan(z).sum()), total=z.size),
+            message(
+                "import.cells-no-data",
+                "{count} of {total} cells have no data",
+                count=int(np.isnan(z).sum()),
+                total=z.size,
+            ),
         )
     journal.count(source.name, rows, 0)
     scale = grid_unit(source)

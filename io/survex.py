@@ -15,7 +15,7 @@ import numpy as np
 from geofit.caves.shots import ShotList, polar
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.survex_settings import QUANTITIES, Settings, unit_of
@@ -69,8 +69,8 @@ class _Reader:
             elif word == "end":
                 if not stack:
                     raise InputError(
-                        "*end without *begin",
-                        "Remove it, or add *begin.",
+                        message("import.end-without-begin", "*end without *begin"),
+                        message("import.remove-begin", "Remove it, or add *begin."),
                         file=source.name,
                         row=row,
                         value=line.strip(),
@@ -82,8 +82,8 @@ class _Reader:
                 settings = self.command(word, rest, settings, source.name, row, line.strip())
         if stack:
             raise InputError(
-                said("*begin {name} is not closed", name=Verbatim(stack[-1][0])),
-                "Add *end: lines may be missing from the file.",
+                message("import.begin-not-closed", "*begin {name} is not closed", name=Verbatim(stack[-1][0])),
+                message("import.end-lines-may", "Add *end: lines may be missing from the file."),
                 file=source.name,
             )
 
@@ -94,8 +94,11 @@ class _Reader:
             path = path.with_name(path.name + ".svx")
         if depth >= _DEEPEST or not path.exists():
             raise InputError(
-                said("The included file {name} cannot be read", name=Verbatim(name)),
-                "Put it into the folder of the file that includes it; files must not include each other.",
+                message("import.included-file-cannot", "The included file {name} cannot be read", name=Verbatim(name)),
+                message(
+                    "import.put-folder-file",
+                    "Put it into the folder of the file that includes it; files must not include each other.",
+                ),
                 file=source.name,
                 row=row,
             )
@@ -113,7 +116,11 @@ class _Reader:
                     if changed.style not in ("normal", "passage", "ignore"):
                         self.list_(
                             "error",
-                            said("Data of this style are not read: {style}", style=Verbatim(" ".join(rest))),
+                            message(
+                                "import.data-style-not",
+                                "Data of this style are not read: {style}",
+                                style=Verbatim(" ".join(rest)),
+                            ),
                             "Write one line a shot with *data normal from to tape compass clino.",
                             file,
                             row,
@@ -149,7 +156,7 @@ class _Reader:
         except (ValueError, IndexError, KeyError):
             self.list_(
                 "error",
-                said("The command *{word} cannot be read", word=Verbatim(word)),
+                message("import.command-cannot-read", "The command *{word} cannot be read", word=Verbatim(word)),
                 "Correct its arguments.",
                 file,
                 row,
@@ -158,7 +165,7 @@ class _Reader:
             return settings
         self.list_(
             "warning",
-            said("The command *{word} is not read", word=Verbatim(word)),
+            message("import.command-not-read", "The command *{word} is not read", word=Verbatim(word)),
             "Check that it does not change the shots.",
             file,
             row,
@@ -189,7 +196,11 @@ class _Reader:
                 pass
         self.list_(
             "error",
-            said("The line is not data in the order {order}", order=Verbatim(" ".join(order) or settings.style)),
+            message(
+                "import.line-not-data",
+                "The line is not data in the order {order}",
+                order=Verbatim(" ".join(order) or settings.style),
+            ),
             "Correct the line or the *data command.",
             file,
             row,
@@ -305,6 +316,12 @@ def read_survex(source: Source | str | Path, journal: Journal | None = None) -> 
     survey = reader.survey()
     if reader.remarks:
         names = ", ".join(f"*{name} ({count})" for name, count in sorted(reader.remarks.items()))
-        journal.add("note", source.name, said("Commands that do not change geometry: {names}", names=Verbatim(names)))
+        journal.add(
+            "note",
+            source.name,
+            message(
+                "import.commands-not-change", "Commands that do not change geometry: {names}", names=Verbatim(names)
+            ),
+        )
     journal.count(source.name, reader.read, reader.read - reader.used)
     return replace(survey, issues=tuple(journal.issues[first_issue:]), counts=tuple(journal.counts[first_count:]))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.columns import SURVEY
 from geofit.io.desurvey import minimum_curvature
 from geofit.io.journal import Journal
@@ -57,11 +57,26 @@ class Stations:
         )
         azimuth[np.isnan(azimuth) & (np.abs(dip) == 90.0)] = 0.0
         for i in np.flatnonzero((np.isnan(azimuth) & np.isfinite(dip)) & rows.ok).tolist():
-            rows.reject(i, "azimuth", "The azimuth of an inclined hole is empty", "Complete the cell.")
+            rows.reject(
+                i,
+                "azimuth",
+                message("import.azimuth-inclined-hole-empty", "The azimuth of an inclined hole is empty"),
+                message("row.complete-cell", "Complete the cell."),
+            )
         for i in np.flatnonzero((np.abs(dip) > 90.0) & rows.ok).tolist():
-            rows.reject(i, "dip", "The dip is not between -90 and 90 degrees", "Give the angle from horizontal.")
+            rows.reject(
+                i,
+                "dip",
+                message("import.dip-not-90-90", "The dip is not between -90 and 90 degrees"),
+                message("import.give-angle-horizontal", "Give the angle from horizontal."),
+            )
         for i in np.flatnonzero((np.abs(azimuth) > 360.0) & rows.ok).tolist():
-            rows.reject(i, "azimuth", "The azimuth is not between 0 and 360 degrees", "Give degrees from north.")
+            rows.reject(
+                i,
+                "azimuth",
+                message("import.azimuth-not-360-degrees", "The azimuth is not between 0 and 360 degrees"),
+                message("import.give-degrees-north", "Give degrees from north."),
+            )
         azimuth = azimuth + declination
         dip = _downwards(rows, dip, sign)
         chosen = rows.ok & np.isfinite(dip)
@@ -93,14 +108,22 @@ def read_stations(
     name, depth = rows.text("hole"), rows.numbers("depth")
     rows.require_known("hole", name, holes, "collar table")
     for i in np.flatnonzero((depth < 0) & rows.ok).tolist():
-        rows.reject(i, "depth", "The station lies above the collar", "Depths count from the collar, downwards.")
+        rows.reject(
+            i,
+            "depth",
+            message("import.station-lies-above-collar", "The station lies above the collar"),
+            message("import.depths-count-collar-downwards", "Depths count from the collar, downwards."),
+        )
     stations = Stations.from_rows(rows, name, depth, sign, declination=declination)
     if not declination and any(np.abs(station.dip).min() < VERTICAL for station in stations.values()):
         journal.add(
             "note",
             rows.file,
-            "The azimuths are taken as relative to grid north",
-            "State declination = ... (degrees, east positive) where they are magnetic.",
+            message("import.azimuths-taken-relative-grid", "The azimuths are taken as relative to grid north"),
+            message(
+                "import.state-declination-degrees-east",
+                "State declination = ... (degrees, east positive) where they are magnetic.",
+            ),
             column=rows.table.header[rows.columns["azimuth"]],
         )
     first: dict[str, int] = {}
@@ -112,23 +135,27 @@ def read_stations(
             rows.warn(
                 i,
                 "depth",
-                said("Hole {hole} has no station at depth 0; it is straight down to its first station", hole=hole),
-                "Add the attitude at the collar.",
+                message(
+                    "import.hole-no-station-depth",
+                    "Hole {hole} has no station at depth 0; it is straight down to its first station",
+                    hole=hole,
+                ),
+                message("import.add-attitude-collar", "Add the attitude at the collar."),
             )
         if len(stations[hole].depth) == 1:
             rows.warn(
                 i,
                 "depth",
-                said("Hole {hole} has one station only; it is straight", hole=hole),
-                "Add stations where there are some.",
+                message("import.hole-station-straight", "Hole {hole} has one station only; it is straight", hole=hole),
+                message("import.add-stations-some", "Add stations where there are some."),
             )
     for hole in holes:
         if hole not in stations:
             journal.add(
                 "warning",
                 rows.file,
-                said("Hole {hole} has no survey; it is vertical", hole=hole),
-                "Add its stations where it is inclined.",
+                message("import.hole-no-survey-vertical", "Hole {hole} has no survey; it is vertical", hole=hole),
+                message("import.add-stations-inclined", "Add its stations where it is inclined."),
                 value=hole,
             )
     rows.close()
@@ -141,12 +168,13 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
     negative, positive = int((dip[used] < 0).sum()), int((dip[used] > 0).sum())
     if sign is None and negative == positive > 0:
         raise InputError(
-            said(
+            message(
+                "import.dips-positive-negative-sign",
                 "{positive} dips are positive and {negative} negative: the sign that points down is not clear",
                 positive=positive,
                 negative=negative,
             ),
-            'State dip = "down-positive" or dip = "down-negative".',
+            message("import.state-dip-down-positive", 'State dip = "down-positive" or dip = "down-negative".'),
             file=rows.file,
             column=rows.table.header[rows.columns["dip"]],
         )
@@ -155,18 +183,24 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
         rows.journal.add(
             "warning",
             rows.file,
-            said(
+            message(
+                "import.sign-dips-not-stated",
                 "The sign of the dips is not stated: {negative} are negative, {positive} positive; taken as {down} by "
                 "majority",
                 negative=negative,
                 positive=positive,
                 down=down,
             ),
-            'State dip = "down-positive" or dip = "down-negative".',
+            message("import.state-dip-down-positive", 'State dip = "down-positive" or dip = "down-negative".'),
             column=rows.table.header[rows.columns["dip"]],
         )
         for i in np.flatnonzero(used & ((dip > 0) if down == "down-negative" else (dip < 0))).tolist():
-            rows.warn(i, "dip", "By the majority's sign the hole points upwards here", "Check the sign.")
+            rows.warn(
+                i,
+                "dip",
+                message("import.majority-sign-hole-points", "By the majority's sign the hole points upwards here"),
+                message("import.check-sign", "Check the sign."),
+            )
     return -dip if down == "down-negative" else dip
 
 
@@ -178,8 +212,12 @@ def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats,
             rows.reject(
                 i,
                 "depth",
-                said("The station repeats the depth of row {row}", row=rows.line[kept[-1]]),
-                "Keep one of the rows.",
+                message(
+                    "import.station-repeats-depth-row",
+                    "The station repeats the depth of row {row}",
+                    row=rows.line[kept[-1]],
+                ),
+                message("import.keep-rows", "Keep one of the rows."),
             )
             continue
         if kept:
@@ -190,8 +228,13 @@ def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats,
                 rows.reject(
                     i,
                     "dip",
-                    said("The hole turns by {turn:.0f} degrees since row {row}", turn=turn, row=rows.line[kept[-1]]),
-                    "Check the sign of the dip and the azimuth.",
+                    message(
+                        "import.hole-turns-degrees-since",
+                        "The hole turns by {turn:.0f} degrees since row {row}",
+                        turn=turn,
+                        row=rows.line[kept[-1]],
+                    ),
+                    message("import.check-sign-dip-azimuth", "Check the sign of the dip and the azimuth."),
                 )
                 continue
         kept.append(i)

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import folded, said
+from geofit.data.languages import folded
+from geofit.data.messages import message
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, quoted_cells, split_line
 from geofit.io.source import Source
@@ -71,7 +72,11 @@ def read_table(source: Source, journal: Journal) -> Table:
     start = _skip_comments(lines, source.name, journal)
     sample = [line for line in lines[start : start + 4 * _SAMPLE] if line.strip()][:_SAMPLE]
     if not sample:
-        raise InputError("The file is empty", "A header and at least one row are needed.", file=source.name)
+        raise InputError(
+            message("import.file-empty", "The file is empty"),
+            message("import.header-least-row-needed", "A header and at least one row are needed."),
+            file=source.name,
+        )
     sep = source.sep or find_separator(sample)
     decimal = source.decimal or find_decimal(text, sep)
     start = _skip_titles(lines, start, sep, source.name, journal)
@@ -88,25 +93,30 @@ def read_table(source: Source, journal: Journal) -> Table:
     if named and below and is_units_row(split_line(below[0], sep)):
         units = tuple(cell.strip() for cell in split_line(below[0], sep))
         body = lines.index(below[0], body) + 1
-        journal.add("note", source.name, "This row holds the units", row=body, value=below[0])
+        journal.add(
+            "note", source.name, message("import.row-holds-units", "This row holds the units"), row=body, value=below[0]
+        )
     columns, numbers, malformed = _columns(lines, body, width, sep, source.name, journal)
     if not numbers and not malformed:
         raise InputError(
-            said("The file has a header ({names}) but no rows", names=shown(header)),
-            "Export the table again with its rows.",
+            message("import.file-header-no-rows", "The file has a header ({names}) but no rows", names=shown(header)),
+            message("import.export-table-again-rows", "Export the table again with its rows."),
             file=source.name,
         )
     journal.add(
         "note",
         source.name,
-        said(
+        message(
+            "import.read-cells-separated-decimal",
             "Read as {encoding}, cells separated by {separator}, decimal mark '{decimal}', {header}",
             encoding=encoding,
             separator=_SEPARATOR_NAMES.get(sep, repr(sep)),
             decimal=decimal,
-            header=said("with a header") if named else said("without a header"),
+            header=message("import.with-header", "with a header")
+            if named
+            else message("import.without-header", "without a header"),
         ),
-        "State encoding, sep or decimal where this is wrong.",
+        message("import.state-encoding-sep-decimal", "State encoding, sep or decimal where this is wrong."),
     )
     return Table(
         name=source.name,
@@ -132,7 +142,9 @@ def _skip_comments(lines: list[str], name: str, journal: Journal) -> int:
         journal.add(
             "note",
             name,
-            said("Comment lines at the head that are not read: {count}", count=skipped),
+            message(
+                "import.comment-lines-head-not", "Comment lines at the head that are not read: {count}", count=skipped
+            ),
             row=1,
             value=lines[0],
         )
@@ -148,7 +160,13 @@ def _skip_titles(lines: list[str], start: int, sep: str, name: str, journal: Jou
     while (
         k + 1 < len(filled) and widths[k] == 1 and sep != " " and sum(w > 1 for w in widths[k:]) > len(widths[k:]) // 2
     ):
-        journal.add("note", name, "A title above the header is not read", row=filled[k] + 1, value=lines[filled[k]])
+        journal.add(
+            "note",
+            name,
+            message("import.title-above-header-not", "A title above the header is not read"),
+            row=filled[k] + 1,
+            value=lines[filled[k]],
+        )
         k += 1
     return filled[k] if filled else start
 
@@ -184,15 +202,31 @@ def _columns(
             journal.add(
                 "error",
                 name,
-                said("Cells of the row: {count}, of the header: {width}", count=len(cells), width=width),
-                "Quote cells that hold the separator, or use another separator than the decimal mark.",
+                message(
+                    "import.cells-row-header",
+                    "Cells of the row: {count}, of the header: {width}",
+                    count=len(cells),
+                    width=width,
+                ),
+                message(
+                    "import.quote-cells-hold-separator",
+                    "Quote cells that hold the separator, or use another separator than the decimal mark.",
+                ),
                 row=number,
                 value=line[:120],
             )
         else:
             odd.append((number, (cells + [""] * width)[:width]))
     if blank:
-        journal.add("note", name, said("Lines without any cell filled, which are no rows: {count}", count=blank))
+        journal.add(
+            "note",
+            name,
+            message(
+                "import.lines-without-cell-filled",
+                "Lines without any cell filled, which are no rows: {count}",
+                count=blank,
+            ),
+        )
     cells = sep.join(regular).split(sep) if regular else []
     columns = [cells[j::width] + [row[j] for _, row in odd] for j in range(width)]
     numbers += [number for number, _ in odd]
@@ -232,8 +266,16 @@ def require_width(width: int, file: str) -> None:
     """
     if width > MOST_COLUMNS:
         raise InputError(
-            said("The table has {count} columns; at most {most} are read", count=width, most=MOST_COLUMNS),
-            "State the separator of the cells, or export the columns that are needed.",
+            message(
+                "import.table-columns-read",
+                "The table has {count} columns; at most {most} are read",
+                count=width,
+                most=MOST_COLUMNS,
+            ),
+            message(
+                "import.separator-cells-export",
+                "State the separator of the cells, or export the columns that are needed.",
+            ),
             file=file,
         )
 
@@ -241,7 +283,11 @@ def require_width(width: int, file: str) -> None:
 def shown(names: Sequence[str]) -> str:
     """Return the first names of columns with commas, and how many there are more."""
     text = ", ".join(folded(name, 60) for name in names[:_SHOWN])
-    return said("{names}, and {count} more", names=text, count=len(names) - _SHOWN) if len(names) > _SHOWN else text
+    return (
+        message("import.names-and-more", "{names}, and {count} more", names=text, count=len(names) - _SHOWN)
+        if len(names) > _SHOWN
+        else text
+    )
 
 
 def unique_names(names: list[str]) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.io.axes import Region, check_axes, place_in
@@ -18,7 +18,10 @@ from geofit.io.source import Source
 
 __all__ = ["load_traces"]
 
-OFF_GRID = (said("The point lies off the ground's grid"), said("Extend the grid or add its elevation."))
+OFF_GRID = (
+    message("import.point-lies-off-ground", "The point lies off the ground's grid"),
+    message("import.extend-grid-add-elevation", "Extend the grid or add its elevation."),
+)
 
 
 def load_traces(
@@ -63,10 +66,15 @@ def _from_dxf(
         place = place_in(xyz[:, :2], region)
         if place != "inside":
             raise InputError(
-                "The map lies far outside the study area, x and y look exchanged"
+                message(
+                    "import.map-lies-far-outside", "The map lies far outside the study area, x and y look exchanged"
+                )
                 if place == "exchanged"
-                else "The map lies far outside the study area",
-                "Save the drawing in the site's coordinates; a section is named by [[section]].",
+                else message("import.map-lies-far-outside-study", "The map lies far outside the study area"),
+                message(
+                    "import.save-drawing-site-coordinates",
+                    "Save the drawing in the site's coordinates; a section is named by [[section]].",
+                ),
                 file=source.name,
             )
     blank = np.flatnonzero(np.isnan(xyz[:, 2]))
@@ -74,7 +82,13 @@ def _from_dxf(
         raise _undraped(blank.size, source, int(drawn.number[blank[0]]))
     if blank.size and ground is not None:
         journal.add(
-            "note", source.name, said("Points at elevation 0 that are draped on the ground: {count}", count=blank.size)
+            "note",
+            source.name,
+            message(
+                "import.points-elevation-draped-ground",
+                "Points at elevation 0 that are draped on the ground: {count}",
+                count=blank.size,
+            ),
         )
         xyz[blank, 2] = ground.elevation(xyz[blank, 0], xyz[blank, 1])
     for i in np.flatnonzero(np.isnan(xyz[:, 2])).tolist():
@@ -92,8 +106,12 @@ def _from_dxf(
 
 def _undraped(count: int, source: Source, row: int) -> InputError:
     return InputError(
-        said("The site has no ground to drape the points without an elevation on ({count})", count=count),
-        "Add a column z, or a [ground] table to the site file.",
+        message(
+            "import.site-no-ground-drape",
+            "The site has no ground to drape the points without an elevation on ({count})",
+            count=count,
+        ),
+        message("import.add-column-ground-table", "Add a column z, or a [ground] table to the site file."),
         file=source.name,
         row=row,
     )

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
 from geofit.io.sniff import decode
 from geofit.io.source import Source
@@ -63,8 +63,8 @@ def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:
                 _take(objects[-1], key, line, words)
             except (ValueError, IndexError, KeyError):
                 raise InputError(
-                    said("This {key} cannot be read", key=key),
-                    "Export the TSurf again.",
+                    message("import.cannot-read", "This {key} cannot be read", key=key),
+                    message("import.export-tsurf-again", "Export the TSurf again."),
                     file=source.name,
                     row=row,
                     value=line[:80],
@@ -78,7 +78,11 @@ def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:
             name, k = f"{one.name} {k}", k + 1
         found[name] = one.surface(name)
     if not found:
-        raise InputError("The file holds no triangle of a TSurf", "Export a GOCAD TSurf.", file=source.name)
+        raise InputError(
+            message("import.file-holds-no-triangle", "The file holds no triangle of a TSurf"),
+            message("import.export-gocad-tsurf", "Export a GOCAD TSurf."),
+            file=source.name,
+        )
     return found
 
 

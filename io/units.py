@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.columns import plain_name
 from geofit.io.journal import Journal
 from geofit.io.source import Source
@@ -37,8 +37,8 @@ def metres_of(unit: str, file: str | None = None) -> float:
     known = _UNITS.get(unit.strip().casefold())
     if known is None:
         raise InputError(
-            said("The unit '{unit}' is unknown", unit=unit),
-            said("The units are {names}.", names=", ".join(METRES)),
+            message("import.unit-unknown", "The unit '{unit}' is unknown", unit=unit),
+            message("import.known-units", "The units are {names}.", names=", ".join(METRES)),
             file=file,
             value=unit,
         )
@@ -67,14 +67,15 @@ def length_factors(table: Table, columns: Mapping[str, int], source: Source, jou
         journal.add(
             "warning",
             table.name,
-            said(
+            message(
+                "import.marked-converted-metres",
                 "The {role} is marked as {mark}; it is converted to metres (1 {unit} = {metres:.10g} m)",
                 role=role,
                 mark=name,
                 unit=unit,
                 metres=METRES[unit],
             ),
-            'State unit = "m" where it is metres already.',
+            message("import.state-unit-metres-already", 'State unit = "m" where it is metres already.'),
             column=table.header[j],
         )
     return {role: factor for role, factor in factors.items() if factor != 1.0}

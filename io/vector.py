@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.cells import number_text, table_of
 from geofit.io.crs import refuse_degrees
 from geofit.io.extra import need
@@ -25,7 +25,7 @@ RING = "ring"
 def layer_names(source: Source) -> tuple[str, ...]:
     """Return the layers of a file that have a geometry."""
     source.read()
-    pyogrio = need("pyogrio", "gis", said("Reading the map {file}", file=source.name))
+    pyogrio = need("pyogrio", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
     try:
         layers = pyogrio.list_layers(source.path)
     except (pyogrio.errors.DataSourceError, OSError, ValueError) as error:
@@ -44,7 +44,7 @@ def read_features(source: Source, journal: Journal) -> Table:
         If the file cannot be read, or the places are longitude and latitude and no target system is named.
     """
     journal.read(source)
-    pyogrio = need("pyogrio", "gis", said("Reading the map {file}", file=source.name))
+    pyogrio = need("pyogrio", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
     import shapely
 
     try:
@@ -58,7 +58,11 @@ def read_features(source: Source, journal: Journal) -> Table:
         raise _damaged(source, error) from None
     crs = str(meta.get("crs") or "")
     if crs:
-        journal.add("note", source.name, said("The coordinate system of the layer is {crs}", crs=crs[:120]))
+        journal.add(
+            "note",
+            source.name,
+            message("import.coordinate-system-layer", "The coordinate system of the layer is {crs}", crs=crs[:120]),
+        )
     if crs and not source.crs and not source.target:
         refuse_degrees(crs, source.name)
     attributes = [str(name) for name in meta["fields"]]
@@ -70,7 +74,13 @@ def read_features(source: Source, journal: Journal) -> Table:
         lines = [] if shape is None else _rings(shape)
         if not any(len(line) for line in lines):
             malformed += 1
-            journal.add("error", source.name, "The feature has no place", "Draw it again.", row=i + 1)
+            journal.add(
+                "error",
+                source.name,
+                message("import.feature-no-place", "The feature has no place"),
+                message("import.draw-again", "Draw it again."),
+                row=i + 1,
+            )
         for line in lines:
             rings += 1
             for vertex in line:
@@ -107,7 +117,7 @@ def _text(value: Any) -> str:
 
 def _damaged(source: Source, error: Exception) -> InputError:
     return InputError(
-        said("The map cannot be read: {error}", error=str(error)),
-        "Open it in a GIS and save it as GeoPackage.",
+        message("import.map-cannot-read", "The map cannot be read: {error}", error=error),
+        message("import.open-gis-save-geopackage", "Open it in a GIS and save it as GeoPackage."),
         file=source.name,
     )

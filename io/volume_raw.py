@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["read_meta_image", "shape_and_type"]
 
@@ -36,7 +36,10 @@ def shape_and_type(
     InputError
         If there is no shape, or it does not fit the size.
     """
-    remedy = said("State the shape, slowest axis first, and the type: shape=(n0, n1, n2), dtype='uint8'.")
+    remedy = message(
+        "import.shape-slowest-axis",
+        "State the shape, slowest axis first, and the type: shape=(n0, n1, n2), dtype='uint8'.",
+    )
     found: tuple[int, ...] | None = None if shape is None else tuple(int(n) for n in shape)
     if found is None:
         three = re.search(r"(\d+)[xX](\d+)[xX](\d+)", file)
@@ -50,15 +53,22 @@ def shape_and_type(
             found = (edge,) * 3
         else:
             raise InputError(
-                said("a raw file of {size} bytes does not state its shape", size=size), remedy, file=str(path)
+                message("import.raw-file-bytes", "a raw file of {size} bytes does not state its shape", size=size),
+                remedy,
+                file=str(path),
             )
     if len(found) != 3 or min(found) < 1:
-        raise InputError(said("the shape {shape} is not that of a volume", shape=found), remedy, file=str(path))
+        raise InputError(
+            message("import.shape-not-volume", "the shape {shape} is not that of a volume", shape=found),
+            remedy,
+            file=str(path),
+        )
     count = found[0] * found[1] * found[2]
     stored = np.dtype(dtype) if dtype is not None else np.dtype(_SIZES.get(size // count, "u1"))
     if count * stored.itemsize != size:
         raise InputError(
-            said(
+            message(
+                "import.file-bytes-voxels",
                 "the file has {size} bytes, but {shape} voxels of {bytes} bytes each need {need}",
                 size=size,
                 shape=" x ".join(map(str, found)),
@@ -84,7 +94,9 @@ def read_meta_image(path: Path, data: bytes | None) -> tuple[NDArray[Any], tuple
         key, equals, value = content[end : stop if stop >= 0 else len(content)].decode("latin-1").partition("=")
         if (stop < 0 and not equals) or len(header) > 100:
             raise InputError(
-                said("its header has no line ElementDataFile"), said("Export the volume again."), file=str(path)
+                message("import.header-line-elementdatafile", "its header has no line ElementDataFile"),
+                message("import.export-volume-again", "Export the volume again."),
+                file=str(path),
             )
         header[key.strip()] = value.strip()
         end = stop + 1 if stop >= 0 else len(content)
@@ -95,8 +107,11 @@ def read_meta_image(path: Path, data: bytes | None) -> tuple[NDArray[Any], tuple
     sizes = [int(word) for word in header.get("DimSize", "").split()]
     if kind is None or len(sizes) != 3:
         raise InputError(
-            said("its header states no usable ElementType and DimSize of three numbers"),
-            said("Export the volume as a scalar image with three axes."),
+            message(
+                "import.header-usable-elementtype",
+                "its header states no usable ElementType and DimSize of three numbers",
+            ),
+            message("import.export-volume-scalar", "Export the volume as a scalar image with three axes."),
             file=str(path),
         )
     local = header["ElementDataFile"]

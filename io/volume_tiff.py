@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["read_tiff", "read_tiff_folder"]
 
@@ -34,8 +34,12 @@ def read_tiff(source: Any, name: str) -> NDArray[Any]:
             stated = re.search(r"images=(\d+)", str(image.tag_v2.get(270, ""))) if hasattr(image, "tag_v2") else None
             if count == 1 and stated is not None and int(stated[1]) > 1:
                 raise InputError(
-                    said("it states {count} slices, but lists only the first one", count=int(stated[1])),
-                    said("Save the stack as a TIFF with one page a slice, or as raw."),
+                    message(
+                        "import.slices-lists-first",
+                        "it states {count} slices, but lists only the first one",
+                        count=int(stated[1]),
+                    ),
+                    message("import.save-stack-tiff", "Save the stack as a TIFF with one page a slice, or as raw."),
                     file=name,
                 )
             out = np.empty((count, *first.shape), first.dtype)
@@ -44,9 +48,9 @@ def read_tiff(source: Any, name: str) -> NDArray[Any]:
                 slice_ = _page(image, name)
                 if slice_.shape != first.shape:
                     raise InputError(
-                        said("page {page} has {size} pixels, the first has {first}", page=page + 1,
+                        message("import.page-pixels-first", "page {page} has {size} pixels, the first has {first}", page=page + 1,
                              size=" x ".join(map(str, slice_.shape)), first=" x ".join(map(str, first.shape))),
-                        said("Export all slices with the same size."),
+                        message("import.export-slices-same", "Export all slices with the same size."),
                         file=name,
                     )  # fmt: skip
                 out[page] = slice_
@@ -59,7 +63,9 @@ def _page(image: Any, name: str) -> NDArray[Any]:
     values = np.asarray(image)
     if values.ndim != 2:
         raise InputError(
-            said("it is a colour image"), said("Export the labels or grey values as one channel."), file=name
+            message("import.colour-image", "it is a colour image"),
+            message("import.export-labels-grey", "Export the labels or grey values as one channel."),
+            file=name,
         )
     return values
 
@@ -69,15 +75,21 @@ def read_tiff_folder(path: Path) -> NDArray[Any]:
     files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff")]
     if not files:
         raise InputError(
-            said("the folder has no TIFF slice"), said("Name a folder of .tif files, or a file."), file=str(path)
+            message("import.folder-tiff-slice", "the folder has no TIFF slice"),
+            message("import.folder-tif-files", "Name a folder of .tif files, or a file."),
+            file=str(path),
         )
     files.sort(key=lambda file: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name)])
     slices = [read_tiff(file, file.name) for file in files]
     odd = next((file for file, slice_ in zip(files, slices, strict=True) if slice_.shape != slices[0].shape), None)
     if odd is not None:
         raise InputError(
-            said("its size differs from that of the first slice, {first}", first=files[0].name),
-            said("Export all slices with the same size."),
+            message(
+                "import.size-differs-first",
+                "its size differs from that of the first slice, {first}",
+                first=files[0].name,
+            ),
+            message("import.export-slices-same", "Export all slices with the same size."),
             file=str(odd),
         )
     return np.concatenate(slices)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.extra import need
 
 __all__ = ["read_zarr"]
@@ -17,7 +17,9 @@ __all__ = ["read_zarr"]
 
 def read_zarr(path: Path, name: str | None) -> NDArray[Any]:
     """Return an array of a zarr store; ``name`` is its place in a group, such as "0" in OME-Zarr."""
-    zarr = need("zarr", "volumes", said("Reading the zarr store {file}", file=path.name))
+    zarr = need(
+        "zarr", "volumes", message("import.reading-zarr-store", "Reading the zarr store {file}", file=path.name)
+    )
     node = zarr.open(str(path), mode="r")
     if name is not None:
         node = node[name]
@@ -25,8 +27,13 @@ def read_zarr(path: Path, name: str | None) -> NDArray[Any]:
         names = sorted(node.array_keys())
         if len(names) != 1:
             raise InputError(
-                said("it has {count} arrays: {names}", count=len(names), names=", ".join(names[:8])),
-                said("State which one: name='...'."),
+                message(
+                    "import.several-arrays",
+                    "it has {count} arrays: {names}",
+                    count=len(names),
+                    names=", ".join(names[:8]),
+                ),
+                message("import.state-which-one", "State which one: name='...'."),
                 file=str(path),
             )
         node = node[names[0]]

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.volume_raw import read_meta_image, shape_and_type
 from geofit.io.volume_tiff import read_tiff, read_tiff_folder
 from geofit.pores.memory import check_memory
@@ -81,7 +81,9 @@ def read_volume(
     try:
         return RockVolume(values, pore=pore, voxel=stated if voxel is None else voxel)
     except VolumeError as error:
-        raise VolumeError(said("{file}: {reason}", file=Path(path).name, reason=error.args[0])) from None
+        raise VolumeError(
+            message("import.file-reason", "{file}: {reason}", file=Path(path).name, reason=error.args[0])
+        ) from None
 
 
 def read_voxels(
@@ -94,18 +96,22 @@ def read_voxels(
     """Return the values of a volume's voxels as stored, and the voxel edges in metres if the file states them."""
     path = Path(path)
     if not path.exists():
-        raise InputError(said("there is no such file or folder"), said("Check the path."), file=str(path))
+        raise InputError(
+            message("import.file-folder", "there is no such file or folder"),
+            message("import.check-path", "Check the path."),
+            file=str(path),
+        )
     try:
         if path.is_dir():
             return _read_folder(path, name), None
-        check_memory(path.stat().st_size, said("Reading {file}", file=path.name))
+        check_memory(path.stat().st_size, message("import.reading", "Reading {file}", file=path.name))
         return _read_bytes(path, path.name, None, shape, dtype, name)
     except (OSError, EOFError, ValueError, zipfile.BadZipFile) as error:
         if isinstance(error, VolumeError):
             raise
         raise InputError(
-            said("the file is damaged or incomplete ({error})", error=str(error)),
-            said("Copy or export it again."),
+            message("import.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
+            message("import.copy-export-again", "Copy or export it again."),
             file=str(path),
         ) from None
 
@@ -153,8 +159,10 @@ def _read_bytes(
         found, stored = shape_and_type(file, raw.size, shape, dtype, path)
         return raw.view(stored).reshape(found), None
     raise InputError(
-        said("files ending in '{ending}' cannot be read as a rock volume", ending=kind),
-        said("Export the volume as one of: {kinds}.", kinds=KINDS),
+        message(
+            "import.files-ending-cannot", "files ending in '{ending}' cannot be read as a rock volume", ending=kind
+        ),
+        message("import.export-volume", "Export the volume as one of: {kinds}.", kinds=KINDS),
         file=str(path),
     )
 
@@ -166,7 +174,7 @@ def _read_zip(
         known = (*TIFF, *RAW, ".npy", ".npz", ".gz", ".mha")
         files = [entry for entry in archive.namelist() if Path(entry).suffix.lower() in known]
         chosen = _one_of(files, name, path)
-        check_memory(archive.getinfo(chosen).file_size, said("Reading {file}", file=path.name))
+        check_memory(archive.getinfo(chosen).file_size, message("import.reading", "Reading {file}", file=path.name))
         return _read_bytes(path, chosen, archive.read(chosen), shape, dtype, name)
 
 
@@ -178,10 +186,17 @@ def _one_of(names: list[str], wanted: str | None, path: Path) -> str:
         return names[0]
     if not names:
         raise InputError(
-            said("it has no volume that can be read"), said("Known kinds: {kinds}.", kinds=KINDS), file=str(path)
+            message("import.volume-read", "it has no volume that can be read"),
+            message("import.known-kinds-2", "Known kinds: {kinds}.", kinds=KINDS),
+            file=str(path),
         )
     raise InputError(
-        said("it has {count} volumes: {names}", count=len(names), names=", ".join(sorted(names)[:8])),
-        said("State which one: name='{example}'.", example=sorted(names)[0]),
+        message(
+            "import.several-volumes",
+            "it has {count} volumes: {names}",
+            count=len(names),
+            names=", ".join(sorted(names)[:8]),
+        ),
+        message("import.state-which-one-name", "State which one: name='{example}'.", example=sorted(names)[0]),
         file=str(path),
     )

@@ -12,7 +12,7 @@ from typing import Any
 from xml.etree.ElementTree import ParseError
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.cells import number_text, table_of
 from geofit.io.extra import need
 from geofit.io.journal import Journal
@@ -46,18 +46,23 @@ def read_sheet(source: Source, journal: Journal) -> Table:
     rows = sheets.get(name)
     if not rows:
         raise InputError(
-            said(
+            message(
+                "import.workbook-no-sheet-rows",
                 "The workbook has no sheet '{name}' with rows; its sheets are {names}",
                 name=name,
                 names=", ".join(sheets),
             ),
-            "Name one of them.",
+            message("import.name-one", "Name one of them."),
             file=source.name,
         )
     while len(rows) > 1 and sum(map(bool, rows[0][1])) == 1 and sum(map(bool, rows[1][1])) > 1:
         line, cells = rows.pop(0)
         journal.add(
-            "note", source.name, "A title above the header is not read", row=line, value=" ".join(cells).strip()
+            "note",
+            source.name,
+            message("import.title-above-header-not", "A title above the header is not read"),
+            row=line,
+            value=" ".join(cells).strip(),
         )
     first = rows[0][1]
     width = max(j + 1 for j, cell in enumerate(first) if cell)
@@ -68,14 +73,17 @@ def read_sheet(source: Source, journal: Journal) -> Table:
     if named and body and is_units_row(body[0][1]):
         line, units = body[0]
         body = body[1:]
-        journal.add("note", source.name, "This row holds the units", row=line)
+        journal.add("note", source.name, message("import.row-holds-units", "This row holds the units"), row=line)
     journal.add(
         "note",
         source.name,
-        said(
+        message(
+            "import.read-sheet",
             "Read from sheet '{sheet}', {header}",
             sheet=name,
-            header=said("with a header") if named else said("without a header"),
+            header=message("import.with-header", "with a header")
+            if named
+            else message("import.without-header", "without a header"),
         ),
     )
     return table_of(source, journal, header, body, units=units, named=named)
@@ -83,7 +91,9 @@ def read_sheet(source: Source, journal: Journal) -> Table:
 
 def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]:
     """Return the filled rows of each sheet: line and cells."""
-    openpyxl = need("openpyxl", "xlsx", said("Reading the workbook {file}", file=source.name))
+    openpyxl = need(
+        "openpyxl", "xlsx", message("import.reading-workbook", "Reading the workbook {file}", file=source.name)
+    )
     failures = (
         openpyxl.utils.exceptions.InvalidFileException,
         zipfile.BadZipFile,
@@ -112,8 +122,15 @@ def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]
             return sheets
     except failures as error:
         raise InputError(
-            said("The workbook cannot be read: {error}", error=str(error) or type(error).__name__),
-            "Open it in a spreadsheet program and save it as .xlsx, or the sheet as CSV UTF-8.",
+            message(
+                "import.workbook-cannot-read",
+                "The workbook cannot be read: {error}",
+                error=str(error) or type(error).__name__,
+            ),
+            message(
+                "import.open-spreadsheet-program-save",
+                "Open it in a spreadsheet program and save it as .xlsx, or the sheet as CSV UTF-8.",
+            ),
             file=source.name,
         ) from None
 
@@ -124,12 +141,13 @@ def _require_size(data: bytes, file: str) -> None:
         unpacked = sum(member.file_size for member in archive.infolist())
     if unpacked > MOST_BYTES:
         raise InputError(
-            said(
+            message(
+                "import.workbook-unpacks-read",
                 "The workbook unpacks to {size:.0f} MB; at most {most:.0f} are read",
                 size=unpacked / 1e6,
                 most=MOST_BYTES / 1e6,
             ),
-            "Save the sheet as CSV UTF-8.",
+            message("import.save-sheet-csv-utf", "Save the sheet as CSV UTF-8."),
             file=file,
         )
 
@@ -145,7 +163,8 @@ def _filled_rows(values: Iterable[Sequence[Any]], file: str) -> list[tuple[int, 
     for line, row in enumerate(values, 1):
         if line > MOST_ROWS or cells_read > MOST_CELLS:
             raise InputError(
-                said(
+                message(
+                    "import.sheet-rows-cells",
                     "The sheet has more rows ({rows}) or cells ({cells}) than can be read; at most {most_rows} and "
                     "{most_cells}",
                     rows=line,
@@ -153,7 +172,10 @@ def _filled_rows(values: Iterable[Sequence[Any]], file: str) -> list[tuple[int, 
                     most_rows=MOST_ROWS,
                     most_cells=MOST_CELLS,
                 ),
-                "Remove the rows and columns beyond the table, or save the sheet as CSV UTF-8.",
+                message(
+                    "import.remove-rows-columns",
+                    "Remove the rows and columns beyond the table, or save the sheet as CSV UTF-8.",
+                ),
                 file=file,
             )
         width = len(row)

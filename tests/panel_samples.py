@@ -12,6 +12,7 @@ import pytest
 pytest.importorskip("PySide6", reason="the windows need PySide6 (extra gui)")
 
 import geofit
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
 from geofit.data.site import Site
@@ -73,5 +74,5 @@ def off_data(n: int) -> OffData:
         Uncertainty(x, y, np.full((9, 5), 2.0), 1.62, 1.1, 6.2, np.full((9, 5), 1.62)),
         (Suggestion(10.0, 20.0, 1210.5, 6.2, 1.0, 5.9), Suggestion(30.0, 40.0, 1211.5, 5.8, 0.9, 5.2)),
         (Outlier(7, 1.9, 0.4, 4.75), Outlier(3, -1.2, 0.4, -3.0)),
-        ("Two sections cross; they are left out together.",),
+        (message("test.sections-cross", "Two sections cross; they are left out together"),),
     )

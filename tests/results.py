@@ -8,8 +8,8 @@ import numpy as np
 
 from geofit import FitSettings, PointSet, Site
 from geofit.checks.storage import equal_accuracy
-from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Partition, ReadBack, Seam
-from geofit.data.messages import said
+from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, Partition, ReadBack, Seam
+from geofit.data.messages import message
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
 from geofit.data.site import Hole, ImportIssue, Section, TableCount
 from geofit.fitting.horizon_fit import HorizonFit
@@ -74,8 +74,8 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         by_hole={},
         by_section={f"S{i + 1}": group(d[i * 12 : i * 12 + 12]) for i in range(10)},
         over={
-            "interior tolerance 0.1 m": int((np.abs(d) > 0.1).sum()),
-            f"epsilon {epsilon:g} m": int((np.abs(d) > epsilon).sum()),
+            "interior_tolerance": Exceedance(0.1, int((np.abs(d) > 0.1).sum())),
+            "epsilon": Exceedance(epsilon, int((np.abs(d) > epsilon).sum())),
         },
         worst=tuple(np.argsort(-np.abs(d), kind="stable")[:20].tolist()),
         seams=(Seam("core", "west", 0.0, 0.0002), Seam("core", "east", 2e-10, 0.0003)),
@@ -86,11 +86,23 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
                 0.0,
                 0.0,
                 "places",
-                said("{count} of {total} places folded or degenerate", count=0, total=90),
+                message(
+                    "check.places-folded-degenerate",
+                    "{count} of {total} places folded or degenerate",
+                    count=0,
+                    total=90,
+                ),
             ),
-            Check("above ground", None, float("nan"), float("nan"), "m", "no ground surface was given"),
+            Check(
+                "above ground",
+                None,
+                float("nan"),
+                float("nan"),
+                "m",
+                message("test.text", "no ground surface was given"),
+            ),
         ),
-        conflicts=(Conflict(130, 131, 0.8, "the borehole is more exact than the section"),),
+        conflicts=(Conflict(130, 131, 0.8, message("test.text", "the borehole is more exact than the section")),),
     )
     corners = ((0.0, -600.0), (800.0, -600.0), (800.0, 600.0), (0.0, 600.0))
     surface = HorizonFit(
@@ -98,7 +110,12 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         points=points,
         settings=FitSettings(epsilon=epsilon),
         name=name,
-        partition=Partition(tuple((x + ORIGIN[0], y + ORIGIN[1]) for x, y in corners), 120, 80, "Dense in the middle."),
+        partition=Partition(
+            tuple((x + ORIGIN[0], y + ORIGIN[1]) for x, y in corners),
+            120,
+            80,
+            message("test.text", "Dense in the middle."),
+        ),
         core=core,
         accuracy=accuracy,
         diagnostics={"smoothing": 0.0123, "frame": "map", "iterations": 3},
@@ -111,8 +128,16 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
         holes=(Hole("ZK1", "borehole", np.array([0.0, 80]), np.add(ORIGIN, [[0.0, 0, 90], [10, 0, 10]])),),
         sections=(Section("S1", boundary[:2]),),
         issues=(
-            ImportIssue("picks.csv", 7, "z", "abc", "error", "no number", "write metres"),
-            ImportIssue("picks.csv", 0, "", "", "note", "separator ';' was guessed"),
+            ImportIssue(
+                "picks.csv",
+                7,
+                "z",
+                "abc",
+                "error",
+                message("test.text", "no number"),
+                message("test.text", "write metres"),
+            ),
+            ImportIssue("picks.csv", 0, "", "", "note", message("test.text", "separator ';' was guessed")),
         ),
         counts=(TableCount("picks.csv", 201, 200, 1),),
         crs="CGCS2000 / 3-degree 105E",
@@ -121,7 +146,7 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
     back = ReadBack(
         f"{name}.step", "cd" * 32, 3, total.sigma, 3e-9, total.max_abs, accuracy.seams, True, 8, 8, 1e-7,
         False,
-        (Check("free edges", True, 8, 8, "", "all on the outline"),),
+        (Check("free edges", True, 8, 8, "", message("test.text", "all on the outline")),),
     )  # fmt: skip
     return HorizonResult(surface, site, back, equal_accuracy(surface, 0.1), 123_456, {"fit": 0.5, "pictures": 1.25})
 
@@ -148,6 +173,12 @@ def examined(result: HorizonResult) -> HorizonResult:
         field,
         holes,
         (Outlier(150, 0.91, 0.2, 4.5),),
-        (said("without {failed} of the sections no surface can be laid", failed=2),),
+        (
+            message(
+                "prediction.without-sections-no-surface",
+                "without {failed} of the sections no surface can be laid",
+                failed=2,
+            ),
+        ),
     )
     return replace(result, offdata=found)

@@ -117,8 +117,8 @@ def test_the_page_names_a_set_that_failed(load):
     page = load("realdata.page")
     row = page.Row("Set: top", 7, FitSettings(), None, figures(load, 1.0, 1.0), None, "The points lie on one line.")
     text = page.markdown([row], [("Set", "all points")])
-    assert "| Set: top | 7 | – | – | 0.5 | 0.1 | ERROR |" in text
-    assert "- **Set: top, 0.5 / 0.1 m**: The points lie on one line." in text
+    assert "| Set: top | 7 | – | – | 0.5 | 0.1 | ERROR |" in str(text)
+    assert "- **Set: top, 0.5 / 0.1 m**: The points lie on one line." in str(text)
 
 
 def test_the_page_does_not_hold_seconds_that_change(load):

@@ -11,6 +11,7 @@ import pytest
 
 from geofit.data.errors import InputError
 from geofit.data.files import is_file, legible, replacing, spreadsheet_cell
+from geofit.data.messages import message
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="limits of files are those of Linux and macOS")
 
@@ -111,7 +112,7 @@ def test_tables_that_are_written_hold_no_formulas(tmp_path):
     from geofit.data.site import ImportIssue
     from geofit.report.tables import write_issues
 
-    write_issues([ImportIssue("=cmd", 3, "@c", "-2+3", "error", "+r")], tmp_path / "i.csv")
+    write_issues([ImportIssue("=cmd", 3, "@c", "-2+3", "error", message("test.text", "+r"))], tmp_path / "i.csv")
     row = (tmp_path / "i.csv").read_text("utf-8-sig").splitlines()[1]
     assert row == "error,'=cmd,3,'@c,'-2+3,'+r,"
 

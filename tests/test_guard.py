@@ -11,10 +11,11 @@ import geofit
 from geofit import PointSet, fit_horizon
 from geofit.data.errors import Cancelled, FitError
 from geofit.data.guard import guarded
+from geofit.data.languages import ZH, translate
+from geofit.data.messages import message
 from geofit.prediction import crossval
 from geofit.prediction.examine import examine
 from geofit.project.run import deliver
-from geofit.report.language import ZH, tell
 from geofit.site import fit_site as sitefit
 
 
@@ -39,7 +40,7 @@ def test_a_geofit_error_is_reported_in_its_own_words():
     notes = []
 
     def refuse():
-        raise FitError("too few points")
+        raise FitError(message("test.text", "too few points"))
 
     assert guarded(refuse, "instead", notes.append) == "instead"
     assert notes == ["too few points"]
@@ -49,10 +50,10 @@ def test_an_unforeseen_error_is_reported_with_its_kind_and_line():
     notes = []
     assert guarded(broken, None, notes.append) is None
     assert notes[0].startswith("unforeseen error ZeroDivisionError (planted; test_guard.py:")
-    assert tell(notes[0], ZH).startswith("未预见的错误 ZeroDivisionError（planted")
+    assert translate(notes[0], ZH).startswith("未预见的错误 ZeroDivisionError（planted")
 
 
-@pytest.mark.parametrize("stop", [Cancelled("stopped"), KeyboardInterrupt()])
+@pytest.mark.parametrize("stop", [Cancelled(message("test.text", "stopped")), KeyboardInterrupt()])
 def test_a_stop_passes_through(stop):
     def stopped():
         raise stop

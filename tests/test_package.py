@@ -219,7 +219,7 @@ def test_no_machine_path_and_no_registry_host_in_the_repository():
         if path.suffix in (".png", ".dxf"):
             continue
         text = path.read_bytes().decode("utf-8", errors="replace")
-        wrong += [f"{path.relative_to(ROOT)}: {word}" for word in hosts + places if word in text]
+        wrong += [f"{path.relative_to(ROOT)}: {word}" for word in hosts + places if word in str(text)]
     assert not wrong, "\n".join(wrong)
 
 

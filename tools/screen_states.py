@@ -15,7 +15,7 @@ from PySide6.QtCore import QBuffer, QCoreApplication, QEvent, QSettings, Qt
 from PySide6.QtWidgets import QApplication, QDialog, QWidget
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Site
 from geofit.gui.desktop import Desktop
 from geofit.gui.dialogs.error import ErrorDialog
@@ -202,8 +202,8 @@ class _Set:
 
     def small(self) -> None:
         error = InputError(
-            said("The separator {sep!r} is not one character", sep=";;"),
-            said("Give one character, 'tab' or 'space'."),
+            message("import.separator-not-character", "The separator {sep!r} is not one character", sep=";;"),
+            message("import.give-character-tab-space", "Give one character, 'tab' or 'space'."),
             file="lithology.csv",
         )
         self.dialog("16_error", ErrorDialog(self.window.files.tr("Open {name}").format(name="site.toml"), error,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.accuracy import Accuracy, Check, Conflict, Group
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 if TYPE_CHECKING:
     from geofit.bodies.body import ImplicitBody
@@ -21,8 +21,8 @@ Floats = NDArray[np.float64]
 WORST = 20
 #: Sides of the box, and how a sentence calls them.
 SIDE_WORDS = {
-    "west": said("west"), "east": said("east"), "south": said("south"), "north": said("north"),
-    "bottom": said("bottom"), "top": said("top"),
+    "west": message("side.west", "west"), "east": message("side.east", "east"), "south": message("side.south", "south"), "north": message("side.north", "north"),
+    "bottom": message("side.bottom", "bottom"), "top": message("side.top", "top"),
 }  # fmt: skip
 
 
@@ -70,32 +70,32 @@ def examine(body: ImplicitBody) -> BodyAccuracy:
     checks = (
         Check(
             "sides", wrong == 0, float(wrong), 0.0, "1",
-            said("{wrong} of {count} samples lie on the wrong side of the surface", wrong=wrong,
+            message("bodies.samples-wrong-side", "{wrong} of {count} samples lie on the wrong side of the surface", wrong=wrong,
                  count=len(data.inside) + len(data.outside)),
             tuple((float(x), float(y), float(z)) for x, y, z in places),
         ),
         Check(
             "logged lengths", missed + excess <= 0.0 if logged else None, missed + excess, 0.0, "m",
-            said("{missed:.2f} m are logged inside but lie outside the body, {excess:.2f} m the reverse, of "
+            message("bodies.logged-inside-outside", "{missed:.2f} m are logged inside but lie outside the body, {excess:.2f} m the reverse, of "
                  "{logged:.1f} m", missed=missed, excess=excess, logged=logged),
         ),
         Check(
             "crossings", extra_in + extra_out == 0, float(extra_in + extra_out), 0.0, "1",
-            said("{count} places where a hole crosses the surface between two samples of one side",
+            message("bodies.places-where-hole", "{count} places where a hole crosses the surface between two samples of one side",
                  count=extra_in + extra_out),
         ),
         Check(
             "components", unsupported == 0, float(unsupported), 0.0, "1",
-            said("{count} parts of the body hold no contact and no inside sample", count=unsupported),
+            message("bodies.parts-body-hold", "{count} parts of the body hold no contact and no inside sample", count=unsupported),
         ),
         Check(
             "closed", not cut, float(len(cut)), 0.0, "1",
-            said("The body is closed in its box") if not cut else
-            said("The body is cut at the box: {sides}", sides=", ".join(SIDE_WORDS[side] for side in cut)),
+            message("bodies.closed-in-box", "The body is closed in its box") if not cut else
+            message("bodies.cut-at-box", "The body is cut at the box: {sides}", sides=", ".join(SIDE_WORDS[side] for side in cut)),
         ),
         Check(
             "far from data", None, far_share, 1.0, "1",
-            said("{share:.1%} of the surface is farther than {distance:.1f} m from all data", share=far_share,
+            message("bodies.surface-farther-data", "{share:.1%} of the surface is farther than {distance:.1f} m from all data", share=far_share,
                  distance=far),
         ),
     )  # fmt: skip
@@ -171,14 +171,14 @@ def _notes(body: ImplicitBody) -> tuple[str, ...]:
     fitted, region = body.fitted, body.region
     samples = len(fitted.prepared.inside) + len(fitted.prepared.outside)
     notes: list[str] = [
-        said(
-            "{active} of {samples} samples are active; the field satisfies {conditions} conditions",
+        message(
+            "bodies.samples-active-field", "{active} of {samples} samples are active; the field satisfies {conditions} conditions",
             active=fitted.active, samples=samples + len(region.closing), conditions=fitted.conditions,
         )
     ]  # fmt: skip
     if len(region.closing):
         notes.append(
-            said("Ground farther than {reach:.1f} m from contacts and inside samples counts as outside "
+            message("bodies.ground-farther-contacts", "Ground farther than {reach:.1f} m from contacts and inside samples counts as outside "
                  "({count} places)", reach=region.reach, count=len(region.closing))
         )  # fmt: skip
     notes += [issue.text for issue in body.issues]

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from geofit.bodies.kernels import gram, sweep
 from geofit.bodies.rbf import NONE, Rbf, Saddle
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["ActiveFit", "Samples", "complementarity", "fit_active", "fixes_trend", "spread"]
 
@@ -204,7 +204,8 @@ def fixes_trend(points: Floats, oriented: Floats) -> bool:
 
 def _unsatisfied(count: int, rounds: int) -> FitError:
     return FitError(
-        said(
+        message(
+            "bodies.samples-still-wrong",
             "{count} samples are still on the wrong side after {rounds} rounds. Look for intervals that contradict "
             "the contacts, or give the contacts a larger coincidence_distance.",
             count=count,

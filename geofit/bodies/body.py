@@ -18,7 +18,7 @@ from geofit.bodies.fitted import Fitted
 from geofit.bodies.region import Region
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import FitError, SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
@@ -121,7 +121,7 @@ class ImplicitBody:
         longest = float((upper - lower).max())
         if not np.isfinite(spacing) or spacing <= 0 or longest / spacing > MOST:
             raise SettingsError(
-                said("A spacing of {spacing} m cannot be used for a body {size:.1f} m long: give {least:.3g} m or "
+                message("bodies.spacing-cannot-used", "A spacing of {spacing} m cannot be used for a body {size:.1f} m long: give {least:.3g} m or "
                      "more.",
                      spacing=spacing, size=longest, least=longest / MOST)
             )  # fmt: skip

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["cap_triangles"]
 
@@ -96,7 +96,7 @@ def _delaunay(vertices: Floats, loops: Sequence[list[int]], name: str) -> Ints:
     number = {tuple(vertices[k, :2].tolist()): k for loop in loops for k in loop}
     if not all(ring.is_valid for ring in rings) or len(number) < sum(map(len, loops)):
         raise FitError(
-            said("The cut along '{name}' crosses itself: the body's triangles are too coarse for it. Give cut() a "
+            message("bodies.cut-along-crosses", "The cut along '{name}' crosses itself: the body's triangles are too coarse for it. Give cut() a "
                  "smaller spacing.", name=name)
         )  # fmt: skip
     order = sorted(range(len(rings)), key=lambda k: -rings[k].area)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.cap import cap_triangles
 from geofit.data.errors import FitError, SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
@@ -110,14 +110,14 @@ def _named(surfaces: Any) -> list[tuple[str, CuttingSurface]]:
     for name, surface in named:
         if names.count(name) > 1 or not hasattr(surface, "elevation"):
             raise SettingsError(
-                said("Surface '{name}' cannot cut the body: each needs a name of its own and elevation(x, y).",
+                message("bodies.surface-cannot-cut", "Surface '{name}' cannot cut the body: each needs a name of its own and elevation(x, y).",
                      name=name)
             )  # fmt: skip
     return named
 
 
 def _label(body: str, sides: Mapping[str, Side]) -> str:
-    words = [said("above {surface}", surface=k) if v == "above" else said("below {surface}", surface=k)
+    words = [message("bodies.above", "above {surface}", surface=k) if v == "above" else message("bodies.below", "below {surface}", surface=k)
              for k, v in sides.items()]  # fmt: skip
     return f"{body}: {', '.join(words)}" if words else body
 
@@ -143,7 +143,7 @@ def split_mesh(mesh: TriangleMesh, height: Height, name: str = "") -> tuple[Tria
     level = vertices[:, 2] - height(vertices[:, 0], vertices[:, 1])
     if not np.isfinite(level).all():
         raise FitError(
-            said("Surface '{name}' does not reach {share:.1%} of the body. Enlarge the surface, or leave it out.",
+            message("bodies.surface-not-reach", "Surface '{name}' does not reach {share:.1%} of the body. Enlarge the surface, or leave it out.",
                  name=name, share=float((~np.isfinite(level)).mean()))
         )  # fmt: skip
     up = level >= 0

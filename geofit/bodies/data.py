@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, PointsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["BodyData", "BodyIssue", "Prepared", "prepare"]
 
@@ -95,7 +95,7 @@ class BodyData:
             known = known.reshape(0, 3)
         if known.shape != (n, 3):
             raise PointsError(
-                said("normals has shape {shape}; {n} contacts need shape ({n}, 3), NaN where no normal is known.",
+                message("bodies.normals-shape-contacts", "normals has shape {shape}; {n} contacts need shape ({n}, 3), NaN where no normal is known.",
                      shape=known.shape, n=n)
             )  # fmt: skip
         self._set("normals", known)
@@ -137,19 +137,24 @@ def _places(name: str, given: ArrayLike) -> Floats:
         xyz = np.array(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise PointsError(
-            said("{name} must hold numbers: {error}. Give an (n, 3) array of metres.", name=name, error=str(error))
+            message(
+                "bodies.hold-array",
+                "{name} must hold numbers: {error}. Give an (n, 3) array of metres.",
+                name=name,
+                error=error,
+            )
         ) from None
     if xyz.size == 0:
         xyz = xyz.reshape(0, 3)
     if xyz.ndim != 2 or xyz.shape[1] != 3:
         raise PointsError(
-            said("{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.", name=name,
+            message("bodies.shape-array-easting", "{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.", name=name,
                  shape=xyz.shape)
         )  # fmt: skip
     bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
     if bad.size:
         raise PointsError(
-            said("{count} of {total} {name} are not finite, the first at index {index}. Remove or complete them.",
+            message("bodies.not-first-index", "{count} of {total} {name} are not finite, the first at index {index}. Remove or complete them.",
                  count=bad.size, total=len(xyz), name=name, index=bad[0])
         )  # fmt: skip
     return xyz
@@ -161,7 +166,7 @@ def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
         return np.full(n, array, dtype=array.dtype)
     if array.shape != (n,):
         raise PointsError(
-            said("{name} has shape {shape}; {n} points need shape ({n},) or one value for all.", name=name,
+            message("points.shape-points-need-shape", "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.", name=name,
                  shape=array.shape, n=n)
         )  # fmt: skip
     return array.copy()
@@ -205,7 +210,7 @@ def prepare(data: BodyData, coincidence_distance: float) -> Prepared:
     contacts, member = _merge(data.contacts, coincidence_distance)
     count = np.bincount(member, minlength=len(contacts))
     for k in np.flatnonzero(count > 1).tolist():
-        text = said("{count} contacts coincide within {distance:g} m: they count as one", count=int(count[k]),
+        text = message("bodies.contacts-coincide-within", "{count} contacts coincide within {distance:g} m: they count as one", count=int(count[k]),
                     distance=coincidence_distance)  # fmt: skip
         issues.append(BodyIssue("coincident", text, _place(contacts[k])))
     normals = _normals(data, contacts, member, issues)
@@ -217,7 +222,12 @@ def prepare(data: BodyData, coincidence_distance: float) -> Prepared:
         ("outside", int(outside_used.sum()), len(outside)),
     ):
         if given > kept:
-            text = said("{count} {side} samples repeat another one: they count once", count=given - kept, side=name)
+            text = message(
+                "bodies.samples-repeat-once",
+                "{count} {side} samples repeat another one: they count once",
+                count=given - kept,
+                side=name,
+            )
             issues.append(BodyIssue("coincident", text))
     found = Prepared(contacts, normals, member, inside, outside, inside_used, outside_used, tuple(issues))
     _require_body(data, found)
@@ -247,7 +257,7 @@ def _normals(data: BodyData, contacts: Floats, member: Ints, issues: list[BodyIs
     length = np.linalg.norm(data.normals, axis=1)
     for i in np.flatnonzero(length == 0).tolist():
         issues.append(
-            BodyIssue("normal", said("The normal of contact {index} is zero: it is not used", index=i),
+            BodyIssue("normal", message("bodies.normal-contact-zero", "The normal of contact {index} is zero: it is not used", index=i),
                       _place(data.contacts[i]), used=False)
         )  # fmt: skip
     known = np.isfinite(length) & (length > 0)
@@ -260,7 +270,7 @@ def _normals(data: BodyData, contacts: Floats, member: Ints, issues: list[BodyIs
     # Mean of unit vectors below cos(60 degrees): they do not mean the same side.
     opposite = (count > 1) & (size < 0.5 * count)
     for k in np.flatnonzero(opposite).tolist():
-        text = said("{count} coincident contacts have opposite normals: none of these normals is used",
+        text = message("bodies.coincident-contacts-opposite", "{count} coincident contacts have opposite normals: none of these normals is used",
                     count=int(count[k]))  # fmt: skip
         issues.append(BodyIssue("normal", text, _place(contacts[k]), used=False))
     use = (count > 0) & ~opposite
@@ -282,15 +292,20 @@ def _sides(
         if len(contacts) and len(samples):
             mask = cKDTree(contacts - origin).query(samples - origin)[0] > distance
         for i in np.flatnonzero(~mask).tolist():
-            text = said("{side} sample {index} lies on a contact: its side is not used", side=name, index=i)
+            text = message(
+                "bodies.sample-contact-side",
+                "{side} sample {index} lies on a contact: its side is not used",
+                side=name,
+                index=i,
+            )
             issues.append(BodyIssue("coincident", text, _place(samples[i]), used=False))
         used.append(mask)
     if len(data.inside) and len(data.outside):
         far, near = cKDTree(data.outside - origin).query(data.inside - origin)
         for i in np.flatnonzero(far <= distance).tolist():
             holes = data.inside_hole[i], data.outside_hole[near[i]]
-            text = said(
-                "Inside sample {inside} (hole '{first}') and outside sample {outside} (hole '{second}') are one place: "
+            text = message(
+                "bodies.inside-sample-hole", "Inside sample {inside} (hole '{first}') and outside sample {outside} (hole '{second}') are one place: "
                 "intervals contradict each other, neither side is used",
                 inside=i, outside=int(near[i]), first=holes[0], second=holes[1],
             )  # fmt: skip
@@ -306,29 +321,29 @@ def _require_body(data: BodyData, found: Prepared) -> None:
     given = {"contacts": len(found.contacts), "inside": len(found.inside), "outside": len(found.outside)}
     if not len(found.inside) and not oriented:
         raise FitError(
-            said("Nothing lies inside the body ({contacts} contacts, {inside} inside and {outside} outside samples, no "
+            message("bodies.nothing-inside-body", "Nothing lies inside the body ({contacts} contacts, {inside} inside and {outside} outside samples, no "
                  "normals). Give intervals in the body, inside samples, or contacts with normals.", **given)
         )  # fmt: skip
     if not len(found.contacts) and not len(found.outside):
         raise FitError(
-            said("Nothing bounds the body: all {inside} samples are inside. Give contacts, or intervals outside it.",
+            message("bodies.nothing-bounds-body", "Nothing bounds the body: all {inside} samples are inside. Give contacts, or intervals outside it.",
                  **given)
         )  # fmt: skip
     if not len(found.contacts):
         raise FitError(
-            said("There is no contact: {inside} samples are inside, {outside} outside, and none of the data lies on "
+            message("bodies.contact-samples-inside", "There is no contact: {inside} samples are inside, {outside} outside, and none of the data lies on "
                  "the surface. Give contacts, such as the ends of the intervals in the body.", **given)
         )  # fmt: skip
     if len(data.holes) == 1 and (data.hole == data.holes[0]).all():
         raise FitError(
-            said("All contacts come from one hole, '{hole}': they do not show how wide the body is. Give at least two "
+            message("bodies.contacts-come-hole", "All contacts come from one hole, '{hole}': they do not show how wide the body is. Give at least two "
                  "holes, or outlines or points elsewhere.", hole=data.holes[0])
         )  # fmt: skip
     everything = np.concatenate([found.contacts, found.inside, found.outside])
     extent = np.linalg.svd(everything - everything.mean(axis=0), compute_uv=False)
     if len(everything) < 2 or extent[1] < 1e-3 * extent[0]:
         raise FitError(
-            said("All {count} data lie on one line, like those of one hole: they do not show how wide the body is. "
+            message("bodies.data-line-hole", "All {count} data lie on one line, like those of one hole: they do not show how wide the body is. "
                  "Give at least two holes.", count=len(everything))
         )  # fmt: skip
 

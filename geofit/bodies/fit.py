@@ -18,7 +18,7 @@ from geofit.bodies.rbf import Saddle
 from geofit.bodies.region import Region, hole_spacing, region_of
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 if TYPE_CHECKING:
     from geofit.bodies.body import ImplicitBody
@@ -98,7 +98,7 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
         own = np.concatenate([prepared.contacts, prepared.inside])
         if not ((own >= region.lower) & (own <= region.upper)).all(axis=1).any():
             raise FitError(
-                said("No contact and no inside sample lies in the box {lower} to {upper}. Give a box around the body.",
+                message("bodies.contact-inside-sample", "No contact and no inside sample lies in the box {lower} to {upper}. Give a box around the body.",
                      lower=region.lower.tolist(), upper=region.upper.tolist())
             )  # fmt: skip
     frame = BodyFrame.around(region.lower, region.upper, settings)

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.bodies.data import BodyData, BodyIssue
 from geofit.bodies.settings import BodySettings
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["IntervalSource", "Stretch", "as_body_data", "from_intervals", "stretches"]
 
@@ -78,17 +78,24 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
     if isinstance(source, BodyData):
         if codes is not None:
             raise SettingsError(
-                said("codes choose logged intervals; arrays have none. Leave codes away, or give boreholes with logs.")
+                message(
+                    "bodies.codes-choose-logged",
+                    "codes choose logged intervals; arrays have none. Leave codes away, or give boreholes with logs.",
+                )
             )
         return source
     holes = source if hasattr(source, "logs") else getattr(source, "boreholes", None)
     if holes is None or not hasattr(holes, "paths"):
         raise SettingsError(
-            said("A {kind} holds no logged intervals. Give BodyData, or the boreholes with their interval tables.",
+            message("bodies.holds-logged-intervals", "A {kind} holds no logged intervals. Give BodyData, or the boreholes with their interval tables.",
                  kind=type(source).__name__)
         )  # fmt: skip
     if codes is None:
-        raise SettingsError(said("codes is missing: name the codes of the intervals that lie in the body."))
+        raise SettingsError(
+            message(
+                "bodies.codes-missing-codes", "codes is missing: name the codes of the intervals that lie in the body."
+            )
+        )
     return from_intervals(holes, codes, settings.step)
 
 
@@ -121,7 +128,7 @@ def from_intervals(holes: IntervalSource, codes: str | Sequence[str], step: floa
     if missing or not wanted:
         frequent = ", ".join(f"{code} ({count})" for code, count in counts.most_common(12))
         raise SettingsError(
-            said("Code {codes} does not occur in the logs. The most frequent codes are: {frequent}.",
+            message("bodies.code-not-occur", "Code {codes} does not occur in the logs. The most frequent codes are: {frequent}.",
                  codes=", ".join(missing) or "''", frequent=frequent)
         )  # fmt: skip
     issues: list[BodyIssue] = []
@@ -168,15 +175,15 @@ def stretches(intervals: Sequence[tuple[float, float, bool]], hole: str, issues:
                 merged.append(Stretch(top, base, side))
         elif base - top > TOLERANCE:
             if sides:
-                text = said(
-                    "Hole '{hole}', {top:.2f} to {base:.2f} m: intervals inside and outside the body contradict each "
+                text = message(
+                    "bodies.hole-intervals-inside", "Hole '{hole}', {top:.2f} to {base:.2f} m: intervals inside and outside the body contradict each "
                     "other; the stretch counts as unknown", hole=hole, top=top, base=base,
                 )  # fmt: skip
                 issues.append(BodyIssue("contradiction", text, used=False))
             else:
                 unlogged += base - top
     if unlogged:
-        text = said("Hole '{hole}': {length:.2f} m between logged intervals are not logged; they count as unknown",
+        text = message("bodies.hole-logged-intervals", "Hole '{hole}': {length:.2f} m between logged intervals are not logged; they count as unknown",
                     hole=hole, length=unlogged)  # fmt: skip
         issues.append(BodyIssue("gap", text))
     return merged

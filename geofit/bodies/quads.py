@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geofit.bodies.layout import QuadMesh, quad_mesh
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Field
 from geofit.implicit.foot import project_along_gradient
 from geofit.implicit.mesh import TriangleMesh
@@ -95,7 +95,7 @@ def patched_surface(body: ImplicitBody, tolerance: float | None = None) -> Patch
     """
     if body.field.cut:
         raise FitError(
-            said("The body is cut at its box ({sides}): it has sharp edges, which smooth patches cannot follow. "
+            message("bodies.body-cut-box", "The body is cut at its box ({sides}): it has sharp edges, which smooth patches cannot follow. "
                  "Enlarge the box, or write triangles.", sides=", ".join(body.field.cut))
         )  # fmt: skip
     mesh = body.overview
@@ -138,7 +138,7 @@ def _fitted(
                 return fit, deviation, angle
             best = min(best, (deviation, angle))
     raise FitError(
-        said("{most} patches do not follow the body within {tolerance:.3g} m and {angle:g} degrees at the seams (best: "
+        message("bodies.patches-not-follow", "{most} patches do not follow the body within {tolerance:.3g} m and {angle:g} degrees at the seams (best: "
              "{deviation:.3g} m, {turn:.3g} degrees). Allow a larger epsilon, or write triangles.", most=most,
              tolerance=tolerance, angle=ANGLE, deviation=best[0], turn=best[1])
     )  # fmt: skip

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from geofit.bodies.kernels import gradients, gram, values
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["Rbf", "Saddle"]
 
@@ -75,7 +75,8 @@ class Saddle:
         side = _trend(points, oriented) if reach == 0.0 else np.zeros((len(points) + 3 * len(oriented), 0))
         if reach == 0.0 and np.linalg.matrix_rank(side, tol=1e-9 * max(len(side), 4)) < 4:
             raise FitError(
-                said(
+                message(
+                    "bodies.places-plane-fewer",
                     "{count} places lie on one plane or fewer than four are given: they leave the trend of the field "
                     "free. Add contacts, or samples inside and outside, off that plane.",
                     count=len(points) + len(oriented),
@@ -93,7 +94,11 @@ class Saddle:
         self._factor, self._pivots, info = sytrf(matrix, lower=1, lwork=length, overwrite_a=1)
         if info:
             raise FitError(
-                said("The system of {count} conditions is singular: two of them coincide. Merge them.", count=size)
+                message(
+                    "bodies.system-conditions-singular",
+                    "The system of {count} conditions is singular: two of them coincide. Merge them.",
+                    count=size,
+                )
             )
 
     def solve(self, right: Floats) -> Floats:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["BodySettings"]
 
@@ -82,37 +82,46 @@ class BodySettings:
                 continue
             if not _number(value) or value <= 0:
                 raise SettingsError(
-                    said("{setting} is {value}; a finite number of metres above 0 is needed.", setting=name,
+                    message("bodies.is-a-finite", "{setting} is {value}; a finite number of metres above 0 is needed.", setting=name,
                          value=repr(value))
                 )  # fmt: skip
         for name in ("azimuth", "dip", "rake"):
             if not _number(getattr(self, name)):
                 raise SettingsError(
-                    said("{setting} is {value}; a finite angle in degrees is needed.", setting=name,
+                    message("bodies.angle-degrees", "{setting} is {value}; a finite angle in degrees is needed.", setting=name,
                          value=repr(getattr(self, name)))
                 )  # fmt: skip
         for name, least in (("dense", 50), ("realizations", 10), ("seed", 0)):
             value = getattr(self, name)
             if not isinstance(value, int) or isinstance(value, bool) or value < least:
                 raise SettingsError(
-                    said("{setting} is {value}; a whole number of at least {least} is needed.", setting=name,
+                    message("bodies.whole", "{setting} is {value}; a whole number of at least {least} is needed.", setting=name,
                          value=repr(value), least=least)
                 )  # fmt: skip
         if not isinstance(self.closed, bool):
             raise SettingsError(
-                said("{setting} is {value}; true or false is needed.", setting="closed", value=repr(self.closed))
+                message(
+                    "settings.true-false-needed",
+                    "{setting} is {value}; true or false is needed.",
+                    setting="closed",
+                    value=repr(self.closed),
+                )
             )
         ranges = np.asarray(self.ranges, float)
         if ranges.shape != (3,) or not (np.isfinite(ranges).all() and (ranges > 0).all()):
             raise SettingsError(
-                said("ranges is {value}; three finite numbers above 0 are needed.", value=repr(self.ranges))
+                message(
+                    "bodies.ranges-three",
+                    "ranges is {value}; three finite numbers above 0 are needed.",
+                    value=repr(self.ranges),
+                )
             )
         object.__setattr__(self, "ranges", tuple(ranges.tolist()))
         if self.box is not None:
             box = np.asarray(self.box, float)
             if box.shape != (2, 3) or not np.isfinite(box).all() or not (box[0] < box[1]).all():
                 raise SettingsError(
-                    said("box is {value}; a lower and an upper corner in map coordinates are needed.",
+                    message("bodies.box-lower-upper", "box is {value}; a lower and an upper corner in map coordinates are needed.",
                          value=repr(self.box))
                 )  # fmt: skip
             object.__setattr__(self, "box", tuple(tuple(corner) for corner in box.tolist()))

@@ -16,6 +16,7 @@ from geofit.cad.faces import placement
 from geofit.cad.sewing import shell
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.messages import message
 from geofit.surfaces.protocol import Surface
 
 __all__ = ["write_brep", "write_iges"]
@@ -46,7 +47,11 @@ def write_brep(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> No
         builder.Add(compound, shell(surface).Located(placement(surface.origin)))
     with replacing(path) as part:
         if not BRepTools.Write_s(compound, str(part)):
-            raise InputError("OpenCASCADE cannot write the file", "Check the folder and the disk.", file=str(path))
+            raise InputError(
+                message("export.opencascade-cannot-write-file", "OpenCASCADE cannot write the file"),
+                message("export.check-folder-disk", "Check the folder and the disk."),
+                file=str(path),
+            )
 
 
 def write_iges(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> None:
@@ -90,7 +95,11 @@ def write_iges(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> No
         writer.SendModel(IGESSelect_WorkLibrary.DefineProtocol_s())
         text = BytesIO()
         if not writer.Print(text):
-            raise InputError("OpenCASCADE cannot write IGES", "Write STEP instead.", file=str(path))
+            raise InputError(
+                message("export.opencascade-cannot-write-iges", "OpenCASCADE cannot write IGES"),
+                message("export.write-step-instead", "Write STEP instead."),
+                file=str(path),
+            )
     with replacing(path) as part:
         part.write_bytes(text.getvalue())
 
@@ -134,5 +143,9 @@ def _label(model: Any, name: str, first: int) -> None:
 
 def _given(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> Mapping[str, Surface]:
     if not surfaces:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(path),
+        )
     return surfaces

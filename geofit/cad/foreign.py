@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import GeofitError, InputError, MissingDependencyError
 from geofit.data.files import is_file, legible
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.trimmed import TrimmedSurface
@@ -67,7 +67,11 @@ def read_apart(path: str | PathLike[str], reader: str) -> dict[str, PatchSurface
     """
     source = Path(path)
     if not is_file(source):
-        raise InputError("There is no such file", "Check the path.", file=str(source))
+        raise InputError(
+            message("import.file-missing", "There is no such file"),
+            message("import.check-path", "Check the path."),
+            file=str(source),
+        )
     size = source.stat().st_size
     seconds = SECONDS + SECONDS_MB * size / 1e6
     with tempfile.TemporaryDirectory(prefix="geofit-") as folder:
@@ -87,16 +91,30 @@ def read_apart(path: str | PathLike[str], reader: str) -> dict[str, PatchSurface
         except subprocess.TimeoutExpired:
             ended = _TOO_LONG
         if ended == _TOO_LONG:
-            raise _refused(source, said("Reading the file takes longer than {seconds:.0f} s", seconds=seconds))
+            raise _refused(
+                source,
+                message(
+                    "cad.reading-file-takes", "Reading the file takes longer than {seconds:.0f} s", seconds=seconds
+                ),
+            )
         if ended != 0 or not result.is_file():
             raise _refused(
-                source, said("The file is damaged: reading it ends OpenCASCADE (exit code {code})", code=ended)
+                source,
+                message(
+                    "cad.file-damaged-reading",
+                    "The file is damaged: reading it ends OpenCASCADE (exit code {code})",
+                    code=ended,
+                ),
             )
         return _load(result, source)
 
 
 def _refused(source: Path, reason: str) -> InputError:
-    return InputError(reason, "Open it in a CAD program and export the surface as STEP again.", file=str(source))
+    return InputError(
+        reason,
+        message("cad.open-cad-program", "Open it in a CAD program and export the surface as STEP again."),
+        file=str(source),
+    )
 
 
 def child(arguments: Sequence[str]) -> int:

@@ -17,6 +17,7 @@ from geofit.cad.faces import faces_of
 from geofit.cad.foreign import read_apart
 from geofit.cad.imported import FileShape, document, products, quiet, surface_of, unique_name
 from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.surfaces.patch_surface import PatchSurface
 
 __all__ = ["brep_surfaces", "iges_surfaces", "read_brep", "read_iges"]
@@ -53,8 +54,16 @@ def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
         done = reader.ReadFile(str(source)) == IFSelect_RetDone and reader.Transfer(found)
     shapes = list(products(found, source.stem)) if done else []
     if not shapes:
-        what = "The file holds no face" if done else "The file cannot be read as IGES"
-        raise InputError(what, "Export the surface as IGES 5.3 or as STEP again.", file=str(source))
+        what = (
+            message("import.file-without-faces", "The file holds no face")
+            if done
+            else message("import.not-iges", "The file cannot be read as IGES")
+        )
+        raise InputError(
+            what,
+            message("import.export-surface-iges-step", "Export the surface as IGES 5.3 or as STEP again."),
+            file=str(source),
+        )
     return {shape.name: surface_of(_sewn(shape)) for shape in _joined(shapes, source.stem)}
 
 
@@ -85,8 +94,16 @@ def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     with quiet():
         done = BRepTools.Read_s(whole, str(source), BRep_Builder()) and not whole.IsNull()
     if not done or not faces_of(whole):
-        what = "The file holds no face" if done else "The file cannot be read as BREP"
-        raise InputError(what, "Export the surface as BREP or as STEP again.", file=str(source))
+        what = (
+            message("import.file-without-faces", "The file holds no face")
+            if done
+            else message("import.not-brep", "The file cannot be read as BREP")
+        )
+        raise InputError(
+            what,
+            message("import.export-surface-brep-step", "Export the surface as BREP or as STEP again."),
+            file=str(source),
+        )
     parts = []
     if whole.ShapeType() == TopAbs_COMPOUND:
         walk = TopoDS_Iterator(whole)
@@ -112,7 +129,11 @@ def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
 def _existing(path: str | PathLike[str]) -> Path:
     source = Path(path)
     if not source.is_file():
-        raise InputError("There is no such file", "Check the path.", file=str(source))
+        raise InputError(
+            message("import.file-missing", "There is no such file"),
+            message("import.check-path", "Check the path."),
+            file=str(source),
+        )
     return source
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geofit.cad.faces import along, edges_with_faces, faces_of, free_edges, free_loops
 from geofit.data.accuracy import Check, ReadBack, Seam
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.geometry.projection import Projection, project
 from geofit.surfaces.protocol import FittedSurface, Surface
 
@@ -77,8 +77,11 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             core_max,
             CORE,
             "m",
-            said(
-                "largest distance of {count} core points from the surface in the file ({how})", count=core.size, how=how
+            message(
+                "export.largest-distance-core-points",
+                "largest distance of {count} core points from the surface in the file ({how})",
+                count=core.size,
+                how=how,
             ),
         ),
         Check("read-back seam gap", gap <= GAP, gap, GAP, "m", _words(seams, "gap", "m")),
@@ -96,7 +99,7 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             float(not valid),
             0.0,
             "",
-            said("OpenCASCADE's BRepCheck of the shape read"),
+            message("export.opencascade-brepcheck-shape-read", "OpenCASCADE's BRepCheck of the shape read"),
         ),
         Check(
             "read-back free edges",
@@ -104,7 +107,8 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             float(len(free)),
             float(expected),
             "edges",
-            said(
+            message(
+                "export.free-edges-edges-outline",
                 "free edges: {free}, edges of the outline: {expected}, closed loops: {loops}",
                 free=len(free),
                 expected=expected,
@@ -118,7 +122,10 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             inner,
             EDGE,
             "m",
-            said("largest tolerance of an edge between faces: a larger one could hide a gap"),
+            message(
+                "export.largest-tolerance-edge-faces",
+                "largest tolerance of an edge between faces: a larger one could hide a gap",
+            ),
         ),
         Check(
             "read-back rim tolerance",
@@ -126,7 +133,10 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             outer,
             rim,
             "m",
-            said("largest tolerance of a free edge: how far the outline's curve may leave the surface"),
+            message(
+                "export.largest-tolerance-free-edge",
+                "largest tolerance of a free edge: how far the outline's curve may leave the surface",
+            ),
         ),
         Check(
             "read-back self-intersection",
@@ -134,9 +144,15 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             float(crossing),
             0.0,
             "",
-            said("OpenCASCADE's boolean argument analyser finds the shell crossing itself")
+            message(
+                "export.opencascade-boolean-argument-analyser",
+                "OpenCASCADE's boolean argument analyser finds the shell crossing itself",
+            )
             if crossing
-            else said("OpenCASCADE's boolean argument analyser is silent"),
+            else message(
+                "export.opencascade-boolean-argument-analyser-silent",
+                "OpenCASCADE's boolean argument analyser is silent",
+            ),
         ),
         _normal_check(found, seams),
     )
@@ -173,11 +189,12 @@ def self_intersects(shape: Any) -> bool:
     return bool(analyser.HasFaulty())
 
 
-def _words(seams: tuple[Seam, ...], field: str, unit: str) -> str:
+def _words(seams: tuple[Seam, ...], field: str, unit: str) -> Message:
     if not seams:
-        return said("one face, no seam")
+        return message("export.face-no-seam", "one face, no seam")
     worst = max(seams, key=lambda seam: float(getattr(seam, field)))
-    return said(
+    return message(
+        "export.places-seam-largest",
         "{places} places on each seam ({count}); largest between {first} and {second}: {value:.2g} {unit}",
         places=SAMPLES,
         count=len(seams),
@@ -188,15 +205,15 @@ def _words(seams: tuple[Seam, ...], field: str, unit: str) -> str:
     )
 
 
-def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tuple[Floats, str]:
+def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tuple[Floats, Message]:
     """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
     xyz = surface.points.xyz
     if not len(xyz):
-        return np.empty(0), said("no points")
+        return np.empty(0), message("check.no-points", "no points")
     ours = project(found.patches, xyz - found.origin)
     distance = ours.distance.copy()
     chosen = np.arange(len(xyz))
-    how = said("OpenCASCADE's projection")
+    how = message("export.opencascade-projection", "OpenCASCADE's projection")
     if len(xyz) > MEASURED:
         core = np.flatnonzero(surface.core) if len(surface.core) == len(xyz) else chosen[:0]
         spread = np.unique(np.linspace(0, len(xyz) - 1, MEASURED // 4).astype(int))
@@ -204,7 +221,8 @@ def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tupl
     length = _occ_lengths(shape, xyz, ours, chosen)
     if len(chosen) < len(xyz):
         apart = np.abs(length - np.abs(ours.distance[chosen])).max()
-        how = said(
+        how = message(
+            "export.opencascade-projection-ours-others",
             "OpenCASCADE's projection of {count}; ours of the others, at most {apart:.1e} m from it",
             count=len(chosen),
             apart=float(apart),
@@ -312,13 +330,23 @@ def _edge_tolerances(shape: Any) -> tuple[float, float]:
 def _outline_check(surface: FittedSurface, shape: FileShape, free: list[Any]) -> Check:
     name, limit = "read-back outline", surface.settings.boundary_tolerance
     if surface.outline is None:
-        return Check(name, None, 0.0, limit, "m", said("not trimmed: the free edges are the patches' own"))
+        return Check(
+            name,
+            None,
+            0.0,
+            limit,
+            "m",
+            message("export.not-trimmed-free-edges", "not trimmed: the free edges are the patches' own"),
+        )
     import shapely
 
     ring = shapely.LinearRing(surface.outline - surface.origin[:2])
     points = np.concatenate([along(edge, 24)[:, :2] for edge in free])
     off = float(shapely.distance(ring, shapely.points(points)).max())
-    follows, short = said("the free edges follow the outline"), said("the surface does not reach its whole outline")
+    follows, short = (
+        message("export.free-edges-follow-outline", "the free edges follow the outline"),
+        message("export.surface-not-reach-whole", "the surface does not reach its whole outline"),
+    )
     reach = follows if off <= limit else short
     return Check(name, True if off <= limit else None, off, limit, "m", reach)
 
@@ -336,8 +364,10 @@ def _normal_check(found: Surface, seams: tuple[Seam, ...]) -> Check:
     flips = any(seam.angle > 90 for seam in seams)
     passed = True if least > 0 and not flips else (False if flips else None)
     text = {
-        True: said("all normals lie on one side"),
-        False: said("the normals of neighbouring faces flip"),
-        None: said("the surface folds over: no single side, neighbours do not flip"),
+        True: message("export.normals-lie-side", "all normals lie on one side"),
+        False: message("export.normals-neighbouring-faces-flip", "the normals of neighbouring faces flip"),
+        None: message(
+            "export.surface-folds-no-single", "the surface folds over: no single side, neighbours do not flip"
+        ),
     }[passed]
     return Check("read-back normals", passed, least, 0.0, "cosine", text)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from geofit.cad import trimming
 from geofit.cad.faces import explore, faces_of, free_loops, placement, to_geom
 from geofit.data.errors import StitchError
-from geofit.data.messages import listed, said
+from geofit.data.messages import Message, message
 from geofit.geometry.seams import seams
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
@@ -58,7 +58,11 @@ def shell(surface: Surface) -> Any:
     from OCP.TopoDS import TopoDS
 
     if not surface.patches:
-        raise StitchError(said("'{name}' has no patch; a surface needs at least one.", name=surface.name))
+        raise StitchError(
+            message(
+                "fit.no-patch-surface-needs", "'{name}' has no patch; a surface needs at least one.", name=surface.name
+            )
+        )
     sewing = BRepBuilderAPI_Sewing(SEWING)
     outline = trimming.needed(surface, TRIM)
     exact = trimming.is_height_field(surface)
@@ -75,7 +79,11 @@ def shell(surface: Surface) -> Any:
         sewn = trimming.cut(sewn, outline)
     if sewn.IsNull():
         raise StitchError(
-            said("'{name}' does not reach into its outline; give an outline that it covers.", name=surface.name)
+            message(
+                "fit.not-reach-outline-give",
+                "'{name}' does not reach into its outline; give an outline that it covers.",
+                name=surface.name,
+            )
         )
     faces = faces_of(sewn)
     shells = [TopoDS.Shell_s(part) for part in explore(sewn, TopAbs_SHELL)]
@@ -87,7 +95,8 @@ def shell(surface: Surface) -> Any:
     result = shells[0]
     if (loops := free_loops(result)) != 1:
         raise StitchError(
-            said(
+            message(
+                "fit.free-edges-sewn-shell",
                 "'{name}': the free edges of the sewn shell make {loops} loops; the outer boundary alone makes "
                 "one. {reason}",
                 name=surface.name,
@@ -97,7 +106,8 @@ def shell(surface: Surface) -> Any:
         )
     if not BRepCheck_Analyzer(result).IsValid():
         raise StitchError(
-            said(
+            message(
+                "fit.opencascade-finds-sewn-shell",
                 "OpenCASCADE finds the sewn shell of '{name}' invalid (BRepCheck). Look for collapsed edges or "
                 "patches folded onto themselves; fit again with fewer control points or another frame.",
                 name=surface.name,
@@ -116,25 +126,29 @@ def _shell_of(face: Any) -> Any:
     return result
 
 
-def _why_loose(surface: Surface, shells: int) -> str:
+def _why_loose(surface: Surface, shells: int) -> Message:
     open_seams = [seam for seam in seams(surface.patches) if seam.gap > SEWING]
     if open_seams:
-        places = listed(
-            said("{first} and {second} gape by {gap:.3g} m", first=s.first, second=s.second, gap=s.gap)
+        places = tuple(
+            message(
+                "fit.seam-gap", "{first} and {second} gape by {gap:.3g} m", first=s.first, second=s.second, gap=s.gap
+            )
             for s in open_seams
         )
-        return said(
+        return message(
+            "fit.patches-not-share-edges",
             "Patches of '{name}' do not share their edges: {places}. At most {limit:g} m is needed: give neighbours "
             "the same edge row of control points.",
             name=surface.name,
             places=places,
             limit=SEWING,
         )
-    return said(
+    return message(
+        "fit.patches-separate-pieces-connected",
         "The patches of '{name}' ({names}) make {shells} separate pieces; one connected surface is needed. Check the "
         "outline, and that neighbours run along whole edges.",
         name=surface.name,
-        names=listed(patch.name for patch in surface.patches),
+        names=tuple(patch.name for patch in surface.patches),
         shells=shells,
     )
 
@@ -160,11 +174,15 @@ def one_surface(surface: Surface) -> Patch:
     ranges_v = sorted({patch.domain[2:] for patch in patches})
     grid = {(patch.domain[:2], patch.domain[2:]): patch for patch in patches}
     if len(grid) != len(ranges_u) * len(ranges_v) or len(grid) != len(patches) or len({p.degree for p in patches}) > 1:
-        names = listed(
-            said("{name} {domain} degree {degree}", name=p.name, domain=p.domain, degree=p.degree) for p in patches
+        names = tuple(
+            message(
+                "fit.patch-domain", "{name} {domain} degree {degree}", name=p.name, domain=p.domain, degree=p.degree
+            )
+            for p in patches
         )
         raise StitchError(
-            said(
+            message(
+                "fit.patches-no-full-grid",
                 "The patches of '{name}' make no full grid of parameter ranges with one degree: {names}. Use the "
                 "sewn shell instead.",
                 name=surface.name,
@@ -201,7 +219,8 @@ def _join(strip: list[tuple[Floats, Floats, Floats]], degree: int) -> tuple[Floa
     for following, further, other in strip[1:]:
         if knots[-1] != further[0] or not np.array_equal(across, other):
             raise StitchError(
-                said(
+                message(
+                    "fit.neighbouring-patches-differ-knots",
                     "Neighbouring patches differ in their knots (one ends at {end:g}, the next starts at {start:g}). "
                     "Only restrictions of one tensor-product surface can be merged.",
                     end=knots[-1],
@@ -210,7 +229,8 @@ def _join(strip: list[tuple[Floats, Floats, Floats]], degree: int) -> tuple[Floa
             )
         if (apart := np.abs(control[-1] - following[0]).max()) > SEWING:
             raise StitchError(
-                said(
+                message(
+                    "fit.neighbouring-patches-gape-merged",
                     "Neighbouring patches gape by {apart:.3g} m; at most {limit:g} m can be merged.",
                     apart=apart,
                     limit=SEWING,

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from geofit.cad.faces import explore, faces_of, free_edges, from_geom, placement, to_geom
 from geofit.data.accuracy import Check
 from geofit.data.errors import InputError, StitchError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
 
@@ -94,7 +94,11 @@ def write_body(
     """
     target = Path(path)
     if not len(body.overview.triangles):
-        raise InputError(said("The body '{name}' is empty", name=body.name), "Look at its data.", file=str(target))
+        raise InputError(
+            message("cad.body-empty", "The body '{name}' is empty", name=body.name),
+            message("bodies.look-at-data", "Look at its data."),
+            file=str(target),
+        )
     shape = None
     if patches:
         try:
@@ -106,7 +110,9 @@ def write_body(
     found = _read_back(body, target, nurbs=smooth)
     if not reason:
         return found
-    text = said("Triangles are written in place of NURBS patches: {reason}", reason=reason)
+    text = message(
+        "cad.triangles-written-place", "Triangles are written in place of NURBS patches: {reason}", reason=reason
+    )
     return replace(found, checks=(*found.checks, Check("grade", None, 0.0, 0.0, "1", text)))
 
 
@@ -134,7 +140,7 @@ def patch_solid(components: Sequence[Sequence[Patch]]) -> Any:
         found = [TopoDS.Shell_s(part) for part in explore(sewn, TopAbs_SHELL)]
         if len(found) != 1 or free_edges(found[0]):
             raise StitchError(
-                said("{count} patches of a body do not make one closed shell. Write triangles instead.",
+                message("cad.patches-body-not", "{count} patches of a body do not make one closed shell. Write triangles instead.",
                      count=len(patches))
             )  # fmt: skip
         shells.append(found[0])
@@ -155,7 +161,13 @@ def triangle_solid(mesh: TriangleMesh) -> Any:
     from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Shell, TopoDS_Solid
 
     if not mesh.is_closed:
-        raise StitchError(said("The triangles do not close: {count} edges are free.", count=len(mesh.boundary_edges)))
+        raise StitchError(
+            message(
+                "cad.triangles-not-close",
+                "The triangles do not close: {count} edges are free.",
+                count=len(mesh.boundary_edges),
+            )
+        )
     builder = BRep_Builder()
     compound, solids = TopoDS_Compound(), []
     for part in mesh.split():
@@ -195,7 +207,11 @@ def _solids(shells: Sequence[Any]) -> Any:
         low, high = _box(shell)
         around = [k for k, (first, last) in enumerate(boxes) if (first <= low).all() and (high <= last).all()]
         if not around:
-            raise StitchError(said("A cavity of the body lies in none of its solids. Write triangles instead."))
+            raise StitchError(
+                message(
+                    "cad.cavity-body-none", "A cavity of the body lies in none of its solids. Write triangles instead."
+                )
+            )
         makers[min(around, key=lambda k: float((boxes[k][1] - boxes[k][0]).prod()))].Add(shell)
     solids = [maker.Solid() for maker in makers]
     if len(solids) == 1:
@@ -206,7 +222,12 @@ def _solids(shells: Sequence[Any]) -> Any:
         for solid in solids:
             builder.Add(result, solid)
     if not BRepCheck_Analyzer(result).IsValid():
-        raise StitchError(said("OpenCASCADE finds the solid of the body invalid (BRepCheck). Write triangles instead."))
+        raise StitchError(
+            message(
+                "cad.opencascade-finds-solid",
+                "OpenCASCADE finds the solid of the body invalid (BRepCheck). Write triangles instead.",
+            )
+        )
     return result
 
 
@@ -267,8 +288,10 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
         handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=".step")
     except OSError as error:
         raise InputError(
-            said("The file cannot be written: {error}", error=error.strerror or str(error)),
-            "Make the folder, or name another.",
+            message(
+                "export.file-cannot-written", "The file cannot be written: {error}", error=error.strerror or str(error)
+            ),
+            message("project.folder-name", "Make the folder, or name another."),
             file=str(target),
         ) from None
     os.close(handle)
@@ -294,7 +317,11 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
             header.SetOrganizationValue(1, TCollection_HAsciiString(""))
             header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
             if writer.Write(temporary) != IFSelect_RetDone:
-                raise InputError("OpenCASCADE cannot write the file", "Check the disk.", file=str(target))
+                raise InputError(
+                    message("export.opencascade-cannot-write-file", "OpenCASCADE cannot write the file"),
+                    message("export.check-disk", "Check the disk."),
+                    file=str(target),
+                )
         Path(temporary).write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
         os.chmod(temporary, 0o644)
         os.replace(temporary, target)
@@ -342,17 +369,17 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBac
     epsilon = body.settings.epsilon
     checks = (
         Check("solids", len(solids) > 0, float(len(solids)), 1.0, "1",
-              said("{count} solids in the file", count=len(solids))),
+              message("cad.solids-file", "{count} solids in the file", count=len(solids))),
         # A tessellated face has no surface, which the check of a B-rep would miss.
         Check("valid", valid if nurbs else None, float(valid), 1.0, "1",
-              said("OpenCASCADE finds the solids valid") if valid else said("OpenCASCADE finds the solids invalid")),
-        Check("closed", free == 0, float(free), 0.0, "1", said("{count} free edges in the file", count=free)),
+              message("cad.opencascade-finds-solids", "OpenCASCADE finds the solids valid") if valid else message("cad.opencascade-finds-solids-invalid", "OpenCASCADE finds the solids invalid")),
+        Check("closed", free == 0, float(free), 0.0, "1", message("cad.free-edges-file", "{count} free edges in the file", count=free)),
         Check("deviation", deviation <= epsilon, deviation, epsilon, "m",
-              said("The faces of the file lie within {deviation:.3g} m of the body", deviation=deviation)),
+              message("cad.faces-file-within", "The faces of the file lie within {deviation:.3g} m of the body", deviation=deviation)),
         Check("sigma", sigma < epsilon if nurbs else None, sigma, epsilon, "m",
-              said("The contacts lie on the faces of the file with sigma {sigma:.3g} m", sigma=sigma)),
+              message("cad.contacts-faces-file", "The contacts lie on the faces of the file with sigma {sigma:.3g} m", sigma=sigma)),
         Check("volume", abs(volume / best - 1) <= VOLUME[grade], volume, best, "m3",
-              said("The file's solids have {volume:.6g} m3, the body {best:.6g} m3", volume=volume, best=best)),
+              message("cad.file-solids-body", "The file's solids have {volume:.6g} m3, the body {best:.6g} m3", volume=volume, best=best)),
     )  # fmt: skip
     return SolidReadBack(
         file=str(target),
@@ -386,7 +413,7 @@ def _triangles_of(face: Any) -> TriangleMesh:
     location = TopLoc_Location()
     found = BRep_Tool.Triangulation_s(face, location)
     if found is None:
-        raise StitchError(said("A face of the file has no triangles."))
+        raise StitchError(message("cad.face-file-triangles", "A face of the file has no triangles."))
     move = location.Transformation()
     nodes = [found.Node(k).Transformed(move) for k in range(1, found.NbNodes() + 1)]
     corners = [found.Triangle(k).Get() for k in range(1, found.NbTriangles() + 1)]

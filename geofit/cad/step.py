@@ -28,7 +28,7 @@ from geofit.cad.step_text import canonical
 from geofit.data.accuracy import ReadBack
 from geofit.data.errors import InputError
 from geofit.data.files import legible, replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import LARGEST
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
@@ -98,24 +98,29 @@ def store_step(surfaces: Mapping[str, FittedSurface], path: str | PathLike[str],
     """
     target = Path(path)
     if not surfaces:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(target))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(target),
+        )
     if unit not in UNITS:
         raise InputError(
-            said("A STEP file in '{unit}' is unknown", unit=unit),
-            said("Choose {names}.", names=" or ".join(UNITS)),
+            message("export.step-file-unknown", "A STEP file in '{unit}' is unknown", unit=unit),
+            message("export.known-names", "Choose {names}.", names=" or ".join(UNITS)),
             file=str(target),
         )
     for name, surface in surfaces.items():
         reach = max(float(np.abs(patch.control + surface.origin).max()) for patch in surface.patches)
         if not reach <= LARGEST:
             raise InputError(
-                said(
+                message(
+                    "cad.control-point-written",
                     "A control point of '{name}' is {reach:.3g} m from 0; at most {most:.0e} m are written",
                     name=name,
                     reach=reach,
                     most=LARGEST,
                 ),
-                "Fit the surface to points in the metres of the site's grid.",
+                message("cad.fit-surface-points", "Fit the surface to points in the metres of the site's grid."),
                 file=str(target),
             )
     shells = {name: shell(surface) for name, surface in surfaces.items()}
@@ -165,7 +170,11 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
 
     source = Path(path)
     if not source.is_file():
-        raise InputError("There is no such file", "Check the path.", file=str(source))
+        raise InputError(
+            message("import.file-missing", "There is no such file"),
+            message("import.check-path", "Check the path."),
+            file=str(source),
+        )
     with _parameters(), quiet():
         found = document()
         reader = STEPCAFControl_Reader()
@@ -174,8 +183,16 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
             done = reader.ReadFile(name) == IFSelect_RetDone and reader.Transfer(found)
     shapes = list(products(found, legible(source.stem))) if done else []
     if not shapes:
-        what = "The file holds no face" if done else "The file cannot be read as STEP"
-        raise InputError(what, "Export the surface as STEP (AP203, AP214 or AP242) again.", file=str(source))
+        what = (
+            message("import.file-without-faces", "The file holds no face")
+            if done
+            else message("import.not-step", "The file cannot be read as STEP")
+        )
+        raise InputError(
+            what,
+            message("export.export-surface-step-ap203", "Export the surface as STEP (AP203, AP214 or AP242) again."),
+            file=str(source),
+        )
     return shapes
 
 
@@ -269,8 +286,10 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
         handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=".geofit-", suffix=".step")
     except OSError as error:
         raise InputError(
-            said("The file cannot be written: {error}", error=error.strerror or str(error)),
-            "Make the folder, or name another.",
+            message(
+                "export.file-cannot-written", "The file cannot be written: {error}", error=error.strerror or str(error)
+            ),
+            message("project.folder-name", "Make the folder, or name another."),
             file=str(target),
         ) from None
     os.close(handle)
@@ -289,15 +308,17 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
             done = writer.Write(temporary) == IFSelect_RetDone
         if not done:
             raise InputError(
-                "The file cannot be written: the disk may be full",
-                "Make room, or name another folder.",
+                message("export.disk-full", "The file cannot be written: the disk may be full"),
+                message("export.make-room", "Make room, or name another folder."),
                 file=str(target),
             )
         with replacing(target) as part:
             part.write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
     except (OSError, ValueError):  # ValueError: a text that was cut off in the middle
         raise InputError(
-            "The file cannot be written: the disk may be full", "Make room, or name another folder.", file=str(target)
+            message("export.disk-full", "The file cannot be written: the disk may be full"),
+            message("export.make-room", "Make room, or name another folder."),
+            file=str(target),
         ) from None
     finally:
         Path(temporary).unlink(missing_ok=True)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from geofit.caves.survey import Survey, SurveyError, named
 from geofit.data.errors import SettingsError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message
 
 __all__ = ["AdjustedSurvey", "Loop", "adjust"]
 
@@ -131,7 +131,8 @@ def adjust(survey: Survey, *, length_error: float = 0.05, angle_error: float = 1
     """
     if not (length_error > 0 and angle_error > 0):
         raise SettingsError(
-            said(
+            message(
+                "caves.errors-degrees-values",
                 "The errors are {length} m and {angle} degrees; give values above 0.",
                 length=length_error,
                 angle=angle_error,
@@ -177,7 +178,8 @@ def _require_connected(survey: Survey, known: list[int]) -> None:
     if len(lost):
         parts = len(np.unique(part[lost]))
         raise SurveyError(
-            said(
+            message(
+                "caves.stations-not-connected",
                 "{count} stations of {survey} are not connected to station {anchor}: {names}. They form {parts} parts. "
                 "Add the missing shot or equate, correct a misspelt station name, fix one station of each part, or use "
                 "survey.connected_to('{anchor}') to leave them out.",

@@ -19,7 +19,7 @@ from geofit.caves.adjust import AdjustedSurvey, adjust
 from geofit.caves.sections import Sections, sections
 from geofit.caves.survey import Survey
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 if TYPE_CHECKING:
     from geofit.caves.columns import Columns
@@ -214,9 +214,13 @@ def centreline_body(
         If a setting is out of its range.
     """
     if ends not in ("round", "flat"):
-        raise SettingsError(said("The ends '{ends}' are unknown; give 'round' or 'flat'.", ends=ends))
+        raise SettingsError(
+            message("caves.ends-unknown-round", "The ends '{ends}' are unknown; give 'round' or 'flat'.", ends=ends)
+        )
     if (blend is not None and not blend >= 0) or (radius is not None and not radius > 0):
-        raise SettingsError("The blend must be 0 or more, the radius above 0, in metres.")
+        raise SettingsError(
+            message("caves.blend-radius", "The blend must be 0 or more, the radius above 0, in metres.")
+        )
     adjusted = adjust(survey) if isinstance(survey, Survey) else survey
     found = sections(adjusted, radius)
     sweeps = _sweeps(adjusted, found, ends)
@@ -279,5 +283,5 @@ def _points(xyz: ArrayLike) -> Floats:
 
 def _spacing(spacing: float) -> float:
     if not (np.isfinite(spacing) and spacing > 0):
-        raise SettingsError(said("The spacing is {spacing}; give metres above 0.", spacing=spacing))
+        raise SettingsError(message("caves.spacing", "The spacing is {spacing}; give metres above 0.", spacing=spacing))
     return float(spacing)

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.caves.body import PassageBody
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["Clearance", "clearance"]
 
@@ -89,10 +89,16 @@ def clearance(
     corners = np.asarray(excavation, dtype=np.float64)
     if corners.ndim != 2 or corners.shape[1:] != (3,) or not len(corners) or not np.isfinite(corners).all():
         raise SettingsError(
-            said("The excavation has shape {shape}; give finite points (n, 3) in metres.", shape=corners.shape)
+            message(
+                "caves.excavation-shape-points",
+                "The excavation has shape {shape}; give finite points (n, 3) in metres.",
+                shape=corners.shape,
+            )
         )
     if not (radius >= 0 and step > 0):
-        raise SettingsError("The radius must be 0 or more and the step above 0, in metres.")
+        raise SettingsError(
+            message("caves.radius-step", "The radius must be 0 or more and the step above 0, in metres.")
+        )
     from scipy.spatial import cKDTree
 
     points = _along(corners, step) if polyline and len(corners) > 1 else corners

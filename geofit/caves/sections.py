@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.caves.adjust import AdjustedSurvey
 from geofit.caves.survey import WALLS, SurveyError
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Verbatim, message
 
 __all__ = ["FilledWall", "Sections", "sections"]
 
@@ -88,7 +88,11 @@ def sections(adjusted: AdjustedSurvey, radius: float | None = None) -> Sections:
     shot = np.flatnonzero(survey.passage & (length > 1e-6))
     if not len(shot):
         raise SurveyError(
-            said("The survey {name} has no shot along a passage that could get a body.", name=Verbatim(survey.name))
+            message(
+                "caves.survey-shot-along",
+                "The survey {name} has no shot along a passage that could get a body.",
+                name=Verbatim(survey.name),
+            )
         )
     heading = vector[:, :2] / np.maximum(np.linalg.norm(vector[:, :2], axis=1), 1e-12)[:, None]
     reference = _references(adjusted, heading, shot)
@@ -102,7 +106,8 @@ def sections(adjusted: AdjustedSurvey, radius: float | None = None) -> Sections:
     means = [value[(kinds == kind) & known].mean() if (known & (kinds == kind)).any() else radius for kind in (0, 1)]
     if means[0] is None and means[1] is None:
         raise SurveyError(
-            said(
+            message(
+                "caves.survey-wall-any",
                 "The survey {name} has no wall at any station, so its passages have no size. Measure walls, or give "
                 "radius = ... in metres.",
                 name=Verbatim(survey.name),

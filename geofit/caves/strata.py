@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from geofit.caves.body import PassageBody
 from geofit.data.errors import SettingsError
+from geofit.data.messages import message
 
 __all__ = ["Horizon", "Stratum", "strata"]
 
@@ -75,7 +76,9 @@ def strata(body: PassageBody, horizons: Mapping[str, Horizon], *, spacing: float
         If there is no horizon.
     """
     if not horizons:
-        raise SettingsError("There is no horizon to cut with; give at least one, from the top down.")
+        raise SettingsError(
+            message("caves.horizon-cut-top", "There is no horizon to cut with; give at least one, from the top down.")
+        )
     found = body.columns(spacing)
     heights = _heights(horizons, found.x, found.y)
     known = np.isfinite(heights).all(axis=0)

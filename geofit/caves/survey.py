@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import GeofitError
-from geofit.data.messages import Verbatim, listed, said
+from geofit.data.messages import Verbatim, message
 from geofit.data.site import ImportIssue, TableCount
 
 __all__ = ["WALLS", "Survey", "SurveyError"]
@@ -100,12 +100,17 @@ class Survey:
         object.__setattr__(self, "fixed", MappingProxyType(dict(self.fixed)))
         if not len(self.start):
             raise SurveyError(
-                said("The survey {name} has no shot that can be used. See its listed rows.", name=Verbatim(self.name))
+                message(
+                    "caves.survey-shot-used",
+                    "The survey {name} has no shot that can be used. See its listed rows.",
+                    name=Verbatim(self.name),
+                )
             )
         unknown = [station for station in self.fixed if station not in self.stations]
         if unknown:
             raise SurveyError(
-                said(
+                message(
+                    "caves.fixed-stations-not",
                     "The fixed stations {names} are not in the survey {survey}. Correct their names.",
                     names=named(unknown),
                     survey=Verbatim(self.name),
@@ -142,7 +147,8 @@ class Survey:
         """
         if station not in self.stations:
             raise SurveyError(
-                said(
+                message(
+                    "caves.survey-station",
                     "The survey {survey} has no station {station}. Give one of its names.",
                     survey=Verbatim(self.name),
                     station=Verbatim(station),
@@ -176,4 +182,4 @@ def named(stations: list[str]) -> str:
     shown = [Verbatim(name) for name in stations[:_SHOWN]]
     if len(stations) > _SHOWN:
         shown.append(Verbatim("..."))
-    return listed(shown)
+    return tuple(shown)

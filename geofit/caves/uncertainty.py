@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from geofit.caves.body import THIN, PassageBody, across, swept_volumes
 from geofit.data.errors import SettingsError
+from geofit.data.messages import message
 
 __all__ = ["VolumeEstimate", "volume_estimate"]
 
@@ -85,7 +86,12 @@ def volume_estimate(
     are scaled by the volume of the body over the sum of the sections, which counts overlaps once.
     """
     if wall_error < 0 or missing_error < 0 or not 0 <= correlation <= 1:
-        raise SettingsError("Give errors of 0 or more as shares of the walls, and a correlation between 0 and 1.")
+        raise SettingsError(
+            message(
+                "caves.errors-shares-walls",
+                "Give errors of 0 or more as shares of the walls, and a correlation between 0 and 1.",
+            )
+        )
     sweeps, found, survey = body.sweeps, body.sections, body.adjusted.survey
     flat = np.hypot(sweeps.along[:, 0], sweeps.along[:, 1])
 

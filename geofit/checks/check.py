@@ -14,10 +14,10 @@ from geofit.checks.residual_tests import by_label, residual_checks
 from geofit.checks.selfcross import self_crossing
 from geofit.checks.shape import shape_checks
 from geofit.checks.trend import trend
-from geofit.data.accuracy import Accuracy, Check, Conflict, Group, Seam
+from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, Seam
 from geofit.data.guard import guarded
 from geofit.data.labels import Labels
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.geometry.projection import Projection, project
 from geofit.geometry.seams import seams
 from geofit.surfaces.protocol import FittedSurface
@@ -48,7 +48,7 @@ def sigma(residuals: Floats) -> float:
 def check(
     surface: FittedSurface,
     conflicts: Sequence[Conflict] = (),
-    notes: Sequence[str] = (),
+    notes: Sequence[Message] = (),
     *,
     projection: Projection | None = None,
 ) -> Accuracy:
@@ -75,8 +75,8 @@ def check(
     value = sigma(d)
     magnitude = np.abs(d)
     over = {
-        f"interior tolerance {settings.interior_tolerance:g} m": int((magnitude > settings.interior_tolerance).sum()),
-        f"epsilon {settings.epsilon:g} m": int((magnitude > settings.epsilon).sum()),
+        name: Exceedance(limit, int((magnitude > limit).sum()))
+        for name, limit in (("interior_tolerance", settings.interior_tolerance), ("epsilon", settings.epsilon))
     }
     honoured = np.ones(len(d), bool)
     honoured[[conflict.dropped for conflict in conflicts]] = False
@@ -93,7 +93,11 @@ def check(
     with threadpool_limits(limits=1):
         for examine in examinations:
             checks += guarded(
-                examine, (), lambda reason: missing.append(said("a check was not made: {reason}", reason=reason))
+                examine,
+                (),
+                lambda reason: missing.append(
+                    message("checks.not-made", "a check was not made: {reason}", reason=reason)
+                ),
             )
     return Accuracy(
         n=len(d),
@@ -137,15 +141,23 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
     checks, tolerance = [], surface.settings.interior_tolerance
     if exact.any():
         worst = float(np.abs(d[exact]).max())
-        text = said("core points on the surface: {count}", count=int(exact.sum()))
+        text = message("check.core-points-surface", "core points on the surface: {count}", count=int(exact.sum()))
         checks.append(Check("core", worst <= CORE_LIMIT, worst, CORE_LIMIT, "m", text))
     loose = ~exact
     if loose.any():
         worst = float(np.abs(d[loose]).max())
         figures = {"count": int((np.abs(d[loose]) > tolerance).sum()), "total": int(loose.sum())}
-        text = said("{count} of {total} points beyond the interior tolerance", **figures)
+        text = message(
+            "check.points-beyond-interior-tolerance",
+            "{count} of {total} points beyond the interior tolerance",
+            **figures,
+        )
         if surface.partition is not None:
-            text = said("{count} of {total} approximated points beyond the interior tolerance", **figures)
+            text = message(
+                "check.approximated-points-beyond-interior",
+                "{count} of {total} approximated points beyond the interior tolerance",
+                **figures,
+            )
         checks.append(Check("interior tolerance", figures["count"] == 0, worst, tolerance, "m", text))
     return checks
 
@@ -156,8 +168,12 @@ def _seam_checks(surface: FittedSurface, found: tuple[Seam, ...]) -> list[Check]
     gap, angle = max(seam.gap for seam in found), max(seam.angle for seam in found)
     limit = min(GAP_LIMIT, surface.settings.boundary_tolerance)
     tangent = surface.settings.seam == "tangent"
-    gaps = said("largest gap of the seams ({count})", count=len(found))
-    angles = said("largest angle at a seam") if tangent else said("largest angle at a seam (breaks are allowed)")
+    gaps = message("check.largest-gap-seams", "largest gap of the seams ({count})", count=len(found))
+    angles = (
+        message("check.largest-angle-seam", "largest angle at a seam")
+        if tangent
+        else message("check.largest-angle-seam-breaks", "largest angle at a seam (breaks are allowed)")
+    )
     return [
         Check("seam gap", gap <= limit, gap, limit, "m", gaps),
         Check("seam angle", angle <= ANGLE_LIMIT if tangent else None, angle, ANGLE_LIMIT, "deg", angles),

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from geofit.checks.lattice import Lattice
 from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.projection import Projection
 from geofit.surfaces.protocol import FittedSurface
 
@@ -94,13 +94,15 @@ def oscillation(
     figures = {"value": value, "limit": limit, "x": x, "y": y}
     beyond = worst[off[worst] > allowed[worst]]
     if not len(beyond):
-        text = said(
+        text = message(
+            "check.points-surface-keeps-support",
             "between the points the surface keeps to what they support; it departs by {value:.1f} m where {limit:.1f} "
             "m are allowed, at {x:.0f}, {y:.0f}",
             **figures,
         )
         return Check("oscillation", True, value, limit, "m", partly(text, len(chosen), given))
-    text = said(
+    text = message(
+        "check.surface-swings-points-around",
         "the surface swings between the points: at {x:.0f}, {y:.0f} by {value:.1f} m from what those around support "
         "({limit:.1f} m allowed), and so at {count} of {n} places; a point there may be wrong, or the tolerance finer "
         "than the data",

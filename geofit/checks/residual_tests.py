@@ -13,7 +13,7 @@ from scipy.special import binom, ndtri
 
 from geofit.data.accuracy import Check
 from geofit.data.labels import Labels
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 __all__ = ["by_label", "residual_checks"]
 
@@ -61,9 +61,13 @@ def residual_checks(xyz: Floats, d: Floats, patch: Labels, tolerance: float) -> 
     return checks
 
 
-def partly(text: str, part: int, n: int) -> str:
+def partly(text: Message, part: int, n: int) -> Message:
     """Return a check's sentence with how many of ``n`` points it looked at, where these are not all."""
-    return text if part == n else said("{text}; {part} of {n} points looked at", text=text, part=part, n=n)
+    return (
+        text
+        if part == n
+        else message("check.sample-of-points", "{text}; {part} of {n} points looked at", text=text, part=part, n=n)
+    )
 
 
 def by_label(d: Floats, labels: Labels) -> dict[str, Floats]:
@@ -84,7 +88,7 @@ def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
     """Whether a patch lies to one side of its points: Student's t and the sign test, held against the tolerance."""
     rows = {name: part for name, part in by_label(d, patch).items() if len(part) >= FEW}
     if not rows:
-        text = said("not judged: no patch has {few} approximated points", few=FEW)
+        text = message("check.not-judged-no-patch", "not judged: no patch has {few} approximated points", few=FEW)
         return Check("bias", None, 0.0, SHARE * tolerance, "m", text)
     limits = {name: _bias_limit(part, tolerance) for name, part in rows.items()}
     name = max(rows, key=lambda one: abs(rows[one].mean()) / limits[one])
@@ -92,13 +96,15 @@ def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
     passed = abs(mean) <= limit
     side = float(np.mean(np.sign(rows[name]) == np.sign(mean)))
     if passed:
-        text = said(
+        text = message(
+            "check.no-patch-lies-side",
             "no patch lies to one side of its points; largest mean {mean:+.3f} m, {patch}",
             mean=round(mean, 3) + 0.0,  # no -0.000
             patch=name,
         )
     elif mean > 0:
-        text = said(
+        text = message(
+            "check.bias-surface-runs-too-low",
             "a bias: the surface runs too low in patch {patch}, {share:.0%} of {n} approximated points lie above it, "
             "on average by {mean:.3f} m",
             patch=name,
@@ -107,7 +113,8 @@ def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
             mean=mean,
         )
     else:
-        text = said(
+        text = message(
+            "check.bias-surface-runs-too-high",
             "a bias: the surface runs too high in patch {patch}, {share:.0%} of {n} approximated points lie below it, "
             "on average by {mean:.3f} m",
             patch=name,
@@ -140,9 +147,14 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
     n, name = len(d), "clustering"
     spread = float(d.std()) if n else 0.0
     if n < FEWEST or spread == 0:
-        text = said("not judged: too few approximated points, {n} where {few} are needed", n=n, few=FEWEST)
+        text = message(
+            "check.not-judged-too-few",
+            "not judged: too few approximated points, {n} where {few} are needed",
+            n=n,
+            few=FEWEST,
+        )
         if n >= FEWEST:
-            text = said("not judged: all residuals are equal")
+            text = message("check.not-judged-residuals-equal", "not judged: all residuals are equal")
         return Check(name, None, 0.0, SHARE * tolerance, "m", text)
     z = (d - d.mean()) / spread
     near = np.asarray(cKDTree(xyz).query(xyz, k=NEIGHBOURS + 1)[1])
@@ -157,9 +169,14 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
     limit = max(SHARE * tolerance, spread * np.sqrt(max(expected + BEYOND * error, 0.0)))
     figures = {"moran": moran, "z": (moran - expected) / error}
     if value <= limit:
-        text = said("residuals of neighbours do not hang together (Moran's I {moran:.2f}, z {z:.1f})", **figures)
+        text = message(
+            "check.residuals-neighbours-not-hang",
+            "residuals of neighbours do not hang together (Moran's I {moran:.2f}, z {z:.1f})",
+            **figures,
+        )
     else:
-        text = said(
+        text = message(
+            "check.residuals-neighbours-agree-pattern",
             "residuals of neighbours agree: a pattern of about {value:.2f} m that the surface does not follow "
             "(Moran's I {moran:.2f}, z {z:.1f}); more control points, or a source that is off as a whole",
             value=value,
@@ -186,12 +203,20 @@ def _normality(d: Floats, tolerance: float) -> Check:
     """Shapiro-Francia: how straight the normal plot is, with Royston's (1993) distribution of it."""
     n, name = len(d), "normality"
     if n < FEWEST:
-        text = said("not judged: too few approximated points, {n} where {few} are needed", n=n, few=FEWEST)
+        text = message(
+            "check.not-judged-too-few",
+            "not judged: too few approximated points, {n} where {few} are needed",
+            n=n,
+            few=FEWEST,
+        )
         return Check(name, None, 0.0, CROOKED, "", text)
     worst = float(np.abs(d).max())
     if worst <= tolerance:
         # The fit bends the surface until its points are within the tolerance, which cuts the tails off.
-        text = said("not judged: no residual is beyond the interior tolerance, where the fit stops")
+        text = message(
+            "check.not-judged-no-residual",
+            "not judged: no residual is beyond the interior tolerance, where the fit stops",
+        )
         return Check(name, None, 0.0, CROOKED, "", text)
     quantile = ndtri((np.arange(1, n + 1) - 0.375) / (n + 0.25))
     ordered = np.sort(d) - d.mean()
@@ -201,10 +226,15 @@ def _normality(d: Floats, tolerance: float) -> Check:
     spread = 1.0308 - 0.26758 * (loglog + 2.0 / np.log(n))
     limit = max(CROOKED, float(np.exp(mean + BEYOND * spread)))
     if off <= limit:
-        text = said("the normal plot of the residuals is straight but for {off:.1%}", off=off)
+        text = message(
+            "check.normal-plot-residuals-straight",
+            "the normal plot of the residuals is straight but for {off:.1%}",
+            off=off,
+        )
     elif np.mean(ordered**4) < 3.0 * np.mean(ordered**2) ** 2:
         # Shorter tails than a normal law has: what the tolerance cuts off, and nobody's blunder.
-        text = said(
+        text = message(
+            "check.not-judged-residuals-lie",
             "not judged: most residuals lie at the interior tolerance, where the fit stops; the normal plot leaves its "
             "line by {off:.0%} for that",
             off=off,
@@ -213,7 +243,8 @@ def _normality(d: Floats, tolerance: float) -> Check:
     else:
         squares = np.sort(d**2)[::-1]
         few = max(n // 50, 1)
-        text = said(
+        text = message(
+            "check.residuals-not-noise-normal",
             "the residuals are not noise: the normal plot leaves its line by {off:.0%}, with {share:.0%} of the "
             "sum of squares from {few} of {n} points; look at the worst points first",
             off=off,

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from geofit.checks.lattice import Lattice
 from geofit.data.accuracy import Check
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
 from geofit.surfaces.protocol import FittedSurface
 
@@ -36,18 +36,29 @@ def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     """
     frame = surface.frame
     if all(plan_map(patch) is not None for patch in surface.patches):
-        text = said("a height field over the map stands once over each place: it cannot cross itself")
+        text = message(
+            "check.height-field-map-stands",
+            "a height field over the map stands once over each place: it cannot cross itself",
+        )
         return Check("self-intersection", True, 0, 0, "places", text)
     if frame == "best-plane":
-        text = said("a height field over its best plane stands once over each place: it cannot cross itself")
+        text = message(
+            "check.height-field-best-plane",
+            "a height field over its best plane stands once over each place: it cannot cross itself",
+        )
         return Check("self-intersection", True, 0, 0, "places", text)
     triangles = _triangles(parts)
     crossed, where = _crossings(triangles) if len(triangles) else (0, triangles)
     if not crossed:
-        text = said("no two of {n} triangles between the ends and middles of its spans cross", n=len(triangles))
+        text = message(
+            "check.no-two-triangles-ends",
+            "no two of {n} triangles between the ends and middles of its spans cross",
+            n=len(triangles),
+        )
         return Check("self-intersection", True, 0, 0, "places", text)
     place = where[0] + surface.origin
-    text = said(
+    text = message(
+        "check.surface-passes-through-crossing",
         "the surface passes through itself: crossing pairs of triangles: {crossed} (triangles: {n}), one at "
         "{x:.1f}, {y:.1f}, {z:.1f}",
         crossed=crossed,

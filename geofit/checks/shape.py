@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.checks.lattice import Lattice, places
 from geofit.data.accuracy import Check
-from geofit.data.messages import listed, said
+from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
 from geofit.geometry.trim_loops import inside
 from geofit.splines.bspline import greville
@@ -60,14 +60,20 @@ def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
         turned |= normal @ upward < 0
     count = int(turned.sum())
     if count:
-        text = said(
+        text = message(
+            "check.places-folded-degenerate-surface",
             "{count} of {total} places folded or degenerate: the surface turns over there, or its normals look to the "
             "other side",
             count=count,
             total=len(normal),
         )
     else:
-        text = said("{count} of {total} places folded or degenerate", count=0, total=len(normal))
+        text = message(
+            "check.places-folded-degenerate",
+            "{count} of {total} places folded or degenerate",
+            count=0,
+            total=len(normal),
+        )
     where = points[turned][:NAMED] + surface.origin
     return Check("normals", count == 0, count, 0, "places", text, _named(where))
 
@@ -89,10 +95,15 @@ def _patches(surface: FittedSurface) -> Check:
             faults += [(patch.name, place) for place in _out_of_order(patch, loops)]
     count = len(faults)
     if not count:
-        text = said("no edge, corner or control point of the patches ({n}) has collapsed", n=len(surface.patches))
+        text = message(
+            "check.no-edge-corner-control",
+            "no edge, corner or control point of the patches ({n}) has collapsed",
+            n=len(surface.patches),
+        )
         return Check("patches", True, 0, 0, "places", text)
-    names = listed(dict.fromkeys(name for name, _ in faults))
-    text = said(
+    names = tuple(dict.fromkeys(name for name, _ in faults))
+    text = message(
+        "check.places-patches-degenerate-edge",
         "places where patches are degenerate (an edge without length, a corner without an angle, control points "
         "that run back): {count}, in {names}; other programs may refuse such a face",
         count=count,
@@ -144,7 +155,9 @@ def _elevation_range(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     beyond = np.maximum(z.min() - points[:, 2], points[:, 2] - z.max())
     worst = int(np.argmax(beyond))
     value, limit = max(float(beyond[worst]), 0.0), RANGE_SHARE * float(np.ptp(z))
-    text = said("elevations reach {value:.1f} m beyond the data's range", value=value)
+    text = message(
+        "check.elevations-reach-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=value
+    )
     where = _named(points[[worst]] + surface.origin) if value > limit else ()
     return Check("elevation range", value <= limit, value, limit, "m", text, where)
 
@@ -158,16 +171,23 @@ def _area(surface: FittedSurface) -> Check:
     off = 100.0 * abs(covered / wanted - 1.0)
     figures = {"covered": covered, "wanted": wanted, "off": off}
     if off <= UNCOVERED:
-        text = said("the surface covers {covered:.0f} of the study area's {wanted:.0f} square metres", **figures)
+        text = message(
+            "check.area-covered",
+            "the surface covers {covered:.0f} of the study area's {wanted:.0f} square metres",
+            **figures,
+        )
     elif covered < wanted:
-        text = said(
+        text = message(
+            "check.area-not-covered",
             "the surface covers only {covered:.0f} of the study area's {wanted:.0f} square metres: {off:.1f} % of it "
             "have no surface",
             **figures,
         )
     else:
-        text = said(
-            "the patches cover {covered:.0f} square metres of a study area of {wanted:.0f}: they overlap", **figures
+        text = message(
+            "check.patches-cover-square-metres",
+            "the patches cover {covered:.0f} square metres of a study area of {wanted:.0f}: they overlap",
+            **figures,
         )
     return Check("area", off <= UNCOVERED, off, UNCOVERED, "%", text)
 

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from geofit.checks.lattice import Lattice, places
 from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.surfaces.protocol import FittedSurface
 
 __all__ = ["trend"]
@@ -81,13 +81,15 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], honoured: Bools) -> 
     place = where[away][worst] + surface.origin
     figures = {"value": value, "shown": shown, "x": place[0, 0], "y": place[0, 1]}
     if value <= limit:
-        text = said(
+        text = message(
+            "check.away-points-surface-departs",
             "away from the points the surface departs from their plane by {value:.1f} m, the points themselves by "
             "{shown:.1f} m",
             **figures,
         )
         return Check("trend", True, value, limit, "m", partly(text, len(local), len(every)))
-    text = said(
+    text = message(
+        "check.surface-runs-away-no",
         "the surface runs away where no point holds it: {value:.1f} m off the regional trend at {x:.0f}, {y:.0f}, "
         "where the points depart from it by {shown:.1f} m at most; do not use it there without further points",
         **figures,

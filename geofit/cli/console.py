@@ -14,8 +14,10 @@ from typing import TYPE_CHECKING, Any, ParamSpec
 
 import typer
 
-from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.errors import Cancelled, GeofitError, InputError
 from geofit.data.files import cannot_write
+from geofit.data.languages import gravest_first
+from geofit.data.messages import Message
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
 
@@ -108,9 +110,9 @@ def _system_library(message: str) -> str | None:
     return f"The system library {library} is missing. Install it (Debian and Ubuntu: apt-get install {package})."
 
 
-def say(text: str) -> None:
+def say(text: Message | str) -> None:
     """Write a line to stderr as it stands."""
-    sys.stderr.write(text + "\n")
+    sys.stderr.write(f"{text}\n")
 
 
 @contextmanager
@@ -118,8 +120,8 @@ def listening() -> Iterator[Progress]:
     """Show stages and the time left on a terminal; nothing in a pipe. Ctrl-C stops at the next stage at last."""
     with _interrupts() as stopped, _bars() as show:
 
-        def listen(stage: str, fraction: float, /) -> bool:
-            show(stage, fraction)
+        def listen(stage: str | Message, fraction: float, /) -> bool:
+            show(str(stage), fraction)
             return not stopped()
 
         yield listen
@@ -204,8 +206,10 @@ def print_results(results: Sequence[HorizonResult]) -> None:
         failed = [c for c in (*a.checks, *(r.read_back.checks if r.read_back else ())) if c.passed is False]
         for check in failed:
             say(f"{r.name}: check '{check.name}' does not hold: {check.text}")
-        for note in a.notes:
-            say(f"{r.name}: {note}")
+        partition = r.surface.partition
+        lost = () if partition is None or partition.reason.severity == "info" else (partition.reason,)
+        for note in gravest_first((*lost, *a.notes)):
+            say(f"{r.name}: {'' if note.severity == 'info' else f'{note.severity}: '}{note}")
 
 
 def _time(seconds: float | None) -> str:
@@ -258,15 +262,15 @@ def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
 
 
 def _sentence(issue: ImportIssue) -> str:
-    place = [issue.file]
-    if issue.row:
-        place.append(f"row {issue.row}")
-    if issue.column:
-        place.append(f"column '{issue.column}'")
-    if issue.value:
-        place.append(f"value '{issue.value}'")
-    remedy = f" {issue.remedy}" if issue.remedy else ""
-    return f"{issue.severity}: {', '.join(place)}: {issue.reason.rstrip('.')}.{remedy}"
+    told = InputError(
+        issue.reason,
+        issue.remedy,
+        file=issue.file,
+        row=issue.row or None,
+        column=issue.column or None,
+        value=issue.value or None,
+    )
+    return f"{issue.severity}: {told}"
 
 
 def print_counts(counts: Sequence[TableCount]) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -112,7 +112,7 @@ def fit(
         "max_control_points": max_control_points,
         "conflict_distance": conflict_distance,
     }
-    changes = {name: value for name, value in given.items() if value is not None}
+    changes: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "sep": sep, "decimal": decimal}
     columns["crs"] = crs
     FitSettings(**changes)  # a bad value is told before files are read

@@ -25,7 +25,7 @@ def report(
     as_json: Json = False,
 ) -> int:
     """Fit every horizon of a site and write its accuracy report (HTML, PDF, JSON) with the surfaces it is about."""
-    from geofit.report.language import language
+    from geofit.data.languages import language
 
     with listening() as progress:
         return run_site(read_source(site, {}, None), out, (), {}, as_json, progress, language(lang.value), pdf=True)

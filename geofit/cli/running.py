@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 from geofit.cli.console import print_counts, print_issues, print_json, print_results, say
 
 if TYPE_CHECKING:
+    from geofit.data.languages import Language
     from geofit.data.progress import Progress
     from geofit.data.site import Site
-    from geofit.report.language import Language
 
 __all__ = ["run_site"]
 
@@ -30,8 +30,8 @@ def run_site(
 ) -> int:
     """Fit, write and report the horizons of a site; print what was found; return the exit code."""
     from geofit.data.accuracy import plain
+    from geofit.data.languages import EN
     from geofit.project.run import deliver
-    from geofit.report.language import EN
     from geofit.report.result import horizon_data
 
     print_issues(site.issues, str(out / "import_issues.csv"))

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geofit.data.errors import InputError
+from geofit.data.messages import Verbatim, message
 
 if TYPE_CHECKING:
     from geofit.data.site import Site
@@ -29,7 +30,9 @@ def read_source(source: Path, columns: dict[str, str | None], boundary: Path | N
         given = [f"--{name}" for name, value in columns.items() if value is not None]
         if given:
             raise InputError(
-                f"{given[0]} is for tables of points", "A site file names its own columns.", file=str(source)
+                message("cli.option-for-tables", "{option} is for tables of points", option=given[0]),
+                message("cli.site-file-names-columns", "A site file names its own columns."),
+                file=str(source),
             )
         site = read_site(source)
         return site if area is None else replace(site, boundary=area)
@@ -60,5 +63,11 @@ def pick(kind: str, found: Mapping[str, Any], wanted: str | None, file: Path) ->
         return next(iter(found.items()))
     if wanted is not None and wanted in found:
         return wanted, found[wanted]
-    reason = f"There is no {kind} '{wanted}'" if wanted else f"The file holds {len(found)} {kind}s"
-    raise InputError(reason, f"Choose with --horizon: {', '.join(found)}.", file=str(file))
+    if wanted:
+        reason = message("cli.not-in-file", "There is no {kind} '{name}'", kind=kind, name=Verbatim(wanted))
+    elif kind == "surface":
+        reason = message("cli.surfaces-in-file", "The file has {count} surfaces; one is needed", count=len(found))
+    else:
+        reason = message("cli.horizons-in-file", "The file has {count} horizons; one is needed", count=len(found))
+    remedy = message("cli.choose-with-horizon", "Choose with --horizon: {names}.", names=", ".join(found))
+    raise InputError(reason, remedy, file=str(file))

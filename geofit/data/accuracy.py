@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Accuracy", "Check", "Conflict", "Group", "Partition", "ReadBack", "Seam", "plain"]
+from geofit.data.messages import Message
+
+__all__ = ["Accuracy", "Check", "Conflict", "Exceedance", "Group", "Partition", "ReadBack", "Seam", "plain"]
 
 Floats = NDArray[np.float64]
 
@@ -23,6 +26,14 @@ class Group:
     sigma: float
     max_abs: float
     mean: float
+
+
+@dataclass(frozen=True)
+class Exceedance:
+    """Points further from the surface than a tolerance: the tolerance in metres and their count."""
+
+    limit: float
+    count: int
 
 
 @dataclass(frozen=True)
@@ -47,7 +58,7 @@ class Check:
     value: float
     limit: float
     unit: str
-    text: str
+    text: Message
     places: tuple[tuple[float, float, float], ...] = ()
 
     def __repr__(self) -> str:
@@ -63,7 +74,7 @@ class Conflict:
     kept: int
     dropped: int
     difference: float
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True)
@@ -77,7 +88,7 @@ class Partition:
     corners: tuple[tuple[float, float], ...] | None
     core: int
     periphery: int
-    reason: str
+    reason: Message
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +97,8 @@ class Accuracy:
 
     ``sigma = sqrt(sum d_i^2 / (n - 1))`` over all n original points (eq. 3); passed when sigma < epsilon.
     ``residuals`` (n,) are signed orthogonal distances in metres, positive above the surface; ``patch`` (n,)
-    names the patch of each point. ``over`` counts the points beyond each tolerance, by its name.
+    names the patch of each point. ``over`` counts the points beyond tolerances, by the name of the setting:
+    "interior_tolerance", "epsilon".
     ``worst`` holds the indices of the largest residuals, largest first.
     """
 
@@ -102,12 +114,12 @@ class Accuracy:
     by_kind: Mapping[str, Group]
     by_hole: Mapping[str, Group]
     by_section: Mapping[str, Group]
-    over: Mapping[str, int]
+    over: Mapping[str, Exceedance]
     worst: tuple[int, ...]
     seams: tuple[Seam, ...] = ()
     checks: tuple[Check, ...] = ()
     conflicts: tuple[Conflict, ...] = ()
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
 
     def __repr__(self) -> str:
         sign = "<" if self.passed else ">="
@@ -152,7 +164,12 @@ class ReadBack:
 
 
 def plain(value: Any) -> Any:
-    """Turn dataclasses, arrays and numbers into what JSON holds; nan and infinities become null."""
+    """Turn dataclasses, arrays and numbers into what JSON holds.
+
+    nan and infinities become null; a message becomes its code, severity, text and parameters.
+    """
+    if isinstance(value, Message):
+        return plain(value.as_data())
     if is_dataclass(value) and not isinstance(value, type):
         return {f.name: plain(getattr(value, f.name)) for f in fields(value)}
     if isinstance(value, Mapping):
@@ -163,6 +180,8 @@ def plain(value: Any) -> Any:
         return [plain(v) for v in value]
     if isinstance(value, np.generic):
         return plain(value.item())
+    if isinstance(value, PurePath):
+        return str(value)
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     return value

@@ -12,8 +12,8 @@
     ├── MissingDependencyError   an optional package is not installed; the text holds the install line
     └── Cancelled                the caller's progress function asked to stop
 
-Each message says what was given, what is needed, and what to do. A message by
-:func:`geofit.data.messages.said` can be translated; ``str(error)`` is English.
+Each carries a :class:`~geofit.data.messages.Message` (``error.message``, ``error.code``) that says what was given, what
+is needed, and what to do. ``str(error)`` is English; :func:`geofit.data.languages.translate` gives other languages.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from geofit.data.messages import Said, Verbatim, folded, listed, said
+from geofit.data.languages import folded
+from geofit.data.messages import EMPTY, Message, Verbatim, message
 
 __all__ = [
     "Cancelled",
@@ -37,10 +38,25 @@ __all__ = [
 
 
 class GeofitError(Exception):
-    """Base of every error raised by geofit on purpose."""
+    """Base of every error raised by geofit on purpose.
+
+    Parameters
+    ----------
+    message : Message
+        What was given, what is needed, and what to do. ``str(error)`` is its English text.
+    """
+
+    def __init__(self, message: Message) -> None:
+        super().__init__(message)
+        self.message = message
+
+    @property
+    def code(self) -> str:
+        """Identifier of what is wrong, for comparisons."""
+        return self.message.code
 
     def __str__(self) -> str:
-        return self.args[0] if len(self.args) == 1 and isinstance(self.args[0], str) else super().__str__()
+        return str(self.message)
 
 
 class InputError(GeofitError):
@@ -48,9 +64,9 @@ class InputError(GeofitError):
 
     Parameters
     ----------
-    reason : str
+    reason : Message
         What is wrong, in one sentence.
-    remedy : str
+    remedy : Message
         What the user can do about it, in one sentence.
     file : str, optional
         Path of the file.
@@ -59,13 +75,13 @@ class InputError(GeofitError):
     column : str, optional
         Header of the column.
     value : str, optional
-        The offending cell as it stands in the file.
+        The offending cell as the file has it.
     """
 
     def __init__(
         self,
-        reason: str,
-        remedy: str = "",
+        reason: Message,
+        remedy: Message = EMPTY,
         *,
         file: str | None = None,
         row: int | None = None,
@@ -74,12 +90,30 @@ class InputError(GeofitError):
     ) -> None:
         self.reason, self.remedy = reason, remedy
         self.file, self.row, self.column, self.value = file, row, column, value
-        place: list[str] = [Verbatim(file)] if file else []
-        place += [said("row {row}", row=row)] if row is not None else []
-        place += [said("column '{column}'", column=Verbatim(column))] if column is not None else []
-        place += [said("value '{value}'", value=Verbatim(folded(value)))] if value is not None else []
-        sentence = _sentence(reason, remedy)
-        super().__init__(said("{place}: {sentence}", place=listed(place), sentence=sentence) if place else sentence)
+        super().__init__(self.at_place(_sentence(reason, remedy)))
+
+    @property
+    def code(self) -> str:
+        """Identifier of the reason, for comparisons."""
+        return self.reason.code
+
+    @property
+    def fault(self) -> Message:
+        """Place and reason without the remedy."""
+        return self.at_place(_sentence(self.reason, EMPTY))
+
+    def at_place(self, sentence: Message) -> Message:
+        """Return a sentence with file, row, column and value in front, as far as they are known."""
+        place: list[Message | str] = [Verbatim(self.file)] if self.file else []
+        if self.row is not None:
+            place.append(message("place.row", "row {row}", row=self.row))
+        if self.column is not None:
+            place.append(message("place.column", "column '{column}'", column=Verbatim(self.column)))
+        if self.value is not None:
+            place.append(message("place.value", "value '{value}'", value=Verbatim(folded(self.value))))
+        if not place:
+            return sentence
+        return message("error.at-place", "{place}: {sentence}", place=tuple(place), sentence=sentence)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what another process makes the same error from."""
@@ -87,12 +121,15 @@ class InputError(GeofitError):
         return again, (self.reason, self.remedy)
 
 
-def _sentence(reason: str, remedy: str) -> str:
+def _sentence(reason: Message, remedy: Message) -> Message:
     """Return reason and remedy with one full stop between them, which some reasons bring with them."""
-    what = reason if isinstance(reason, Said) else reason.rstrip(".")
-    if what.endswith("."):
-        return said("{reason} {remedy}", reason=what, remedy=remedy) if remedy else what
-    return said("{reason}. {remedy}", reason=what, remedy=remedy) if remedy else said("{reason}.", reason=what)
+    if reason.is_sentence:
+        return (
+            message("error.reason-and-remedy", "{reason} {remedy}", reason=reason, remedy=remedy) if remedy else reason
+        )
+    if remedy:
+        return message("error.reason-remedy", "{reason}. {remedy}", reason=reason, remedy=remedy)
+    return message("error.reason", "{reason}.", reason=reason)
 
 
 class PointsError(GeofitError, ValueError):

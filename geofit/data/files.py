@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["cannot_write", "file_stems", "is_file", "legible", "replacing", "spreadsheet_cell"]
 
@@ -57,14 +57,18 @@ def cannot_write(error: OSError, path: str | os.PathLike[str]) -> InputError:
     """Return an error of the system as one that names the file and what to do about it."""
     match error.errno:
         case errno.ENOSPC | errno.EDQUOT | errno.EFBIG:
-            remedy = said("Make room on the disk, or name another folder.")
+            remedy = message("files.make-room-disk", "Make room on the disk, or name another folder.")
         case errno.ENOENT | errno.ENOTDIR:
-            remedy = said("Make the folder, or name another.")
+            remedy = message("project.folder-name", "Make the folder, or name another.")
         case errno.ENAMETOOLONG | errno.EINVAL:
-            remedy = said("Choose another name.")
+            remedy = message("files.choose", "Choose another name.")
         case _:
-            remedy = said("Name a folder that you may write to, and close the file in other programs.")
-    reason = said("The file cannot be written: {error}", error=error.strerror or str(error))
+            remedy = message(
+                "files.folder-you-may", "Name a folder that you may write to, and close the file in other programs."
+            )
+    reason = message(
+        "export.file-cannot-written", "The file cannot be written: {error}", error=error.strerror or str(error)
+    )
     return InputError(reason, remedy, file=legible(str(path)))
 
 

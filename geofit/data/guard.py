@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TypeVar
 
 from geofit.data.errors import Cancelled, GeofitError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 __all__ = ["guarded", "reason_of"]
 
 T = TypeVar("T")
 
 
-def guarded(work: Callable[[], T], instead: T, report: Callable[[str], object]) -> T:
+def guarded(work: Callable[[], T], instead: T, report: Callable[[Message], object]) -> T:
     """Run one examination; if it fails, report the reason and return what takes its place.
 
     Parameters
@@ -25,7 +25,7 @@ def guarded(work: Callable[[], T], instead: T, report: Callable[[str], object]) 
     instead : object
         The result without it.
     report : callable
-        Called with the reason in words.
+        Called with the reason.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def guarded(work: Callable[[], T], instead: T, report: Callable[[str], object]) 
     Examples
     --------
     >>> notes = []
-    >>> guarded(lambda: 1 // 0, -1, notes.append), notes[0].values["kind"]
+    >>> guarded(lambda: 1 // 0, -1, notes.append), notes[0].params["kind"]
     (-1, 'ZeroDivisionError')
     """
     try:
@@ -47,13 +47,14 @@ def guarded(work: Callable[[], T], instead: T, report: Callable[[str], object]) 
         return instead
 
 
-def reason_of(error: Exception) -> str:
-    """Return an error in words; of an unforeseen one also the kind and the line, for the report to the developers."""
+def reason_of(error: Exception) -> Message:
+    """Return what an error says; of an unforeseen one also the kind and the line, for the report to the developers."""
     if isinstance(error, GeofitError):
-        return error.args[0] if error.args else str(error)
+        return error.message
     frame = traceback.extract_tb(error.__traceback__)[-1:]
     place = f"{Path(frame[0].filename).name}:{frame[0].lineno}" if frame else "?"
-    return said(
+    return message(
+        "error.unforeseen",
         "unforeseen error {kind} ({text}; {place}); please report it",
         kind=type(error).__name__,
         text=" ".join(str(error).split())[:200],

@@ -1,50 +1,165 @@
-"""Sentences that can be told in another language: English text that remembers its template and its values."""
+"""Messages: a code, parameters and a severity; the sentence is formed where it is shown.
+
+A message keeps its English template and its parameters. ``str(message)`` is English;
+:func:`geofit.data.languages.translate` gives another language. Code compares ``message.code`` and ``message.params``,
+never the text.
+
+Templates are literals, so that Babel can extract them: ``pybabel extract -k message:2 -k plural_message:2,3``.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import reduce
-from typing import Any
+from dataclasses import dataclass, field, replace
+from gettext import NullTranslations
+from string import Formatter
+from typing import Any, Literal
 
-__all__ = ["Said", "Verbatim", "folded", "listed", "said"]
+from geofit.data.terms import TERMS
 
+__all__ = [
+    "EMPTY",
+    "ENGLISH",
+    "Message",
+    "Severity",
+    "Verbatim",
+    "folded",
+    "gravest_first",
+    "message",
+    "plural_message",
+    "render",
+]
 
-class Said(str):
-    """An English sentence; ``template`` and ``values`` are what another language needs to say it anew."""
+Severity = Literal["info", "warning", "error"]
 
-    __slots__ = ("template", "values")
-    template: str
-    values: Mapping[str, Any]
+#: The catalogue of the source language: every template is its own translation.
+ENGLISH = NullTranslations()
 
-    def in_words(self, templates: Mapping[str, str]) -> str:
-        """Return the sentence by another language's templates, values that are sentences included.
-
-        A template that the other language does not have leaves the sentence in English.
-        """
-        other = templates.get(self.template)
-        if other is None:
-            return str(self)
-        values = {k: v.in_words(templates) if isinstance(v, Said) else v for k, v in self.values.items()}
-        return other.format(**values)
+_GRAVEST_FIRST = ("error", "warning", "info")
+_ITEMS = "{first}, {second}"
 
 
 class Verbatim(str):
-    """A word that is the same in every language: a column or key of a file, a name, also where it is one of ours."""
+    """A name that is the same in every language, such as a column or a borehole, even if it is also a term."""
 
     __slots__ = ()
 
 
-def said(template: str, **values: Any) -> Said:
-    """Return ``template.format(**values)``; the template must be a literal, so that translations can be checked.
+@dataclass(frozen=True)
+class Message:
+    """A sentence with parameters that is formatted only when it is shown.
+
+    Parameters
+    ----------
+    code : str
+        Stable identifier, "room.what": "points.not-finite".
+    template : str
+        English text with ``str.format`` fields; it is the key of the translations.
+    params : mapping of str to object
+        Values of the fields. Messages, and tuples of messages and strings, are translated with the sentence; a string
+        is translated if it is one of :data:`geofit.data.terms.TERMS`, unless it is :class:`Verbatim`.
+    plural : str or None
+        English template for values of the parameter ``count`` other than 1.
+    severity : {"info", "warning", "error"}
+        How grave it is.
+    """
+
+    code: str
+    template: str
+    params: Mapping[str, Any] = field(default_factory=dict)
+    plural: str | None = None
+    severity: Severity = "info"
+
+    def __str__(self) -> str:
+        return str(render(self, ENGLISH))
+
+    def __repr__(self) -> str:
+        return f"<{self.code}: {self}>"
+
+    def __format__(self, spec: str) -> str:
+        return format(str(self), spec)
+
+    def __bool__(self) -> bool:
+        return bool(self.template)
+
+    def __hash__(self) -> int:
+        return hash((self.code, self.template))
+
+    @property
+    def is_sentence(self) -> bool:
+        """Whether the English text brings its own full stop, in the template or in the parameter at its end."""
+        last = list(Formatter().parse(self.template))[-1:]
+        value = self.params.get(last[0][1]) if last and last[0][1] else None
+        if isinstance(value, Message):
+            return value.is_sentence
+        return (value if isinstance(value, str) else self.template).endswith((".", "!", "?"))
+
+    def with_severity(self, severity: Severity) -> Message:
+        """Return the message with another severity."""
+        return replace(self, severity=severity)
+
+    def as_data(self) -> dict[str, Any]:
+        """Return what JSON holds of it: code, severity, English text and parameters."""
+        return {"code": self.code, "severity": self.severity, "text": str(self), "params": dict(self.params)}
+
+
+#: No message; false where a condition is tested.
+EMPTY = Message("", "")
+
+
+def message(code: str, template: str, /, **params: Any) -> Message:
+    """Return a message; ``code`` and ``template`` must be literals.
 
     Examples
     --------
-    >>> text = said("{count} of {total} points", count=3, total=40)
-    >>> str(text), text.in_words({"{count} of {total} points": "{total} 点中的 {count} 点"})
-    ('3 of 40 points', '40 点中的 3 点')
+    >>> found = message("points.selected", "{count} of {total} points", count=3, total=40)
+    >>> str(found), found.code, found.params["count"]
+    ('3 of 40 points', 'points.selected', 3)
     """
-    text = Said(template.format(**values))
-    text.template, text.values = template, values
+    return Message(code, template, _kept(params))
+
+
+def plural_message(code: str, singular: str, plural: str, /, *, count: int, **params: Any) -> Message:
+    """Return a message with a singular and a plural, selected by ``count``, which is a parameter of both templates.
+
+    Examples
+    --------
+    >>> [str(plural_message("points.given", "{count} point", "{count} points", count=n)) for n in (1, 2)]
+    ['1 point', '2 points']
+    """
+    return Message(code, singular, {"count": count, **_kept(params)}, plural)
+
+
+def gravest_first(messages: Iterable[Message]) -> tuple[Message, ...]:
+    """Return messages by severity: errors, warnings, information; equally grave ones in their order."""
+    return tuple(sorted(messages, key=lambda one: _GRAVEST_FIRST.index(one.severity)))
+
+
+def render(value: Any, catalogue: NullTranslations) -> Any:
+    """Return a message, a term or a tuple of them as text of a catalogue; any other value unchanged."""
+    if isinstance(value, Message):
+        if not value.template:
+            return ""
+        if value.plural is None:
+            template = catalogue.gettext(value.template)
+        else:
+            template = catalogue.ngettext(value.template, value.plural, int(value.params["count"]))
+        # A text without parameters may show braces, as of a TOML table.
+        fields = {name: render(param, catalogue) for name, param in value.params.items()}
+        return template.format(**fields) if fields else template
+    if isinstance(value, tuple) and value and all(isinstance(item, (Message, str)) for item in value):
+        return _joined([str(render(item, catalogue)) for item in value], catalogue)
+    if isinstance(value, str):
+        return catalogue.gettext(value) if value in TERMS and not isinstance(value, Verbatim) else str(value)
+    return value
+
+
+def _joined(texts: list[str], catalogue: NullTranslations) -> str:
+    """Return texts as a list with the commas of a language."""
+    template = catalogue.gettext(_ITEMS)
+    text = texts[0] if texts else ""
+    for item in texts[1:]:
+        text = template.format(first=text, second=item)
     return text
 
 
@@ -59,13 +174,12 @@ def folded(text: str, most: int = 200) -> str:
     return text if len(text) <= most else f"{text[:most]}… ({len(text)} characters)"
 
 
-def listed(texts: Iterable[str]) -> str:
-    """Return texts as a list with commas, empty if there is none; those that can be told in another language still can.
-
-    Examples
-    --------
-    >>> listed([said("row {row}", row=2), said("row {row}", row=5)])
-    'row 2, row 5'
-    """
-    texts = list(texts)
-    return reduce(lambda a, b: said("{first}, {second}", first=a, second=b), texts) if texts else ""
+def _kept(params: dict[str, Any]) -> dict[str, Any]:
+    """Return parameters that can be stored and sent: errors become their messages."""
+    kept = {}
+    for name, value in params.items():
+        if isinstance(value, BaseException):
+            own = getattr(value, "message", None)
+            value = own if isinstance(own, Message) else str(value)
+        kept[name] = value
+    return kept

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import PointsError
 from geofit.data.labels import Labels
-from geofit.data.messages import Verbatim, said
+from geofit.data.messages import Message, Verbatim, message, plural_message
 
 __all__ = ["KINDS", "LARGEST", "PointSet", "look_like_degrees"]
 
@@ -114,23 +114,32 @@ class PointSet:
             xyz = np.array(xyz, dtype=np.float64)
         except (TypeError, ValueError) as error:
             raise PointsError(
-                said("xyz must hold numbers: {error}. Give an (n, 3) array of metres.", error=str(error))
+                message(
+                    "points.xyz-hold-numbers-give",
+                    "xyz must hold numbers: {error}. Give an (n, 3) array of metres.",
+                    error=error,
+                )
             ) from None
         if xyz.size == 0:
             xyz = xyz.reshape(0, 3)
         if xyz.ndim != 2 or xyz.shape[1] != 3:
             raise PointsError(
-                said(
-                    "xyz has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.", shape=xyz.shape
+                message(
+                    "points.xyz-shape-array-easting",
+                    "xyz has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.",
+                    shape=xyz.shape,
                 )
             )
         bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         if bad.size:
             raise PointsError(
-                said(
+                plural_message(
+                    "points.points-not-finite-first",
+                    "{count} of {total} points is not finite, at index {index}: {place}. Remove or complete it before "
+                    "fitting.",
                     "{count} of {total} points are not finite, the first at index {index}: {place}. Remove or "
                     "complete them before fitting.",
-                    count=bad.size,
+                    count=int(bad.size),
                     total=len(xyz),
                     index=bad[0],
                     place=xyz[bad[0]].tolist(),
@@ -145,7 +154,8 @@ class PointSet:
         wrong = np.flatnonzero((self.accuracy <= 0) | np.isinf(self.accuracy))
         if wrong.size:
             raise PointsError(
-                said(
+                message(
+                    "points.accuracy-standard-deviation-above",
                     "accuracy[{index}] is {value:g} m; one standard deviation must be above 0. Use nan where the "
                     "source states none.",
                     index=wrong[0],
@@ -205,17 +215,22 @@ class PointSet:
         """Join sets of points, in order."""
         if not sets:
             return cls(np.empty((0, 3)))
-        columns = {name: np.concatenate([getattr(s, name) for s in sets]) for name in ("xyz", "accuracy", "row")}
-        return cls(**columns, **{name: Labels.concatenate([s.labels[name] for s in sets]) for name in _WORDS})
+        columns: dict[str, Any] = {name: Labels.concatenate([s.labels[name] for s in sets]) for name in _WORDS}
+        arrays = {name: np.concatenate([getattr(s, name) for s in sets]) for name in ("xyz", "accuracy", "row")}
+        return cls(**columns, **arrays)
 
-    def describe(self, index: int) -> str:
+    def describe(self, index: int) -> Message:
         """Name one point as a person would look it up: hole or section, file and row."""
         name, kind = str(self.hole[index] or self.section[index]), str(self.kind[index])
-        what = said("{kind} {name}", kind=kind, name=Verbatim(name)) if name else said("{kind}", kind=kind)
+        what = (
+            message("point.kind-name", "{kind} {name}", kind=kind, name=Verbatim(name))
+            if name
+            else message("point.kind", "{kind}", kind=kind)
+        )
         file, row = str(self.file[index]), int(self.row[index])
         if file:
-            return said("{point}, {file} row {row}", point=what, file=file, row=row)
-        return said("{point}, row {row}", point=what, row=row) if row else what
+            return message("point.in-file", "{point}, {file} row {row}", point=what, file=file, row=row)
+        return message("point.in-row", "{point}, row {row}", point=what, row=row) if row else what
 
 
 def _labels(name: str, values: ArrayLike | Labels, n: int) -> Labels:
@@ -233,7 +248,13 @@ def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
         array: NDArray[Any] = np.asarray(values, dtype=dtype)
     except (TypeError, ValueError) as error:
         raise PointsError(
-            said("{name} cannot be read as {type}: {error}.", name=name, type=dtype.__name__, error=str(error))
+            message(
+                "points.cannot-read",
+                "{name} cannot be read as {type}: {error}.",
+                name=name,
+                type=dtype.__name__,
+                error=error,
+            )
         ) from None
     if array.ndim == 0:
         return np.full(n, array, dtype=array.dtype)
@@ -242,7 +263,11 @@ def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     return array.copy()
 
 
-def _wrong_shape(name: str, shape: tuple[int, ...], n: int) -> str:
-    return said(
-        "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.", name=name, shape=shape, n=n
+def _wrong_shape(name: str, shape: tuple[int, ...], n: int) -> Message:
+    return message(
+        "points.wrong-shape",
+        "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
+        name=name,
+        shape=shape,
+        n=n,
     )

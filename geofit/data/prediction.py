@@ -9,6 +9,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.messages import Message
+
 __all__ = ["LeftOut", "OffData", "Outlier", "Suggestion", "Uncertainty"]
 
 Floats = NDArray[np.float64]
@@ -105,7 +107,7 @@ class OffData:
     uncertainty: Uncertainty | None
     suggestions: tuple[Suggestion, ...]
     outliers: tuple[Outlier, ...]
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
 
     def __repr__(self) -> str:
         parts = [f"rms {one.rms:.3g} m by {one.scheme}" for one in self.left_out]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from geofit.data.errors import Cancelled
+from geofit.data.messages import Message, message
 
 __all__ = ["Progress", "tell"]
 
@@ -12,16 +13,19 @@ __all__ = ["Progress", "tell"]
 class Progress(Protocol):
     """Anything that can be called as ``progress(stage, fraction)``.
 
-    ``stage`` is a short name ("partition", "core", ...), ``fraction`` runs from 0 to 1 over the whole task.
+    ``stage`` is one of :data:`geofit.data.terms.TERMS` ("partition", "core", ...) or a message; ``fraction`` runs
+    from 0 to 1 over the whole task.
     Returning ``False`` asks for a stop; any other value, ``None`` included, means go on.
     """
 
-    def __call__(self, stage: str, fraction: float, /) -> bool | None:
+    def __call__(self, stage: str | Message, fraction: float, /) -> bool | None:
         """Hear that the task stands at ``fraction`` of its whole, in ``stage``."""
         ...
 
 
-def tell(progress: Progress | None, stage: str, fraction: float) -> None:
+def tell(progress: Progress | None, stage: str | Message, fraction: float) -> None:
     """Report a stage and raise :class:`~geofit.data.errors.Cancelled` if the listener asks to stop."""
     if progress is not None and progress(stage, min(max(fraction, 0.0), 1.0)) is False:
-        raise Cancelled(f"Stopped by the caller during '{stage}'. Nothing was written.")
+        raise Cancelled(
+            message("run.cancelled", "Stopped by the caller during '{stage}'. Nothing was written.", stage=stage)
+        )

@@ -10,24 +10,26 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import Said, said
+from geofit.data.messages import Message, message
 
 __all__ = ["LABELS", "FitSettings"]
 
 #: What the fit panel calls each setting, and its keyword.
-LABELS: dict[str, Said] = {
-    "epsilon": said("Control error (epsilon)"),
-    "interior_tolerance": said("Interior tolerance (interior_tolerance)"),
-    "boundary_tolerance": said("Seam tolerance (boundary_tolerance)"),
-    "across": said("Across sections (across)"),
-    "seam": said("At the seams (seam)"),
-    "core": said("Exact core (core)"),
-    "frame": said("Laid over (frame)"),
-    "smoothing": said("Smoothing (smoothing)"),
-    "robust": said("Outliers (robust)"),
-    "max_iterations": said("Rounds, at most (max_iterations)"),
-    "max_control_points": said("Control points (max_control_points)"),
-    "conflict_distance": said("One place within (conflict_distance)"),
+LABELS: dict[str, Message] = {
+    "epsilon": message("settings.control-error-epsilon", "Control error (epsilon)"),
+    "interior_tolerance": message(
+        "settings.interior-tolerance-interior-tolerance", "Interior tolerance (interior_tolerance)"
+    ),
+    "boundary_tolerance": message("settings.seam-tolerance-boundary-tolerance", "Seam tolerance (boundary_tolerance)"),
+    "across": message("settings.across-sections-across", "Across sections (across)"),
+    "seam": message("settings.seams-seam", "At the seams (seam)"),
+    "core": message("settings.exact-core-core", "Exact core (core)"),
+    "frame": message("settings.laid-frame", "Laid over (frame)"),
+    "smoothing": message("settings.smoothing-smoothing", "Smoothing (smoothing)"),
+    "robust": message("settings.outliers-robust", "Outliers (robust)"),
+    "max_iterations": message("settings.rounds-max-iterations", "Rounds, at most (max_iterations)"),
+    "max_control_points": message("settings.control-points-max-control", "Control points (max_control_points)"),
+    "conflict_distance": message("settings.place-within-conflict-distance", "One place within (conflict_distance)"),
 }
 
 
@@ -102,7 +104,7 @@ class FitSettings:
 
     def __post_init__(self) -> None:
         for name in ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance"):
-            _positive(name, getattr(self, name), said("metres"))
+            _positive(name, getattr(self, name), message("settings.unit-metres", "metres"))
         _one_of("across", self.across, ("cubic", "linear"))
         _one_of("seam", self.seam, ("tangent", "position"))
         _one_of("frame", self.frame, ("auto", "map", "best-plane", "sections"))
@@ -111,12 +113,23 @@ class FitSettings:
         else:
             object.__setattr__(self, "core", _polygon(self.core))
         if self.smoothing != "auto":
-            _positive("smoothing", self.smoothing, said("the auto value's unit, or the word 'auto'"))
+            _positive(
+                "smoothing",
+                self.smoothing,
+                message("settings.auto-value-unit-word", "the auto value's unit, or the word 'auto'"),
+            )
         if not isinstance(self.robust, bool):
-            raise SettingsError(said("{setting} is {value}; true or false is needed.", **_given("robust", self.robust)))
+            raise SettingsError(
+                message(
+                    "settings.true-false-needed",
+                    "{setting} is {value}; true or false is needed.",
+                    **_given("robust", self.robust),
+                )
+            )
         if not isinstance(self.max_iterations, int) or isinstance(self.max_iterations, bool) or self.max_iterations < 0:
             raise SettingsError(
-                said(
+                message(
+                    "settings.whole-number-needed",
                     "{setting} is {value}; a whole number >= 0 is needed.",
                     **_given("max_iterations", self.max_iterations),
                 )
@@ -124,7 +137,8 @@ class FitSettings:
         most = self.max_control_points
         if most is not None and (not isinstance(most, int) or isinstance(most, bool) or most < 16):
             raise SettingsError(
-                said(
+                message(
+                    "settings.whole-number-least-16",
                     "{setting} is {value}; a whole number of at least 16 is needed.",
                     **_given("max_control_points", most),
                 )
@@ -135,10 +149,13 @@ def _given(name: str, value: Any) -> dict[str, Any]:
     return {"setting": LABELS[name], "value": repr(value)}
 
 
-def _positive(name: str, value: Any, unit: str) -> None:
+def _positive(name: str, value: Any, unit: Message) -> None:
     if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value) or value <= 0:
-        text = said(
-            "{setting} is {value}; a finite number above 0 is needed ({unit}).", **_given(name, value), unit=unit
+        text = message(
+            "settings.finite-number-above-needed",
+            "{setting} is {value}; a finite number above 0 is needed ({unit}).",
+            **_given(name, value),
+            unit=unit,
         )
         raise SettingsError(text)
 
@@ -149,9 +166,13 @@ def _one_of(name: str, value: Any, words: tuple[str, ...], *, polygon: bool = Fa
     given = {**_given(name, value), "words": ", ".join(map(repr, words))}
     if polygon:
         raise SettingsError(
-            said("{setting} is {value}; choose one of {words} or a polygon of map coordinates.", **given)
+            message(
+                "settings.choose-polygon-map-coordinates",
+                "{setting} is {value}; choose one of {words} or a polygon of map coordinates.",
+                **given,
+            )
         )
-    raise SettingsError(said("{setting} is {value}; choose one of {words}.", **given))
+    raise SettingsError(message("settings.unknown-choice", "{setting} is {value}; choose one of {words}.", **given))
 
 
 def _polygon(value: ArrayLike) -> tuple[tuple[float, float], ...]:
@@ -160,7 +181,8 @@ def _polygon(value: ArrayLike) -> tuple[tuple[float, float], ...]:
     except (TypeError, ValueError):
         corners = np.empty(0)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
-        text = said(
+        text = message(
+            "settings.shape-polygon-least-three",
             "{setting} has shape {shape}; a polygon of at least three (easting, northing) corners is needed.",
             shape=corners.shape,
             setting=LABELS["core"],

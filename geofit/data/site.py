@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.messages import EMPTY, Message
 from geofit.data.picture import card, plan_svg
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -33,8 +34,8 @@ class ImportIssue:
     column: str
     value: str
     severity: Literal["error", "warning", "note"]
-    reason: str
-    remedy: str = ""
+    reason: Message
+    remedy: Message = EMPTY
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from geofit.data.accuracy import Conflict
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 
 __all__ = ["settle"]
@@ -114,20 +114,21 @@ def _swept(columns: Floats, key: Floats, distance: float) -> Ints:
 def _describe(points: PointSet, winner: int, loser: int, difference: float) -> Conflict:
     names = points.describe(winner), points.describe(loser)
     if difference == 0:
-        text = said("{dropped} repeats {kept}", dropped=names[1], kept=names[0])
+        text = message("conflict.repeated", "{dropped} repeats {kept}", dropped=names[1], kept=names[0])
     else:
         stated = np.nan_to_num(points.accuracy[[winner, loser]], nan=np.inf)
         if stated[0] < stated[1]:
-            reason = said("the better stated accuracy")
+            reason = message("conflict.kept-accuracy", "the better stated accuracy")
         elif _TRUST.get(points.kind[winner], 3) < _TRUST.get(points.kind[loser], 3):
-            reason = said("the source nearer to the rock")
+            reason = message("conflict.kept-source", "the source nearer to the rock")
         else:
-            reason = said("the first")
-        text = said(
+            reason = message("conflict.kept-first", "the first")
+        text = message(
+            "conflict.different-elevation",
             "{dropped} differs by {difference:+.3f} m from {kept} at one place; kept: {reason}",
             dropped=names[1],
             difference=difference,
             kept=names[0],
             reason=reason,
-        )
+        ).with_severity("warning")
     return Conflict(winner, loser, difference, text)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import ExactnessError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.approximate import borrowed
@@ -68,7 +68,8 @@ def fit_with_core(
     chosen = settings.core == "auto" and settings.smoothing == "auto" and not chart.parametric
     if chosen and field.noise > max(settings.epsilon, RESOLVED * field.spread):
         raise ExactnessError(
-            said(
+            message(
+                "fit.points-bear-epsilon",
                 "its points bear each other out to about {noise:.3g} m only, more than epsilon {epsilon:g} m",
                 noise=field.noise,
                 epsilon=settings.epsilon,
@@ -77,10 +78,15 @@ def fit_with_core(
     stage("core", 0.4)
     lines = section_lines(data.plane[inside], chart.section[kept][inside], 0.5 * (core[1] - core[0]))
     linear = settings.across == "linear" and degree == 3
-    notes: tuple[str, ...] = ()
+    notes: tuple[Message, ...] = ()
     if linear and not lines.straight:
         linear = False
-        notes = (said("across='linear' needs at least two straight, named sections; the core is cubic across"),)
+        notes = (
+            message(
+                "fit.across-linear-needs-least",
+                "across='linear' needs at least two straight, named sections; the core is cubic across",
+            ).with_severity("warning"),
+        )
     breaks = _breaks(data, core, inside, field, coarse, lines, most, settings)
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
     space = TensorSpace(knots[0], knots[1], degree)
@@ -94,7 +100,12 @@ def fit_with_core(
             space, coefficients = _skinned(space, smoothed, core, data, inside, settings, rule)
         except ExactnessError:
             rule = None
-            notes = (said("a core linear across its sections cannot meet all of its points; it is cubic across"),)
+            notes = (
+                message(
+                    "fit.core-linear-across-sections",
+                    "a core linear across its sections cannot meet all of its points; it is cubic across",
+                ).with_severity("warning"),
+            )
     if rule is None and chart.parametric and lines.straight:
         coefficients = _lofted(space, smoothed, data, inside, lines.u)
     elif rule is None:

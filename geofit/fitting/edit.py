@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, vstack
 
 from geofit.data.errors import ExactnessError, FitError
-from geofit.data.messages import Said, listed, said
+from geofit.data.messages import Message, message
 from geofit.data.points import LARGEST
 from geofit.fitting.assemble import Part, divide
 from geofit.fitting.model import Model
@@ -72,7 +72,8 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
     held = _acting(model, index) & _exact(model)
     if held.any():
         raise ExactnessError(
-            said(
+            message(
+                "edit.control-point-patch-acts",
                 "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
                 "({count}: {names}). Move one that lies farther from them, or exclude them first.",
                 i=i,
@@ -83,13 +84,25 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
             )
         )
     if model.net.lines is not None and model.net.frozen[index]:
-        raise FitError(said("The core is straight between its section curves: its control points follow the sections."))
+        raise FitError(
+            message(
+                "edit.core-straight-section-curves",
+                "The core is straight between its section curves: its control points follow the sections.",
+            )
+        )
     coefficients = model.net.coefficients.copy()
     coefficients[(index, 2) if coefficients.ndim == 2 else index] += dz / share
     return _changed(
         surface,
         model.with_net(replace(model.net, coefficients=coefficients)),
-        said("by hand: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m", i=i, j=j, patch=patch, dz=dz),
+        message(
+            "edit.hand-control-point-patch",
+            "by hand: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m",
+            i=i,
+            j=j,
+            patch=patch,
+            dz=dz,
+        ),
     )
 
 
@@ -130,9 +143,19 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     acting = np.zeros(net.space.size, bool)
     acting[row.indices] = True
     if net.lines is not None and net.frozen[acting].any():
-        raise FitError(said("The core is straight between its section curves: pull at a point of the periphery."))
+        raise FitError(
+            message(
+                "edit.core-straight-section-curves-pull",
+                "The core is straight between its section curves: pull at a point of the periphery.",
+            )
+        )
     if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):
-        raise FitError(said("Control points with weights other than 1 act here. Set their weights to 1 first."))
+        raise FitError(
+            message(
+                "edit.control-points-weights-act",
+                "Control points with weights other than 1 act here. Set their weights to 1 first.",
+            )
+        )
     misfit = share * (value - row @ net.coefficients)
     exact = np.flatnonzero(surface.core)
     if isinstance(point, (int, np.integer)):
@@ -145,7 +168,8 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
         change = least_change(system, wanted, acting)
     except ExactnessError:
         raise ExactnessError(
-            said(
+            message(
+                "edit.surface-cannot-pulled-points",
                 "The surface cannot be pulled to {name}: the points around it that are met exactly ({count}) leave "
                 "no freedom. Exclude the one that is wrong, or fit with core='none'.",
                 name=name,
@@ -155,7 +179,12 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     return _changed(
         surface,
         model.with_net(replace(net, coefficients=net.coefficients + change)),
-        said("by hand: pulled by {share:.0%} of the distance to {name}", share=share, name=name),
+        message(
+            "edit.hand-pulled-distance",
+            "by hand: pulled by {share:.0%} of the distance to {name}",
+            share=share,
+            name=name,
+        ),
     )
 
 
@@ -192,13 +221,20 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
     """
     model = _model(surface)
     if not 0.01 <= weight <= 100:
-        raise FitError(said("The weight is {weight:g}; between 0.01 and 100 is needed (1 is neutral).", weight=weight))
+        raise FitError(
+            message(
+                "edit.weight-01-100-needed",
+                "The weight is {weight:g}; between 0.01 and 100 is needed (1 is neutral).",
+                weight=weight,
+            )
+        )
     part = _part(model, patch)
     index, _ = _coefficient(model, part, i, j)
     whole = model.net.space.knots_u, model.net.space.knots_v
     for k, count, knots, ends in zip((i, j), _shape(part), (part.knots_u, part.knots_v), whole, strict=True):
         if (k < TANGENT_ROWS and knots[0] != ends[0]) or (k >= count - TANGENT_ROWS and knots[-1] != ends[-1]):
-            text = said(
+            text = message(
+                "edit.control-point-patch-holds",
                 "Control point ({i}, {j}) of patch '{patch}' holds the tangent plane of a seam; its weight stays 1. "
                 "Choose one at least {rows} rows away from the seam.",
                 i=i,
@@ -210,7 +246,8 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
     held = _acting(model, index) & _exact(model)
     if held.any():
         raise ExactnessError(
-            said(
+            message(
+                "edit.control-point-patch-acts-points",
                 "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
                 "({count}: {names}); its weight stays 1.",
                 i=i,
@@ -227,7 +264,8 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
     return _changed(
         surface,
         replace(model, weights=weights),
-        said(
+        message(
+            "edit.hand-control-point-patch-weight",
             "by hand: control point ({i}, {j}) of patch '{patch}' has weight {weight:g}",
             i=i,
             j=j,
@@ -258,7 +296,8 @@ def acted_on(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[NDArray[n
 
 def _model(surface: HorizonFit) -> Model:
     if surface.model is None:
-        text = said(
+        text = message(
+            "edit.read-file-patches-no",
             "'{name}' was read from a file: its patches have no common control net. Fit it again, then adjust.",
             name=surface.name,
         )
@@ -269,7 +308,13 @@ def _model(surface: HorizonFit) -> Model:
 def _finite(value: float, name: str) -> None:
     if not np.isfinite(value) or abs(value) > LARGEST:
         raise FitError(
-            said("{name} is {value}; a finite number up to {most:.0e} is needed.", name=name, value=value, most=LARGEST)
+            message(
+                "edit.finite-number-needed",
+                "{name} is {value}; a finite number up to {most:.0e} is needed.",
+                name=name,
+                value=value,
+                most=LARGEST,
+            )
         )
 
 
@@ -280,7 +325,8 @@ def _part(model: Model, patch: str) -> Part:
         if part.name == patch:
             return part
     raise FitError(
-        said(
+        message(
+            "edit.no-patch-patches",
             "There is no patch '{patch}'. The patches are: {names}.",
             patch=patch,
             names=", ".join(part.name for part in parts),
@@ -297,7 +343,8 @@ def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
     rows, columns = _shape(part)
     if not (0 <= i < rows and 0 <= j < columns):
         raise FitError(
-            said(
+            message(
+                "edit.patch-control-points-given",
                 "Patch '{name}' has control points (0, 0) to ({rows}, {columns}); ({i}, {j}) was given.",
                 name=part.name,
                 rows=rows - 1,
@@ -345,19 +392,20 @@ def _touches(part: Part, weights: Floats, acting: NDArray[np.bool_], model: Mode
     return any(acting[_coefficient(model, part, int(i), int(j))[0]] for i, j in np.argwhere(weights != 1))
 
 
-def _names(surface: HorizonFit, which: NDArray[np.bool_]) -> str:
+def _names(surface: HorizonFit, which: NDArray[np.bool_]) -> tuple[Message | str, ...]:
     """Name the first of some points."""
     first = [surface.points.describe(int(i)) for i in np.flatnonzero(which)[:2]]
-    return listed([*first, "..."] if which.sum() > 2 else first)
+    return tuple([*first, "..."] if which.sum() > 2 else first)
 
 
-def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[Floats, Floats, str]:
+def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[Floats, Floats, Message]:
     """Return the place (1, 2) on the chart, the value (1,) or (1, 3) wanted there, and what to call it."""
     chart = model.problem.chart
     if isinstance(point, (int, np.integer)):
         if not 0 <= point < len(surface.points):
             raise FitError(
-                said(
+                message(
+                    "edit.points-given",
                     "'{name}' has points 0 to {last}; {point} was given.",
                     name=surface.name,
                     last=len(surface.points) - 1,
@@ -369,20 +417,22 @@ def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[
     xyz = np.asarray(point, float)
     if xyz.shape != (3,) or not np.isfinite(xyz).all():
         raise FitError(
-            said(
+            message(
+                "edit.point-three-finite-map",
                 "The point is {point!r}; three finite map coordinates (easting, northing, elevation) are needed.",
                 point=point,
             )
         )
     x, y, z = xyz
-    name = said("({x:.2f}, {y:.2f}, {z:.2f})", x=x, y=y, z=z)
+    name = message("edit.x-y-z", "({x:.2f}, {y:.2f}, {z:.2f})", x=x, y=y, z=z)
     if chart.parametric:
         foot = project(_plain(surface.patches), xyz[None] - surface.origin)
         return np.column_stack([foot.u, foot.v]), xyz[None] - surface.origin, name
     local = chart.frame.to_local(xyz[None])
     u0, u1, v0, v1 = chart.area
     if not (u0 <= local[0, 0] <= u1 and v0 <= local[0, 1] <= v1):
-        text = said(
+        text = message(
+            "edit.point-lies-beside-surface",
             "The point {point} lies beside the surface '{name}'. Choose a place above or below it.",
             point=name,
             name=surface.name,
@@ -395,7 +445,7 @@ def _plain(patches: tuple[Patch, ...]) -> tuple[Patch, ...]:
     return tuple(replace(patch, weights=None) for patch in patches)
 
 
-def _changed(fit: HorizonFit, model: Model, note: Said) -> HorizonFit:
+def _changed(fit: HorizonFit, model: Model, note: Message) -> HorizonFit:
     result = fit.refitted(model)
     before, after = fit.accuracy, result.accuracy
     assert before is not None

@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.splines.tensor import Factor, TensorSpace
 
 __all__ = ["ENOUGH", "Field", "cell_weights", "choose", "energy_band", "plane_trend", "smooth"]
@@ -148,7 +148,8 @@ def choose(
         found.append((likelihood(log), log, likelihood))
     value, log, likelihood = min(found, key=lambda one: one[0])
     if value >= _UNSOLVABLE:
-        text = said(
+        text = message(
+            "fit.no-smoothing-system-points",
             "No smoothing makes the system of {points} points and {size} control points solvable: the points lie on "
             "too few places. Give more points, or a larger conflict_distance.",
             points=len(plane),

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks
 
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.geometry.frame import Frame
 
@@ -34,7 +34,7 @@ class Loft:
     plane: Floats
     on_line: NDArray[np.bool_]
     u: Floats
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 def _curves(points: PointSet) -> dict[str, NDArray[np.int64]]:
@@ -86,7 +86,8 @@ def loft(points: PointSet) -> Loft:
     for line, index, v in zip(u, indices, parameters, strict=True):
         plane[index] = np.column_stack([np.full(len(index), line), v * length])
         on_line[index] = True
-    note = said(
+    note = message(
+        "fit.section-curves-points",
         "{lines} section curves over {length:.0f} m, {count} points between them",
         lines=len(u),
         length=float(u[-1] - u[0]),

@@ -9,7 +9,7 @@ import numpy as np
 from geofit.checks.check import check
 from geofit.checks.shape import RANGE_SHARE
 from geofit.data.accuracy import Accuracy, Check
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
@@ -60,7 +60,12 @@ def judge(
         accuracy = replace(
             accuracy,
             checks=(*accuracy.checks, *_mesh_checks(surface.triangulate(), points)),
-            notes=(said("A triangle mesh: seams, control points and the tangent plane do not apply."),),
+            notes=(
+                message(
+                    "check.triangle-mesh-seams-control",
+                    "A triangle mesh: seams, control points and the tangent plane do not apply.",
+                ),
+            ),
         )
     return judged.with_(accuracy=_with_beyond(accuracy, points, found))
 
@@ -69,16 +74,26 @@ def _with_beyond(accuracy: Accuracy, points: PointSet, found: Projection) -> Acc
     """Add the points beyond the surface, each with its place in a file."""
     assert found.beyond is not None
     beside = np.flatnonzero(found.beyond)
-    text = said(
+    text = message(
+        "check.points-beyond-surface-edge",
         "points beyond the surface's edge, measured to the edge: {count} of {total}",
         count=beside.size,
         total=accuracy.n,
     )
     added = Check("beyond the surface", None, float(beside.size), 0.0, "points", text)
-    named = [said("beyond the surface: {point}", point=points.describe(int(i))) for i in beside[:NAMED].tolist()]
+    named = [
+        message("check.beyond-surface", "beyond the surface: {point}", point=points.describe(int(i)))
+        for i in beside[:NAMED].tolist()
+    ]
     if beside.size > NAMED:
-        named.append(said("beyond the surface: further points, {count}", count=beside.size - NAMED))
-    told = (text, *named) if beside.size else ()
+        named.append(
+            message(
+                "check.beyond-surface-further-points",
+                "beyond the surface: further points, {count}",
+                count=beside.size - NAMED,
+            )
+        )
+    told = [note.with_severity("warning") for note in (text, *named)] if beside.size else []
     return replace(accuracy, checks=(*accuracy.checks, added), notes=(*accuracy.notes, *told))
 
 
@@ -88,12 +103,19 @@ def _mesh_checks(mesh: Mesh, points: PointSet) -> tuple[Check, ...]:
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     size = np.linalg.norm(normal, axis=1)
     turned = int(((normal @ normal.sum(axis=0) < 0) | (size <= 1e-12 * size.max())).sum())
-    text = said("{count} of {total} triangles turned over or without an area", count=turned, total=len(size))
+    text = message(
+        "check.triangles-turned-without-area",
+        "{count} of {total} triangles turned over or without an area",
+        count=turned,
+        total=len(size),
+    )
     checks = [Check("normals", turned == 0, turned, 0, "places", text)]
     z, heights = points.xyz[:, 2], mesh.xyz[:, 2]
     if len(z) and np.ptp(z) > 0:
         beyond = max(float(z.min() - heights.min()), float(heights.max() - z.max()), 0.0)
         limit = RANGE_SHARE * float(np.ptp(z))
-        text = said("elevations reach {value:.1f} m beyond the data's range", value=beyond)
+        text = message(
+            "check.elevations-reach-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=beyond
+        )
         checks.append(Check("elevation range", beyond <= limit, beyond, limit, "m", text))
     return tuple(checks)

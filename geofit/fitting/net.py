@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.approximate import approximate, borrowed
@@ -70,7 +70,7 @@ class Net:
     unit: float
     field: Field
     rounds: int
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -188,7 +188,7 @@ class Periphery:
 
     def fit(
         self, space: TensorSpace, start: Floats
-    ) -> tuple[TensorSpace, Floats, NDArray[np.bool_], int, tuple[str, ...]]:
+    ) -> tuple[TensorSpace, Floats, NDArray[np.bool_], int, tuple[Message, ...]]:
         """Approximate, and add knots where points stay outside the tolerance, as far as the cap allows."""
         data, tolerance = self.data, self.settings.interior_tolerance
         plane, value = data.plane[self.outer], data.value[self.outer]
@@ -237,16 +237,17 @@ class Periphery:
                 new[axis][middle] = 1
         return new
 
-    def _notes(self, excess: Floats) -> tuple[str, ...]:
+    def _notes(self, excess: Floats) -> tuple[Message, ...]:
         return (*self._bent_notes(), *self._excess_notes(excess))
 
-    def _bent_notes(self) -> tuple[str, ...]:
+    def _bent_notes(self) -> tuple[Message, ...]:
         """Say where meeting the points costs more between them than it gains at them."""
         noise, tolerance = self.field.noise, self.settings.interior_tolerance
         chased = not self.field.contradictory and self.settings.smoothing == "auto"
         if not chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
             return ()
-        note = said(
+        note = message(
+            "fit.points-scatter-smoothest-surface",
             "the points scatter by about {noise:.2g} m about the smoothest surface that they support; meeting each "
             "within {tolerance:g} m bends it between them, and an interior tolerance of about {wider:.2g} m would "
             "predict new holes better",
@@ -254,26 +255,31 @@ class Periphery:
             tolerance=tolerance,
             wider=2 * noise,
         )
-        return (note,)
+        return (note.with_severity("warning"),)
 
-    def _excess_notes(self, excess: Floats) -> tuple[str, ...]:
+    def _excess_notes(self, excess: Floats) -> tuple[Message, ...]:
         count = int((excess > 0).sum())
         if not count:
             return ()
-        reason = said("no more control points are allowed there")
+        reason = message("fit.no-control-points-allowed", "no more control points are allowed there")
         if self.field.contradictory:
             noise = self.field.noise
-            reason = said("the data contradict each other by about {noise:.2f} m, which is not chased", noise=noise)
+            reason = message(
+                "fit.data-contradict-not-chased",
+                "the data contradict each other by about {noise:.2f} m, which is not chased",
+                noise=noise,
+            )
         elif self.settings.smoothing != "auto":
-            reason = said("the smoothing is given")
-        note = said(
+            reason = message("fit.smoothing-given", "the smoothing is given")
+        note = message(
+            "fit.interior-tolerance-not-met",
             "interior tolerance {tolerance:g} m not met in height, points: {count}, worst {worst:.3f} m: {reason}",
             tolerance=self.settings.interior_tolerance,
             count=count,
             worst=float(excess.max()),
             reason=reason,
         )
-        return (note,)
+        return (note.with_severity("warning"),)
 
 
 def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:
@@ -302,7 +308,8 @@ def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:
     assert best is not None
     noise, space, coefficients = best
     field = replace(field, noise=noise)
-    note = said(
+    note = message(
+        "fit.points-judged-sigma-not",
         "{n} points are judged by sigma, not pulled into the tolerance one by one; noise about {noise:.3f} m",
         n=n,
         noise=noise,

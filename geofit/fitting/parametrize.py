@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.fold import Loft, backtracking, loft
@@ -59,7 +59,7 @@ class Chart:
     plane: Floats
     values: Floats
     area: Rectangle
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
     placed: NDArray[np.bool_]
     section: NDArray[np.str_]
 
@@ -92,7 +92,9 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
     notes = [reason]
     if section is not points.section and (section != "").any():
         lines = len(np.unique(section[section != ""]))
-        notes.append(said("{lines} section lines found in the points' plan", lines=lines))
+        notes.append(
+            message("fit.section-lines-found-points", "{lines} section lines found in the points' plan", lines=lines)
+        )
     if boundary is not None and kind == "map":
         corners = frame.plan(boundary)
         low, high = corners.min(axis=0), corners.max(axis=0)
@@ -100,31 +102,40 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
         if beyond.any():
             count = int(beyond.sum())
             notes.append(
-                said("points beyond the study area: {count}; the surface is widened to hold them", count=count)
+                message(
+                    "fit.points-beyond-study-area",
+                    "points beyond the study area: {count}; the surface is widened to hold them",
+                    count=count,
+                ).with_severity("warning")
             )
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)
     return Chart(frame, local[:, :2], local[:, 2], _box(np.concatenate(places)), tuple(notes), placed, section)
 
 
-def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, str]:
+def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]:
     if settings.frame != "auto":
-        return settings.frame, said("frame '{frame}' as asked", frame=settings.frame)
+        return settings.frame, message("fit.frame-asked", "frame '{frame}' as asked", frame=settings.frame)
     plane = best_plane_frame(points)
     dip = _dip(points, plane)
     over_map = backtracking(points, map_frame(points))
     if dip < STEEP and over_map <= OVERTURNED:
-        return "map", said("height field over the map (mean dip {dip:.0f} degrees)", dip=dip)
+        return "map", message(
+            "fit.height-field-map-mean", "height field over the map (mean dip {dip:.0f} degrees)", dip=dip
+        )
     extent = np.ptp(plane.to_local(points.xyz), axis=0)
     thin = extent[2] <= PLANAR * max(extent[0], extent[1])
     over_plane = backtracking(points, plane)
-    steep = said("height field over its best plane: it dips {dip:.0f} degrees", dip=dip)
+    steep = message(
+        "fit.height-field-best-plane", "height field over its best plane: it dips {dip:.0f} degrees", dip=dip
+    )
     if dip >= STEEP and thin and over_plane <= OVERTURNED:
         return "best-plane", steep
     if over_map > OVERTURNED and len(np.unique(points.section[points.section != ""])) >= 2:
         return (
             "sections",
-            said(
+            message(
+                "fit.parametric-surface-through-sections",
                 "parametric surface through its sections: {share:.0f} % of their length runs backwards "
                 "(overturned), so it is no height field",
                 share=100 * over_map,
@@ -132,7 +143,10 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, str]:
         )
     if dip >= STEEP:
         return "best-plane", steep
-    return "map", said("height field over the map; some section lines run backwards, look at the residuals there")
+    return "map", message(
+        "fit.height-field-map-some",
+        "height field over the map; some section lines run backwards, look at the residuals there",
+    )
 
 
 def _dip(points: PointSet, plane: Frame) -> float:
@@ -167,11 +181,12 @@ def _direction(section: NDArray[np.str_], points: PointSet, boundary: Floats | N
     return angle
 
 
-def _section_chart(points: PointSet, reason: str) -> Chart:
+def _section_chart(points: PointSet, reason: Message) -> Chart:
     surface: Loft = loft(points)
     lines = len(surface.u)
     if lines < 2:
-        text = said(
+        text = message(
+            "fit.frame-sections-needs-least",
             "frame='sections' needs at least two named sections with ordered points; {lines} were given. Name them in "
             "the section column, or choose frame='map' or 'best-plane'.",
             lines=lines,

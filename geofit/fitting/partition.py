@@ -10,7 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 __all__ = ["Split", "split_all", "split_auto", "split_none", "split_rectangle"]
 
@@ -38,29 +38,46 @@ class Split:
 
     core: Rectangle | None
     inside: NDArray[np.bool_]
-    reason: str
+    reason: Message
 
 
-def split_none(plane: Floats, reason: str) -> Split:
+def split_none(plane: Floats, reason: Message) -> Split:
     """Return the split without a core: approximation alone."""
     return Split(None, np.zeros(len(plane), bool), reason)
 
 
-def split_all(plane: Floats, area: Rectangle, reason: str) -> Split:
+def split_all(plane: Floats, area: Rectangle, reason: Message) -> Split:
     """Return the split without a periphery: interpolation alone."""
     return Split(area, np.ones(len(plane), bool), reason)
 
 
-def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: str) -> Split:
+def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Message) -> Split:
     """Return the split by a given rectangle, widened to the area's edges where nothing lies beyond it."""
     core = _widen(core, plane, area)
     inside = _within(plane, core)
     if not inside.any():
-        return split_none(plane, said("{reason}; no point lies inside, so all are approximated", reason=reason))
+        return split_none(
+            plane,
+            message(
+                "fit.no-point-lies-inside", "{reason}; no point lies inside, so all are approximated", reason=reason
+            ).with_severity("warning"),
+        )
     if inside.all():
-        return split_all(plane, area, said("{reason}; no point lies outside, so all are interpolated", reason=reason))
+        return split_all(
+            plane,
+            area,
+            message(
+                "fit.no-point-lies-outside", "{reason}; no point lies outside, so all are interpolated", reason=reason
+            ),
+        )
     counts = {"within": int(inside.sum()), "outside": int((~inside).sum())}
-    return Split(core, inside, said("{reason}: {within} points inside, {outside} outside", reason=reason, **counts))
+    return Split(
+        core,
+        inside,
+        message(
+            "fit.points-inside-outside", "{reason}: {within} points inside, {outside} outside", reason=reason, **counts
+        ),
+    )
 
 
 def split_auto(plane: Floats, area: Rectangle) -> Split:
@@ -72,24 +89,31 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     """
     n = len(plane)
     if n < 2 * FEWEST:
-        words = said("{n} points are too few to tell a dense core from a periphery (40 are needed)", n=n)
+        words = message(
+            "fit.points-too-few-tell",
+            "{n} points are too few to tell a dense core from a periphery (40 are needed)",
+            n=n,
+        )
         return split_none(plane, words)
     spacing = np.asarray(KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0])[:, -1]
     limit = _otsu(np.log(np.maximum(spacing, 1e-9)))
     if limit is None:
-        return _uniform(plane, area, said("the points are spread evenly"))
+        return _uniform(plane, area, message("fit.points-spread-evenly", "the points are spread evenly"))
     limit = float(np.exp(limit))
     dense = np.flatnonzero(spacing <= limit)
     cluster = dense[_largest_cluster(plane[dense], limit)]
     if len(cluster) < FEWEST:
-        return _uniform(plane, area, said("the dense places hold fewer than 20 points each"))
+        return _uniform(
+            plane, area, message("fit.dense-places-hold-fewer", "the dense places hold fewer than 20 points each")
+        )
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
     # The points of the box, not of the cluster: the edges may be drawn in to one section.
     length, width = _extents(plane[cluster][_within(plane[cluster], (low[0], high[0], low[1], high[1]))])
     if width < 0.08 * length:
         return split_none(
             plane,
-            said(
+            message(
+                "fit.dense-points-lie-along",
                 "the {count} dense points lie along a line {length:.0f} m long and {width:.0f} m wide: "
                 "one section makes no core, all points are approximated",
                 count=len(cluster),
@@ -100,17 +124,22 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     core = _widen((low[0], high[0], low[1], high[1]), plane, area)
     inside = _within(plane, core)
     if inside.all():
-        return _uniform(plane, area, said("the dense points fill the area"))
+        return _uniform(plane, area, message("fit.dense-points-fill-area", "the dense points fill the area"))
     if inside.sum() > MOST:
         return split_none(plane, _too_many(int(inside.sum())))
     contrast = _density(inside.sum(), core) / _density((~inside).sum(), area, core)
     if contrast < CONTRAST + 10 / np.sqrt(inside.sum()):
-        words = said("the densest part is only {contrast:.1f} times as dense as the rest", contrast=float(contrast))
+        words = message(
+            "fit.densest-part-times-dense",
+            "the densest part is only {contrast:.1f} times as dense as the rest",
+            contrast=float(contrast),
+        )
         return _uniform(plane, area, words)
     return Split(
         core,
         inside,
-        said(
+        message(
+            "fit.points-spacing-below-fill",
             "{count} points with a spacing below {limit:.0f} m fill {width:.0f} m x {length:.0f} m, {contrast:.1f} "
             "times as dense as the other {others} points",
             count=int(inside.sum()),
@@ -123,17 +152,21 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     )
 
 
-def _uniform(plane: Floats, area: Rectangle, reason: str) -> Split:
+def _uniform(plane: Floats, area: Rectangle, reason: Message) -> Split:
     """No core stands out: the points are all sparse, and approximated."""
-    return split_none(plane, said("no dense core: {reason}; all points are approximated", reason=reason))
+    return split_none(
+        plane,
+        message("fit.no-dense-core-points", "no dense core: {reason}; all points are approximated", reason=reason),
+    )
 
 
-def _too_many(n: int) -> str:
-    return said(
+def _too_many(n: int) -> Message:
+    return message(
+        "fit.dense-points-need-control",
         "{n} dense points would need more control points than data to be interpolated; all points are "
         "approximated (name a smaller core to interpolate it)",
         n=n,
-    )
+    ).with_severity("warning")
 
 
 def _otsu(values: Floats) -> float | None:

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.checks.check import CORE_LIMIT
 from geofit.data.errors import ExactnessError, FitError, PointsError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message, plural_message
 from geofit.data.points import LARGEST, PointSet, look_like_degrees
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
@@ -121,8 +121,15 @@ def _fit_horizon(
         if settings.core != "auto":
             raise
         inside = np.zeros(len(points), bool)
-        reason = said("{reason}, but all points are approximated: {error}", reason=split.reason, error=error.args[0])
-        model = replace(problem, split=Split(None, inside, reason)).fit(kept & chart.placed, clock.stage)
+        reason = message(
+            "fit.points-approximated",
+            "{reason}, but all points are approximated: {error}",
+            reason=split.reason,
+            error=error.args[0],
+        )
+        model = replace(problem, split=Split(None, inside, reason.with_severity("warning"))).fit(
+            kept & chart.placed, clock.stage
+        )
     if not chart.placed.all():
         model = _corrected(model, clock)
     if settings.robust and not chart.parametric:
@@ -164,15 +171,24 @@ def _adjusted(model: Model, surface: HorizonFit) -> HorizonFit:
         if accuracy.passed:
             if step:
                 surface = _with_note(
-                    surface, said("local adjustments until sigma came below epsilon: {step}", step=step)
+                    surface,
+                    message(
+                        "fit.local-adjustments-until-sigma",
+                        "local adjustments until sigma came below epsilon: {step}",
+                        step=step,
+                    ),
                 )
             break
         better = adjust(model.net, given.chart, given.kept & ~surface.core, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else fit_of(tried)
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
-            words = said("sigma stays above epsilon: no further local adjustment lowers it (made: {step})", step=step)
-            surface = _with_note(surface, words)
+            words = message(
+                "fit.sigma-stays-above-epsilon",
+                "sigma stays above epsilon: no further local adjustment lowers it (made: {step})",
+                step=step,
+            )
+            surface = _with_note(surface, words.with_severity("warning"))
             break
         assert tried is not None
         model, surface = tried, candidate
@@ -188,7 +204,8 @@ def _exact_or_not(surface: HorizonFit) -> HorizonFit:
     if not missed.any():
         return surface
     split = model.problem.split
-    reason = said(
+    reason = message(
+        "fit.approximated-points",
         "{reason}; points that it does not meet, by up to {worst:.3g} m: {count}, which count as approximated",
         reason=split.reason,
         count=int(missed.sum()),
@@ -201,31 +218,33 @@ def _exact_or_not(surface: HorizonFit) -> HorizonFit:
     return found.with_(accuracy=replace(found.accuracy, notes=(*found.accuracy.notes, *said_before)))
 
 
-def _with_note(surface: HorizonFit, note: str) -> HorizonFit:
+def _with_note(surface: HorizonFit, note: Message) -> HorizonFit:
     assert surface.accuracy is not None
     return surface.with_(accuracy=replace(surface.accuracy, notes=(*surface.accuracy.notes, note)))
 
 
 def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     if len(points) < 3:
-        given = (
-            said("{count} point given", count=1)
-            if len(points) == 1
-            else said("{count} points given", count=len(points))
-        )
-        text = said(
+        given = plural_message("fit.given-points", "{count} point given", "{count} points given", count=len(points))
+        text = message(
+            "fit.least-needed-lay-surface",
             "{given}; at least 3 are needed to lay a surface. Check the horizon's name and the filters of the import.",
             given=given,
         )
         raise PointsError(text)
     if all(np.ptp(axis) == 0 for axis in points.xyz.T):
         raise PointsError(
-            said("All {count} points stand at one place; at least 3 places are needed.", count=len(points))
+            message(
+                "fit.points-stand-place-least",
+                "All {count} points stand at one place; at least 3 places are needed.",
+                count=len(points),
+            )
         )
     farthest = float(np.abs(points.xyz).max())
     if farthest > LARGEST:
         raise PointsError(
-            said(
+            message(
+                "fit.coordinate-too-large",
                 "A coordinate is {farthest:.3g} m; at most {largest:.0e} m are fitted. Check the unit and the columns.",
                 farthest=farthest,
                 largest=LARGEST,
@@ -233,7 +252,8 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         )
     if look_like_degrees(points.xyz):
         raise PointsError(
-            said(
+            message(
+                "fit.degrees",
                 "The points look like longitude and latitude in degrees (the first: {x:.6g}, {y:.6g}); easting and "
                 "northing in metres are needed. Project them to the grid of the site (geofit fit --crs EPSG:..., or "
                 "crs in the site file).",
@@ -247,21 +267,30 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         corners = np.asarray(boundary, float)
     except (TypeError, ValueError):
         raise PointsError(
-            said("The boundary is no list of corners; at least three pairs of easting and northing are needed.")
+            message(
+                "fit.no-corners",
+                "The boundary is no list of corners; at least three pairs of easting and northing are needed.",
+            )
         ) from None
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
-        text = said(
+        text = message(
+            "fit.boundary-shape-least-three",
             "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.",
             shape=corners.shape,
         )
         raise PointsError(text)
     fault = fault_of_area(corners)
     if fault is not None:
-        raise PointsError(said("{fault}. List the corners in order around the study area, each once.", fault=fault))
+        raise PointsError(
+            message(
+                "fit.study-area", "{fault}. List the corners in order around the study area, each once.", fault=fault
+            )
+        )
     low, high = corners.min(axis=0), corners.max(axis=0)
     off = np.maximum(low - points.xyz[:, :2], points.xyz[:, :2] - high).max(axis=1).min()
     if off > max(np.hypot(*(high - low)), FAR):
-        text = said(
+        text = message(
+            "fit.points-off-area",
             "All points lie off the study area, the nearest by {off:.0f} m. Check the coordinates of both, and the "
             "order of easting and northing.",
             off=float(off),
@@ -274,15 +303,20 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> 
     """Split the points that are honoured; one that gave way is in no core."""
     plane = chart.plane[kept]
     if chart.parametric:
-        found = split_all(plane, chart.area, said("the section curves span the whole surface"))
+        found = split_all(
+            plane, chart.area, message("fit.section-curves-span-whole", "the section curves span the whole surface")
+        )
     elif settings.core == "all":
-        found = split_all(plane, chart.area, said("core='all': every point is interpolated"))
+        found = split_all(
+            plane, chart.area, message("fit.core-every-point-interpolated", "core='all': every point is interpolated")
+        )
     elif settings.core == "none":
-        found = split_none(plane, said("core='none': every point is approximated"))
+        found = split_none(plane, message("fit.core-none-every-point", "core='none': every point is approximated"))
     elif settings.core == "auto":
         found = split_auto(plane, chart.area)
     elif chart.frame.kind != "map":
-        text = said(
+        text = message(
+            "fit.core-polygon-map-coordinates",
             "core is a polygon of map coordinates, but the surface is fitted in the frame '{frame}'. Choose "
             "core='auto', 'all' or 'none', or frame='map'.",
             frame=chart.frame.kind,
@@ -294,10 +328,15 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> 
         high = np.minimum(corners.max(axis=0), (chart.area[1], chart.area[3]))
         if (high <= low).any():
             raise FitError(
-                said("The core's polygon lies outside the study area. Check its coordinates and their order.")
+                message(
+                    "fit.core-polygon-lies-outside",
+                    "The core's polygon lies outside the study area. Check its coordinates and their order.",
+                )
             )
         rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
-        found = split_rectangle(plane, rectangle, chart.area, said("the core's polygon as drawn"))
+        found = split_rectangle(
+            plane, rectangle, chart.area, message("fit.core-polygon-drawn", "the core's polygon as drawn")
+        )
     inside = np.zeros(len(kept), bool)
     inside[kept] = found.inside
     return Split(found.core, inside, found.reason)

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
+from geofit.data.messages import message
 from geofit.fitting.field import cell_weights, energy_band
 from geofit.fitting.model import Model
 from geofit.fitting.net import even_space, gather
@@ -124,7 +125,12 @@ def posterior(model: Model) -> Posterior:
     """
     given, net = model.problem, model.net
     if given.chart.parametric:
-        raise FitError("A parametric surface is no height field, and has no posterior. Leave out its sections instead.")
+        raise FitError(
+            message(
+                "prediction.parametric-surface-no-height",
+                "A parametric surface is no height field, and has no posterior. Leave out its sections instead.",
+            )
+        )
     kept = given.kept & given.chart.placed
     split = given.split if given.split.core is not None else None
     data = gather(given.points, given.chart, kept, split)

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import listed, said
+from geofit.data.messages import Message, message
 from geofit.fitting.calibration import common_factor
 from geofit.fitting.deletion import linear_fit
 from geofit.fitting.model import Model
@@ -44,7 +44,14 @@ def fit_robustly(model: Model, stage: Callable[[str, float], None]) -> Model:
     rejected = np.zeros(len(before), bool)
     for _ in range(ROUNDS):
         if int(model.problem.kept.sum()) > MOST:
-            return _noted(model, said("{count} points are too many for robust weights", count=int(before.sum())))
+            return _noted(
+                model,
+                message(
+                    "prediction.points-too-many-robust",
+                    "{count} points are too many for robust weights",
+                    count=int(before.sum()),
+                ),
+            )
         now = _judge(model, rejected)
         if (now == rejected).all():
             break
@@ -54,13 +61,14 @@ def fit_robustly(model: Model, stage: Callable[[str, float], None]) -> Model:
     if not rejected.any():
         return model
     names = [given.points.describe(int(k)) for k in np.flatnonzero(rejected)[:5]]
-    text = said(
+    text = message(
+        "prediction.robust-peripheral-points-neighbours",
         "robust: peripheral points that their neighbours do not bear out take no part in the fit ({count}: "
         "{names}); sigma counts them all the same",
         count=int(rejected.sum()),
-        names=listed([*names, "..."] if rejected.sum() > 5 else names),
+        names=tuple([*names, "..."] if rejected.sum() > 5 else names),
     )
-    return _noted(model, text)
+    return _noted(model, text.with_severity("warning"))
 
 
 def _judge(model: Model, rejected: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -82,5 +90,5 @@ def _judge(model: Model, rejected: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return result
 
 
-def _noted(model: Model, note: str) -> Model:
+def _noted(model: Model, note: Message) -> Model:
     return model.with_net(replace(model.net, notes=(*model.net.notes, note)))

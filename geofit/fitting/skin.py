@@ -23,7 +23,7 @@ from scipy.sparse import csr_array, eye_array, kron
 from scipy.sparse.linalg import splu
 
 from geofit.data.errors import ExactnessError
-from geofit.data.messages import Said, said
+from geofit.data.messages import Message, message
 from geofit.fitting.knots import neighbour_pairs
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -95,17 +95,31 @@ def least_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | No
     try:
         solver = splu(gram, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except RuntimeError:
-        raise ExactnessError(_unmet(said("the system of its {n} points is singular", n=len(misfit)))) from None
+        raise ExactnessError(
+            _unmet(message("fit.system-points-singular", "the system of its {n} points is singular", n=len(misfit)))
+        ) from None
     change = acting.T @ solver.solve(misfit)
     change += acting.T @ solver.solve(misfit - acting @ change)
     left = float(np.abs(misfit - acting @ change).max(initial=0.0))
     if not left <= EXACT:
         raise ExactnessError(
-            _unmet(said("not all {n} points can be met exactly ({left:.1e} m is left)", n=len(misfit), left=left))
+            _unmet(
+                message(
+                    "fit.not-points-met-exactly",
+                    "not all {n} points can be met exactly ({left:.1e} m is left)",
+                    n=len(misfit),
+                    left=left,
+                )
+            )
         )
     swing = float(np.abs(change).max(initial=0.0))
     if swing > SWING * max(float(np.abs(misfit).max(initial=0.0)), 1e-3):
-        words = said("meeting all {n} points would swing the surface by {swing:.3g} m", n=len(misfit), swing=swing)
+        words = message(
+            "fit.meeting-points-swing-surface",
+            "meeting all {n} points would swing the surface by {swing:.3g} m",
+            n=len(misfit),
+            swing=swing,
+        )
         raise ExactnessError(_unmet(words))
     return np.asarray(change)
 
@@ -124,8 +138,9 @@ def damped_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_]) ->
     return np.asarray(acting.T @ splu(gram).solve(misfit))
 
 
-def _unmet(what: Said) -> Said:
-    return said(
+def _unmet(what: Message) -> Message:
+    return message(
+        "fit.core-cannot-interpolated-points",
         "The core cannot be interpolated: {what}. Points lie nearer to each other than the allowed control points. "
         "Raise max_control_points or conflict_distance, or approximate (core='none').",
         what=what,

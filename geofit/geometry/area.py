@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 __all__ = ["fault_of_area"]
 
 
-def fault_of_area(corners: NDArray[np.float64]) -> str | None:
+def fault_of_area(corners: NDArray[np.float64]) -> Message | None:
     """Return what is wrong with the (k, 2) corners of a polygon; None where they bound one area.
 
     Examples
@@ -22,7 +22,11 @@ def fault_of_area(corners: NDArray[np.float64]) -> str | None:
     """
     distinct = len(np.unique(corners, axis=0))
     if distinct < 3:
-        return said("Different corners of the boundary: {count}; at least three are needed", count=distinct)
+        return message(
+            "import.different-corners-boundary-least",
+            "Different corners of the boundary: {count}; at least three are needed",
+            count=distinct,
+        )
     from shapely import Polygon
     from shapely.validation import explain_validity
 
@@ -31,8 +35,13 @@ def fault_of_area(corners: NDArray[np.float64]) -> str | None:
     centred = corners - corners.mean(axis=0)
     length, width = np.linalg.svd(centred, compute_uv=False)
     if width < 1e-9 * length:
-        return said("The boundary has no area: its corners lie on one line")
+        return message("area.no-area", "The boundary has no area: its corners lie on one line")
     if not polygon.is_valid or polygon.area == 0:
         what, _, place = explain_validity(Polygon(corners)).rstrip("]").partition("[")
-        return said("The boundary crosses or touches itself: {reason}, {place}", reason=what, place=place)
+        return message(
+            "import.boundary-crosses-touches",
+            "The boundary crosses or touches itself: {reason}, {place}",
+            reason=what,
+            place=place,
+        )
     return None

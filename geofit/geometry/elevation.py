@@ -119,7 +119,7 @@ def _sorted(patches: Patches) -> tuple[list[tuple[Patches, Plan]], Patches]:
 
 def _over_folds(patches: Patches, plan: Floats, height: Floats) -> None:
     """Walk in plan from every piece of the patches that may lie over a place, and keep the highest."""
-    cells, flat, pieces = (patches.prepared(make) for make in (tabulate, _plan_cells, _pieces))
+    cells, flat, pieces = patches.prepared(tabulate), patches.prepared(_plan_cells), patches.prepared(_pieces)
     size = np.ptp(pieces.high, axis=1).max()
     candidates = np.flatnonzero(
         (plan >= pieces.low.min(axis=1)[:, None]).all(axis=0) & (plan <= pieces.high.max(axis=1)[:, None]).all(axis=0)

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.splines.patch import Patch
@@ -93,7 +93,13 @@ def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.0
     algorithms using bounds on derivatives"). Second derivatives of a cubic are largest at the ends of spans.
     """
     if not (tolerance > 0 and math.isfinite(tolerance)):
-        raise SettingsError(said("The chordal tolerance is {tolerance}; give metres above 0.", tolerance=tolerance))
+        raise SettingsError(
+            message(
+                "geometry.chordal-tolerance-give-metres",
+                "The chordal tolerance is {tolerance}; give metres above 0.",
+                tolerance=tolerance,
+            )
+        )
     lines = [_lines(patch, tolerance) for patch in patches]
     table = _Vertices()
     edges = _shared_edges(tuple(patches), lines)

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Box, points_of
 from geofit.implicit.kernels import Potential, potential
 
@@ -58,16 +58,31 @@ class Metaballs:
         n = len(centres)
         if shapes.shape != (n, 3, 3) or densities.shape != (n,):
             raise SettingsError(
-                said("{centres} centres need as many matrices and densities, not {shapes} and {densities}",
+                message("implicit.centres-many-matrices", "{centres} centres need as many matrices and densities, not {shapes} and {densities}",
                      centres=n, shapes=len(shapes), densities=len(densities))
             )  # fmt: skip
         if not (np.isfinite(centres).all() and np.isfinite(shapes).all() and np.isfinite(densities).all()):
-            raise SettingsError(said("centres, matrices and densities of balls must be finite numbers"))
+            raise SettingsError(
+                message(
+                    "implicit.centres-matrices-densities",
+                    "centres, matrices and densities of balls must be finite numbers",
+                )
+            )
         if not self.threshold > 0:
-            raise SettingsError(said("the threshold {threshold} must be positive", threshold=self.threshold))
+            raise SettingsError(
+                message(
+                    "implicit.threshold-positive",
+                    "the threshold {threshold} must be positive",
+                    threshold=self.threshold,
+                )
+            )
         if not (densities > self.threshold).any() and not densities[densities > 0].sum() > self.threshold:
             raise SettingsError(
-                said("no density reaches the threshold {threshold}: the body is empty", threshold=self.threshold)
+                message(
+                    "implicit.density-reaches-threshold",
+                    "no density reaches the threshold {threshold}: the body is empty",
+                    threshold=self.threshold,
+                )
             )
         for array in (centres, shapes, densities):
             array.flags.writeable = False
@@ -197,7 +212,13 @@ def metaballs(
     points = points_of(centres)
     reach = np.broadcast_to(np.asarray(radii, float), len(points))
     if not (np.isfinite(reach) & (reach > 0)).all():
-        raise SettingsError(said("the smallest radius, {radius}, must be positive", radius=float(np.min(reach))))
+        raise SettingsError(
+            message(
+                "implicit.smallest-radius-positive",
+                "the smallest radius, {radius}, must be positive",
+                radius=float(np.min(reach)),
+            )
+        )
     shapes = np.eye(3) / reach[:, None, None]
     weight = np.broadcast_to(np.asarray(densities, float), len(points))
     return Metaballs(points, shapes, weight, potential(kernel), threshold)

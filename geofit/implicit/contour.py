@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Field
 from geofit.implicit.roots import roots_between
 
@@ -60,11 +60,21 @@ def contours(
     u, v = (np.asarray(d, float) / max(float(np.linalg.norm(d)), 1e-300) for d in (along, up))
     if not np.isclose(np.linalg.norm(u), 1) or not np.isclose(np.linalg.norm(v), 1) or abs(u @ v) > 1e-9:
         raise SettingsError(
-            said("the directions {along} and {up} must be orthogonal and not zero", along=u.tolist(), up=v.tolist())
+            message(
+                "implicit.directions-orthogonal-not",
+                "the directions {along} and {up} must be orthogonal and not zero",
+                along=u.tolist(),
+                up=v.tolist(),
+            )
         )
     if not (min(size) > 0 and spacing > 0):
         raise SettingsError(
-            said("the rectangle {size} and the spacing {spacing} must be positive lengths", size=size, spacing=spacing)
+            message(
+                "implicit.rectangle-spacing-positive",
+                "the rectangle {size} and the spacing {spacing} must be positive lengths",
+                size=size,
+                spacing=spacing,
+            )
         )
     counts = [int(np.ceil(s / spacing - 1e-9)) + 1 for s in size]
     s, t = (np.linspace(0, side, n) for side, n in zip(size, counts, strict=True))

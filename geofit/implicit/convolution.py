@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Box
 
 __all__ = ["Convolution", "kernel_integral"]
@@ -79,7 +79,13 @@ def kernel_integral(
         value = fall * math.sqrt(math.pi) / (2 * s) * integral
         return value, fall * (np.exp(-(a**2)) - np.exp(-(b**2))), -scale * value
     if kernel != "cauchy":
-        raise SettingsError(said("there is no kernel '{name}': choose compact, gauss or cauchy", name=kernel))
+        raise SettingsError(
+            message(
+                "implicit.kernel-choose-compact",
+                "there is no kernel '{name}': choose compact, gauss or cauchy",
+                name=kernel,
+            )
+        )
     s = 1 / width
     u, v = x, length - x
     p2 = 1 + scale * rho2
@@ -115,16 +121,38 @@ class Convolution:
         segments = np.array(self.segments, float)
         if segments.ndim != 3 or segments.shape[1:] != (2, 3) or not len(segments) or not np.isfinite(segments).all():
             raise SettingsError(
-                said("segments must be a finite (n, 2, 3) array, not one of shape {shape}", shape=segments.shape)
+                message(
+                    "implicit.segments-array-not",
+                    "segments must be a finite (n, 2, 3) array, not one of shape {shape}",
+                    shape=segments.shape,
+                )
             )
         radii = np.broadcast_to(np.asarray(self.radii, float), len(segments)).copy()
         if not (np.isfinite(radii) & (radii > 0)).all():
-            raise SettingsError(said("the smallest radius, {radius}, must be positive", radius=float(np.min(radii))))
+            raise SettingsError(
+                message(
+                    "implicit.smallest-radius-positive",
+                    "the smallest radius, {radius}, must be positive",
+                    radius=float(np.min(radii)),
+                )
+            )
         lengths = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
         if not (lengths > 0).all():
-            raise SettingsError(said("segment {number} has no length: leave it out", number=int(np.argmin(lengths))))
+            raise SettingsError(
+                message(
+                    "implicit.segment-length-leave",
+                    "segment {number} has no length: leave it out",
+                    number=int(np.argmin(lengths)),
+                )
+            )
         if self.kernel not in WIDTH:
-            raise SettingsError(said("there is no kernel '{name}': choose compact, gauss or cauchy", name=self.kernel))
+            raise SettingsError(
+                message(
+                    "implicit.kernel-choose-compact",
+                    "there is no kernel '{name}': choose compact, gauss or cauchy",
+                    name=self.kernel,
+                )
+            )
         segments.flags.writeable = radii.flags.writeable = False
         object.__setattr__(self, "segments", segments)
         object.__setattr__(self, "radii", radii)

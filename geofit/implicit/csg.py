@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Box, Field, range_in
 
 __all__ = [
@@ -184,13 +184,21 @@ def _common_box(fields: tuple[Field, ...]) -> Box:
 
 def _some(fields: tuple[Field, ...]) -> tuple[Field, ...]:
     if not fields:
-        raise SettingsError(said("there is nothing to combine: give one field or more"))
+        raise SettingsError(
+            message("implicit.nothing-combine-field", "there is nothing to combine: give one field or more")
+        )
     return fields
 
 
 def _blend(radius: float) -> float:
     if not (np.isfinite(radius) and radius > 0):
-        raise SettingsError(said("the radius {radius} of a blend must be a positive length", radius=radius))
+        raise SettingsError(
+            message(
+                "implicit.radius-blend-positive",
+                "the radius {radius} of a blend must be a positive length",
+                radius=radius,
+            )
+        )
     return float(radius)
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Box
 
 if TYPE_CHECKING:
@@ -36,7 +36,9 @@ class _Distance:
 
 def _positive(radius: float) -> float:
     if not (np.isfinite(radius) and radius > 0):
-        raise SettingsError(said("the radius {radius} must be a positive length", radius=radius))
+        raise SettingsError(
+            message("implicit.radius-positive-length", "the radius {radius} must be a positive length", radius=radius)
+        )
     return float(radius)
 
 
@@ -44,7 +46,11 @@ def _unit(direction: Floats) -> Floats:
     vector = np.array(direction, float)
     length = float(np.linalg.norm(vector))
     if vector.shape != (3,) or not length > 0:
-        raise SettingsError(said("the direction {direction} must not be zero", direction=vector.tolist()))
+        raise SettingsError(
+            message(
+                "implicit.direction-not-zero", "the direction {direction} must not be zero", direction=vector.tolist()
+            )
+        )
     return np.asarray(vector / length)
 
 
@@ -259,7 +265,13 @@ class RoundCones(_Distance):
         points = _centre_line(self.points)
         radii = np.broadcast_to(np.asarray(self.radii, float), len(points)).copy()
         if not (np.isfinite(radii) & (radii > 0)).all():
-            raise SettingsError(said("the smallest radius, {radius}, must be positive", radius=float(np.min(radii))))
+            raise SettingsError(
+                message(
+                    "implicit.smallest-radius-positive",
+                    "the smallest radius, {radius}, must be positive",
+                    radius=float(np.min(radii)),
+                )
+            )
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "radii", radii)
 
@@ -286,12 +298,16 @@ def _centre_line(points: Floats) -> Floats:
     line = np.array(points, float)
     if line.ndim != 2 or line.shape[1] != 3 or len(line) < 2 or not np.isfinite(line).all():
         raise SettingsError(
-            said("a centre line needs two or more points x, y, z, not an array of shape {shape}", shape=line.shape)
+            message(
+                "implicit.centre-line-points",
+                "a centre line needs two or more points x, y, z, not an array of shape {shape}",
+                shape=line.shape,
+            )
         )
     same = np.nonzero((np.diff(line, axis=0) == 0).all(axis=1))[0]
     if len(same):
         raise SettingsError(
-            said("points {first} and {second} of the centre line coincide: leave one out",
+            message("implicit.points-centre-line", "points {first} and {second} of the centre line coincide: leave one out",
                  first=int(same[0]), second=int(same[0]) + 1)
         )  # fmt: skip
     line.flags.writeable = False

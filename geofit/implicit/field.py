@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = [
     "Field",
@@ -107,7 +107,11 @@ def points_of(xyz: ArrayLike) -> Floats:
     points = np.asarray(xyz, float)
     if points.ndim != 2 or points.shape[1] != 3:
         raise SettingsError(
-            said("points have shape {shape}, but need (n, 3): give x, y, z in columns", shape=points.shape)
+            message(
+                "implicit.points-shape-columns",
+                "points have shape {shape}, but need (n, 3): give x, y, z in columns",
+                shape=points.shape,
+            )
         )
     return points
 
@@ -123,7 +127,7 @@ def box_of(lower: ArrayLike, upper: ArrayLike) -> Box:
     low, high = (np.array(corner, float) for corner in (lower, upper))
     if low.shape != (3,) or high.shape != (3,) or not (low <= high).all():
         raise SettingsError(
-            said("no box lies between the corners {lower} and {upper}: give lower <= upper, three coordinates each",
+            message("implicit.box-corners-lower", "no box lies between the corners {lower} and {upper}: give lower <= upper, three coordinates each",
                  lower=low.tolist(), upper=high.tolist())
         )  # fmt: skip
     low.flags.writeable = high.flags.writeable = False
@@ -206,7 +210,7 @@ def moved(field: Field, rotation: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     matrix, offset = np.array(rotation, float), np.array(shift, float)
     if matrix.shape != (3, 3) or not np.allclose(matrix.T @ matrix, np.eye(3), atol=1e-9):
         raise SettingsError(
-            said("the matrix {matrix} is not a rotation: its columns must be orthogonal unit vectors",
+            message("implicit.matrix-not-rotation", "the matrix {matrix} is not a rotation: its columns must be orthogonal unit vectors",
                  matrix=matrix.tolist())
         )  # fmt: skip
     return _Moved(field, matrix, offset)

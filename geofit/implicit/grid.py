@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Box, Field
 from geofit.implicit.lattice import Lattice, sample
 
@@ -138,12 +138,16 @@ def spline_grid(values: ArrayLike, lattice: Lattice) -> SplineGrid:
     samples = np.asarray(values, float)
     if samples.shape != lattice.shape:
         raise SettingsError(
-            said("the samples have shape {given}, the lattice {needed}: give one value a node",
+            message("implicit.samples-shape-lattice", "the samples have shape {given}, the lattice {needed}: give one value a node",
                  given=samples.shape, needed=lattice.shape)
         )  # fmt: skip
     if not np.isfinite(samples).all():
         raise SettingsError(
-            said("{count} samples are not finite: fill them first", count=int((~np.isfinite(samples)).sum()))
+            message(
+                "implicit.samples-not-fill",
+                "{count} samples are not finite: fill them first",
+                count=int((~np.isfinite(samples)).sum()),
+            )
         )
     coefficients = samples
     for axis in range(3):

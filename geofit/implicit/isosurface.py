@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError, SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.clean import collapse_slivers
 from geofit.implicit.field import Field, range_in
 from geofit.implicit.lattice import BATCH, Lattice
@@ -99,7 +99,7 @@ def isosurface_of_samples(values: NDArray[np.floating], lattice: Lattice, *, cap
     samples = np.asarray(values)
     if samples.shape != lattice.shape:
         raise SettingsError(
-            said("the samples have shape {given}, the lattice {needed}: give one value a node",
+            message("implicit.samples-shape-lattice", "the samples have shape {given}, the lattice {needed}: give one value a node",
                  given=samples.shape, needed=lattice.shape)
         )  # fmt: skip
     if capped:
@@ -170,7 +170,7 @@ def _crossings(values: NDArray[np.floating], blocks: Ints, end: Ints | None) -> 
         Cells from this one on are left out; None if the blocks have none to leave out.
     """
     if np.isnan(values).any():
-        raise FitError(said("the field is not a number at {count} nodes: check its data and its box",
+        raise FitError(message("implicit.field-not-nodes", "the field is not a number at {count} nodes: check its data and its box",
                             count=int(np.isnan(values).sum())))  # fmt: skip
     _, nz, ny, nx = values.shape
     points, triangles = _flying_edges(values)

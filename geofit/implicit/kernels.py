@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["POTENTIALS", "Potential", "potential"]
 
@@ -108,7 +108,11 @@ class Potential:
         """
         if not 0 < ratio < 1:
             raise SettingsError(
-                said("a ball with threshold/density {ratio} has no surface: give a ratio between 0 and 1", ratio=ratio)
+                message(
+                    "implicit.ball-threshold-density",
+                    "a ball with threshold/density {ratio} has no surface: give a ratio between 0 and 1",
+                    ratio=ratio,
+                )
             )
         match self.name:
             case "smooth":
@@ -159,6 +163,11 @@ def potential(name: str) -> Potential:
     """
     if name not in POTENTIALS:
         raise SettingsError(
-            said("there is no potential '{name}': choose one of {names}", name=name, names=", ".join(POTENTIALS))
+            message(
+                "implicit.potential-choose",
+                "there is no potential '{name}': choose one of {names}",
+                name=name,
+                names=", ".join(POTENTIALS),
+            )
         )
     return POTENTIALS[name]

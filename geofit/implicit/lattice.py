@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Box, Field, box_of
 
 __all__ = ["Lattice", "sample"]
@@ -40,11 +40,29 @@ class Lattice:
     def __post_init__(self) -> None:
         origin = np.array(self.origin, float)
         if origin.shape != (3,) or not np.isfinite(origin).all():
-            raise SettingsError(said("the origin {origin} is not a point: give x, y, z", origin=origin.tolist()))
+            raise SettingsError(
+                message(
+                    "implicit.origin-not-point",
+                    "the origin {origin} is not a point: give x, y, z",
+                    origin=origin.tolist(),
+                )
+            )
         if not (np.isfinite(self.spacing) and self.spacing > 0):
-            raise SettingsError(said("the spacing {spacing} must be a positive length", spacing=self.spacing))
+            raise SettingsError(
+                message(
+                    "implicit.spacing-positive-length",
+                    "the spacing {spacing} must be a positive length",
+                    spacing=self.spacing,
+                )
+            )
         if len(self.shape) != 3 or min(self.shape) < 2:
-            raise SettingsError(said("a lattice needs 2 nodes or more an axis, not {shape}", shape=tuple(self.shape)))
+            raise SettingsError(
+                message(
+                    "implicit.lattice-nodes-axis",
+                    "a lattice needs 2 nodes or more an axis, not {shape}",
+                    shape=tuple(self.shape),
+                )
+            )
         origin.flags.writeable = False
         object.__setattr__(self, "origin", origin)
         object.__setattr__(self, "spacing", float(self.spacing))
@@ -63,7 +81,7 @@ class Lattice:
         size = high - low
         if not np.isfinite(size).all() or size.max() <= 0 or cells < 1:
             raise SettingsError(
-                said("{cells} cells cannot cover the box {lower} to {upper}: give a finite box and at least 1 cell",
+                message("implicit.cells-cannot-cover", "{cells} cells cannot cover the box {lower} to {upper}: give a finite box and at least 1 cell",
                      cells=cells, lower=low.tolist(), upper=high.tolist())
             )  # fmt: skip
         spacing = float(size.max()) / cells
@@ -97,7 +115,7 @@ class Lattice:
         """
         if any(n % 2 == 0 for n in self.shape):
             raise SettingsError(
-                said("every second node of a lattice of shape {shape} misses its end: give odd numbers of nodes",
+                message("implicit.every-second-node", "every second node of a lattice of shape {shape} misses its end: give odd numbers of nodes",
                      shape=self.shape)
             )  # fmt: skip
         nx, ny, nz = self.shape

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["TriangleMesh"]
 
@@ -46,7 +46,7 @@ class TriangleMesh:
         triangles = np.array(self.triangles, np.int64).reshape(-1, 3)
         if triangles.size and (triangles.min() < 0 or triangles.max() >= len(vertices)):
             raise SettingsError(
-                said("a triangle names vertex {vertex}, but there are {count}: number them from 0",
+                message("implicit.triangle-vertex", "a triangle names vertex {vertex}, but there are {count}: number them from 0",
                      vertex=int(triangles.max() if triangles.min() >= 0 else triangles.min()), count=len(vertices))
             )  # fmt: skip
         vertices.flags.writeable = triangles.flags.writeable = False

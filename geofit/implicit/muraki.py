@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.blobs import Metaballs
 from geofit.implicit.field import points_of
 from geofit.implicit.kernels import potential
@@ -239,11 +239,13 @@ def fit_metaballs(
     points, directions = points_of(xyz), points_of(normals)
     if len(points) != len(directions) or not epsilon > 0 or most < 1:
         raise SettingsError(
-            said("{points} samples need as many normals, not {normals}; epsilon {epsilon} and most {most} positive",
+            message("implicit.samples-many-normals", "{points} samples need as many normals, not {normals}; epsilon {epsilon} and most {most} positive",
                  points=len(points), normals=len(directions), epsilon=epsilon, most=most)
         )  # fmt: skip
     if len(points) < 10:
-        raise FitError(said("{count} samples do not fix a body: give 10 or more", count=len(points)))
+        raise FitError(
+            message("implicit.samples-not-fix", "{count} samples do not fix a body: give 10 or more", count=len(points))
+        )
     middle = points.mean(axis=0)
     scale = float(np.sqrt(((points - middle) ** 2).sum(axis=1).mean()))
     x = (points - middle) / scale
@@ -283,7 +285,13 @@ def fit_metaballs(
             balls.centres * scale + middle, balls.shapes / scale, balls.densities, potential("blinn"), threshold=1.0
         )
     except SettingsError as error:
-        raise FitError(said("the balls have no surface: are the normals outward? ({reason})", reason=error)) from error
+        raise FitError(
+            message(
+                "implicit.balls-surface-normals",
+                "the balls have no surface: are the normals outward? ({reason})",
+                reason=error,
+            )
+        ) from error
     return BallFit(body, tuple(energies), _rms(x, balls) * scale, dropped)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Field, normals
 from geofit.implicit.foot import project_along_gradient
 from geofit.implicit.mesh import TriangleMesh
@@ -54,7 +54,7 @@ def even_samples(field: Field, mesh: TriangleMesh, count: int, *, seed: int = 0)
 
     if count < 1 or not len(mesh.triangles):
         raise SettingsError(
-            said("{count} points cannot be spread over {triangles} triangles: give at least one of each",
+            message("implicit.points-cannot-spread", "{count} points cannot be spread over {triangles} triangles: give at least one of each",
                  count=count, triangles=len(mesh.triangles))
         )  # fmt: skip
     rng = np.random.default_rng(seed)

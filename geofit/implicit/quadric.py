@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Box, box_of, points_of
 
 __all__ = ["Plane", "Quadric", "ellipsoid", "fit_quadric", "quadric_from_coefficients"]
@@ -59,7 +59,13 @@ class Plane:
     def __post_init__(self) -> None:
         length = float(np.linalg.norm(np.asarray(self.normal, float)))
         if not length > 0:
-            raise SettingsError(said("a plane needs a normal that is not zero, not {normal}", normal=self.normal))
+            raise SettingsError(
+                message(
+                    "implicit.plane-normal-not",
+                    "a plane needs a normal that is not zero, not {normal}",
+                    normal=self.normal,
+                )
+            )
         object.__setattr__(self, "point", np.array(self.point, float))
         object.__setattr__(self, "normal", np.array(self.normal, float) / length)
 
@@ -100,7 +106,13 @@ class Quadric:
     def __post_init__(self) -> None:
         matrix = np.array(self.matrix, float)
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
-            raise SettingsError(said("a quadric needs a finite 4x4 matrix, not {shape}", shape=matrix.shape))
+            raise SettingsError(
+                message(
+                    "implicit.quadric-matrix-not",
+                    "a quadric needs a finite 4x4 matrix, not {shape}",
+                    shape=matrix.shape,
+                )
+            )
         matrix = (matrix + matrix.T) / 2
         matrix.flags.writeable = False
         object.__setattr__(self, "matrix", matrix)
@@ -148,7 +160,11 @@ class Quadric:
         eigenvalues = np.linalg.eigvalsh(self._parts[0])
         largest = np.abs(eigenvalues).max()
         if largest == 0:
-            raise FitError(said("the quadric has no quadratic terms: it is a plane or nothing"))
+            raise FitError(
+                message(
+                    "implicit.quadric-quadratic-terms", "the quadric has no quadratic terms: it is a plane or nothing"
+                )
+            )
         p, n = int((eigenvalues > ZERO * largest).sum()), int((eigenvalues < -ZERO * largest).sum())
         _, constant, linear = self._centre()
         whole = (p + 1, n + 1) if linear else (p + int(constant > 0), n + int(constant < 0))
@@ -205,7 +221,13 @@ def ellipsoid(centre: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | Non
     """
     half, middle = np.asarray(semi_axes, float), np.asarray(centre, float)
     if half.shape != (3,) or not (half > 0).all():
-        raise SettingsError(said("an ellipsoid needs three positive half lengths, not {axes}", axes=half.tolist()))
+        raise SettingsError(
+            message(
+                "implicit.ellipsoid-three-positive",
+                "an ellipsoid needs three positive half lengths, not {axes}",
+                axes=half.tolist(),
+            )
+        )
     axes = np.eye(3) if rotation is None else np.asarray(rotation, float)
     a = (axes / half**2) @ axes.T
     b = -a @ middle
@@ -241,7 +263,9 @@ def fit_quadric(xyz: ArrayLike) -> Quadric:
 
     points = points_of(xyz)
     if len(points) < 9:
-        raise FitError(said("{count} points do not fix a quadric: give 9 or more", count=len(points)))
+        raise FitError(
+            message("implicit.points-not-fix", "{count} points do not fix a quadric: give 9 or more", count=len(points))
+        )
     middle = points.mean(axis=0)
     scale = float(np.sqrt(((points - middle) ** 2).mean())) or 1.0
     x, y, z = ((points - middle) / scale).T
@@ -259,10 +283,20 @@ def fit_quadric(xyz: ArrayLike) -> Quadric:
     m = (terms - mean).T @ (terms - mean) / len(x)
     n = np.einsum("kni,knj->ij", slopes, slopes) / len(x)
     if np.linalg.matrix_rank(n, tol=1e-10 * np.linalg.norm(n)) < len(n):
-        raise FitError(said("the points lie on more than one quadric: add points off their plane or curve"))
+        raise FitError(
+            message(
+                "implicit.points-quadric-points",
+                "the points lie on more than one quadric: add points off their plane or curve",
+            )
+        )
     eigenvalues, vectors = eigh(m, n)
     if eigenvalues[1] < 1e-12:
-        raise FitError(said("the points lie on more than one quadric: add points off their plane or curve"))
+        raise FitError(
+            message(
+                "implicit.points-quadric-points",
+                "the points lie on more than one quadric: add points off their plane or curve",
+            )
+        )
     c = vectors[:, 0]
     unit = quadric_from_coefficients([*c, -mean @ c]).matrix * scale
     back = np.eye(4)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Field
 from geofit.implicit.foot import foot_points
 from geofit.implicit.grid import SplineGrid, spline_grid
@@ -51,7 +51,12 @@ def distance_samples(field: Field, lattice: Lattice, *, band: float = 10.0) -> F
         for ends[axis] in ((0, 1), (1, 0)):
             crossed |= np.pad(change, ends)
     if not crossed.any():
-        raise FitError(said("the field has one sign at all nodes: choose a box that its surface passes through"))
+        raise FitError(
+            message(
+                "implicit.field-sign-nodes",
+                "the field has one sign at all nodes: choose a box that its surface passes through",
+            )
+        )
     nearest = distance_transform_edt(~crossed, return_distances=False, return_indices=True)
     xyz = lattice.nodes()
     at_surface = np.nonzero(crossed.ravel())[0]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Field, normals, points_of
 from geofit.implicit.roots import roots_between
 
@@ -126,7 +126,9 @@ def _unit(directions: ArrayLike) -> Floats:
     vectors = points_of(directions)
     size = np.linalg.norm(vectors, axis=1, keepdims=True)
     if not (size > 0).all():
-        raise SettingsError(said("direction {number} is zero", number=int(np.argmin(size))))
+        raise SettingsError(
+            message("implicit.direction-zero", "direction {number} is zero", number=int(np.argmin(size)))
+        )
     return np.asarray(vectors / size)
 
 
@@ -136,10 +138,19 @@ class _March:
     def __init__(self, field: Field, start: Floats, along: Floats, length: float, resolution: float) -> None:
         if not np.isfinite(field.lipschitz):
             raise SettingsError(
-                said("the field has no finite Lipschitz bound: give its region, or reinitialize it on a lattice")
+                message(
+                    "implicit.field-lipschitz-bound",
+                    "the field has no finite Lipschitz bound: give its region, or reinitialize it on a lattice",
+                )
             )
         if not resolution > 0:
-            raise SettingsError(said("the resolution {resolution} must be a positive length", resolution=resolution))
+            raise SettingsError(
+                message(
+                    "implicit.resolution-positive-length",
+                    "the resolution {resolution} must be a positive length",
+                    resolution=resolution,
+                )
+            )
         self.field, self.start, self.along, self.resolution = field, start, along, resolution
         self.slowness = 1 / max(field.lipschitz, 1e-300)
         low, high = field.bounds

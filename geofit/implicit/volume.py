@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.field import Field
 from geofit.implicit.foot import project_along_gradient
 from geofit.implicit.isosurface import isosurface
@@ -73,7 +73,7 @@ def extent_of_samples(values: NDArray[np.floating], lattice: Lattice) -> Extent:
     f = np.asarray(values)
     if f.shape != lattice.shape:
         raise SettingsError(
-            said("the samples have shape {given}, the lattice {needed}: give one value a node",
+            message("implicit.samples-shape-lattice", "the samples have shape {given}, the lattice {needed}: give one value a node",
                  given=f.shape, needed=lattice.shape)
         )  # fmt: skip
     cells = [slice(None, -1), slice(1, None)]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.medial.kernel import STIFFNESS, reach
 
 if TYPE_CHECKING:
@@ -58,16 +58,26 @@ class MetaballBody:
         centre, radius = np.array(self.centre, float), np.array(self.radius, float)
         if centre.ndim != 2 or centre.shape[1:] != (3,) or radius.shape != centre.shape[:1] or not len(radius):
             raise SettingsError(
-                said(
+                message(
+                    "medial.centres-shape-radii",
                     "Centres have shape {centres}, radii {radii}; give (n, 3) and (n,) with at least one ball.",
                     centres=centre.shape,
                     radii=radius.shape,
                 )
             )
         if not (np.isfinite(centre).all() and np.isfinite(radius).all() and (radius > 0).all()):
-            raise SettingsError("A ball has a radius that is not above 0, or a number that is not finite; correct it.")
+            raise SettingsError(
+                message(
+                    "medial.ball-radius-not",
+                    "A ball has a radius that is not above 0, or a number that is not finite; correct it.",
+                )
+            )
         if not self.stiffness > 0:
-            raise SettingsError(said("The stiffness is {stiffness}; give a number above 0.", stiffness=self.stiffness))
+            raise SettingsError(
+                message(
+                    "medial.stiffness", "The stiffness is {stiffness}; give a number above 0.", stiffness=self.stiffness
+                )
+            )
         centre.flags.writeable = radius.flags.writeable = False
         object.__setattr__(self, "centre", centre)
         object.__setattr__(self, "radius", radius)
@@ -110,7 +120,9 @@ class MetaballBody:
         from geofit.implicit.lattice import Lattice
 
         if not (np.isfinite(spacing) and spacing > 0):
-            raise SettingsError(said("The spacing is {spacing}; give metres above 0.", spacing=spacing))
+            raise SettingsError(
+                message("caves.spacing", "The spacing is {spacing}; give metres above 0.", spacing=spacing)
+            )
         low, high = self.bounds
         shape = np.ceil((high - low) / spacing).astype(int) + 3
         return isosurface(self, Lattice(low - spacing, spacing, (int(shape[0]), int(shape[1]), int(shape[2]))))
@@ -139,7 +151,12 @@ class MetaballBody:
     def _require(self, i: int) -> None:
         if not 0 <= i < len(self):
             raise SettingsError(
-                said("There is no ball {i}; the balls are numbered from 0 to {last}.", i=i, last=len(self) - 1)
+                message(
+                    "medial.ball-balls-numbered",
+                    "There is no ball {i}; the balls are numbered from 0 to {last}.",
+                    i=i,
+                    last=len(self) - 1,
+                )
             )
 
     @property

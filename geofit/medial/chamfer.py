@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.medial.weights import INTEGER_WEIGHTS
 
 __all__ = ["FORWARD", "chamfer_distance", "step_weights"]
@@ -23,7 +23,11 @@ def step_weights(weights: ArrayLike) -> NDArray[Any]:
     """Return the weight (13,) of each step of :data:`FORWARD`: face, edge or corner neighbour."""
     w = np.asarray(weights)
     if w.shape != (3,) or not (w > 0).all() or not np.isfinite(w).all():
-        raise SettingsError(said("The chamfer weights are {weights}; give 3 numbers above 0.", weights=weights))
+        raise SettingsError(
+            message(
+                "medial.chamfer-weights", "The chamfer weights are {weights}; give 3 numbers above 0.", weights=weights
+            )
+        )
     return np.asarray(w[np.abs(FORWARD).sum(axis=1) - 1])
 
 
@@ -53,7 +57,9 @@ def chamfer_distance(
     """
     body = np.ascontiguousarray(void, dtype=bool)
     if body.ndim != 3:
-        raise SettingsError(said("The volume has {count} axes; give an array of 3.", count=body.ndim))
+        raise SettingsError(
+            message("medial.volume-axes-array", "The volume has {count} axes; give an array of 3.", count=body.ndim)
+        )
     integer = np.issubdtype(step_weights(weights).dtype, np.integer)
     kind = np.dtype(np.int32 if integer else np.float64)
     far = np.iinfo(np.int32).max if integer else np.inf

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.medial.agreement import Agreement, agreement
 from geofit.medial.balls import MetaballBody
@@ -159,7 +159,12 @@ def metaballs(
     The article's energy is lost in our copy; see :mod:`geofit.medial.greedy` for the one used here.
     """
     if not (cost > 0 and 0 < share <= 1 and stiffness > 0 and (max_balls is None or max_balls > 0)):
-        raise SettingsError("Give a cost and a stiffness above 0, a share above 0 and at most 1, and at least 1 ball.")
+        raise SettingsError(
+            message(
+                "medial.cost-stiffness-share",
+                "Give a cost and a stiffness above 0, a share above 0 and at most 1, and at least 1 ball.",
+            )
+        )
     tell(progress, "medial axis", 0.0)
     index, far = _candidates(volume, distance, weights)
     edges = np.array(volume.edges)
@@ -170,7 +175,10 @@ def metaballs(
     chosen, curve = _choose_all(cover, volume, share, max_balls, progress)
     if not chosen:
         raise SettingsError(
-            "No ball covers a voxel more than it costs: the body is thinner than a voxel. Scan it with smaller voxels."
+            message(
+                "medial.ball-covers-voxel",
+                "No ball covers a voxel more than it costs: the body is thinner than a voxel. Scan it with smaller voxels.",
+            )
         )
     picked = np.array([choice.candidate for choice in chosen])
     centre, radius = (index[picked] + 0.5) * edges, np.array([choice.radius for choice in chosen])
@@ -197,10 +205,17 @@ def _candidates(volume: RockVolume, distance: str, weights: ArrayLike) -> tuple[
         balls = maximal_balls(volume)
         return balls.centre.astype(np.int64), np.sqrt(balls.reach2.astype(np.float64))
     if distance != "chamfer":
-        raise SettingsError(said("The distance '{name}' is unknown; give 'euclid' or 'chamfer'.", name=distance))
+        raise SettingsError(
+            message(
+                "medial.distance-unknown-euclid",
+                "The distance '{name}' is unknown; give 'euclid' or 'chamfer'.",
+                name=distance,
+            )
+        )
     if not volume.cubic:
         raise SettingsError(
-            said(
+            message(
+                "medial.voxels-measure-chamfer",
                 "The voxels measure {edges} m, and a chamfer distance needs cubes; use distance='euclid'.",
                 edges=volume.voxel,
             )

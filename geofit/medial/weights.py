@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["INTEGER_WEIGHTS", "ChamferError", "chamfer_error", "optimal_weights", "world_factor"]
 
@@ -94,7 +94,9 @@ def optimal_weights(dimension: int = 3, *, first: float | None = None, relative:
     errs most are added until no direction errs by more than t.
     """
     if dimension not in (2, 3):
-        raise SettingsError(said("The dimension is {dimension}; give 2 or 3.", dimension=dimension))
+        raise SettingsError(
+            message("medial.dimension", "The dimension is {dimension}; give 2 or 3.", dimension=dimension)
+        )
     from scipy.optimize import linprog
 
     steps, length = _directions(dimension)
@@ -133,7 +135,8 @@ def _checked(weights: ArrayLike) -> Floats:
     w = np.asarray(weights, dtype=np.float64)
     if w.ndim != 1 or len(w) not in (2, 3) or not (w[0] > 0 and (np.diff(w) >= 0).all() and np.isfinite(w).all()):
         raise SettingsError(
-            said(
+            message(
+                "medial.chamfer-weights-not",
                 "The chamfer weights are {weights}; give 2 or 3 numbers above 0 that do not fall, such as 3, 4, 5.",
                 weights=weights,
             )

@@ -14,7 +14,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.pores.distance import Border, border_walls, squared_distance, sums_of_squares
 from geofit.pores.volume import RockVolume, VolumeError
@@ -111,10 +111,15 @@ def maximal_balls(
     """
     rule = rule or ("exact" if volume.cubic else "cover")
     if rule not in ("exact", "paper", "cover"):
-        raise VolumeError(said("rule={rule} is unknown. Give 'exact', 'paper' or 'cover'.", rule=repr(rule)))
+        raise VolumeError(
+            message(
+                "pores.rule-unknown-exact", "rule={rule} is unknown. Give 'exact', 'paper' or 'cover'.", rule=repr(rule)
+            )
+        )
     if rule != "cover" and not volume.cubic:
         raise VolumeError(
-            said(
+            message(
+                "pores.rule-compares-sums",
                 "rule='{rule}' compares sums of three squares and needs cubic voxels; these measure {voxel} m. Use "
                 "rule='cover'.",
                 rule=rule,

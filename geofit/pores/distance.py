@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.pores.volume import VolumeError
 
 __all__ = ["Border", "border_walls", "squared_distance", "sums_of_squares"]
@@ -32,7 +32,8 @@ def border_walls(border: Border) -> tuple[bool, bool, bool]:
     words = (border,) * 3 if isinstance(border, str) else tuple(border)
     if len(words) != 3 or not all(word in ("closed", "open") for word in words):
         raise VolumeError(
-            said(
+            message(
+                "pores.border-not-valid",
                 "border={border} is not valid. Give 'closed', 'open', or one of the two for each of the three axes.",
                 border=repr(border),
             )

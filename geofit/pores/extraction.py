@@ -7,7 +7,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.pores.balls import MaximalBalls, maximal_balls
 from geofit.pores.distance import Border, border_walls, squared_distance
@@ -77,7 +77,8 @@ def pore_network(
 
     if not (r_min >= 0 and 0 < tau <= 2):
         raise VolumeError(
-            said(
+            message(
+                "pores.min-tau-not",
                 "r_min={r_min} and tau={tau} are not usable. r_min is a radius in voxels and not negative; tau is a "
                 "ratio between 0 and 2.",
                 r_min=r_min,
@@ -85,9 +86,18 @@ def pore_network(
             )
         )
     if hierarchy not in ("merge-tree", "paper"):
-        raise VolumeError(said("hierarchy={name} is unknown. Give 'merge-tree' or 'paper'.", name=repr(hierarchy)))
+        raise VolumeError(
+            message(
+                "pores.hierarchy-unknown-merge",
+                "hierarchy={name} is unknown. Give 'merge-tree' or 'paper'.",
+                name=repr(hierarchy),
+            )
+        )
     border_walls(border)
-    check_memory(_BYTES * volume.pore.size, said("The network of {count} voxels", count=volume.pore.size))
+    check_memory(
+        _BYTES * volume.pore.size,
+        message("pores.network-voxels", "The network of {count} voxels", count=volume.pore.size),
+    )
     if volume.pore.all():
         border = "closed"
     tell(progress, "distance", 0.0)

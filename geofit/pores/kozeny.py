@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.pores.volume import VolumeError
 
 __all__ = ["CARMAN", "grain_diameter", "kozeny_permeability", "kozeny_ratio"]
@@ -32,7 +32,11 @@ def kozeny_permeability(porosity: float, diameter: float, constant: float = CARM
     """
     if not 0 <= porosity < 1:
         raise VolumeError(
-            said("A porosity of {porosity} has no Kozeny permeability; it must be below 1.", porosity=porosity)
+            message(
+                "pores.porosity-kozeny-permeability",
+                "A porosity of {porosity} has no Kozeny permeability; it must be below 1.",
+                porosity=porosity,
+            )
         )
     return constant * porosity**3 * diameter**2 / (1.0 - porosity) ** 2
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.pores.balls import balls_of_distance
 from geofit.pores.components import connectivity
@@ -90,7 +90,8 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
         if not paths[axis]:
             values.append(0.0)
             messages.append(
-                said(
+                message(
+                    "pores.pore-space-not",
                     "The pore space does not connect the two faces of {axis} (porosity {porosity:.4f}): its "
                     "permeability is 0.",
                     axis=AXES[axis],
@@ -108,7 +109,13 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
         start = 1.0 - (np.unravel_index(order, volume.shape)[axis] + 0.5) / volume.shape[axis]
         pressure, steps = conjugate_gradients(links, diagonal, source[0], start, _TOLERANCE, 5000)
         if steps < 0:
-            raise VolumeError(said("The Laplace solve along {axis} did not converge in 5000 steps.", axis=AXES[axis]))
+            raise VolumeError(
+                message(
+                    "pores.laplace-solve-along",
+                    "The Laplace solve along {axis} did not converge in 5000 steps.",
+                    axis=AXES[axis],
+                )
+            )
         flow = float((source[1] * pressure).sum())
         values.append(float(flow * lengths[axis] ** 2 / lengths.prod() * volume.unit**2))
     return Permeability((values[0], values[1], values[2]), tuple(messages))

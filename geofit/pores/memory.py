@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.pores.volume import VolumeError
 
 __all__ = ["available_memory", "check_memory"]
@@ -48,7 +48,8 @@ def check_memory(needed: int, task: str) -> None:
     free = available_memory()
     if free is not None and needed > free:
         raise VolumeError(
-            said(
+            message(
+                "pores.memory-free-take",
                 "{task} needs {needed:.1f} GB of memory, and {free:.1f} GB are free. Take a part of the volume, or "
                 "close other programs.",
                 task=task,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import Said, said
+from geofit.data.messages import Message, message
 from geofit.pores.network import AXES, PoreNetwork
 
 __all__ = ["MILLIDARCY", "Permeability", "network_permeability"]
@@ -70,8 +70,9 @@ def network_permeability(network: PoreNetwork) -> Permeability:
     return Permeability((values[0], values[1], values[2]), tuple(messages))
 
 
-def _no_flow(network: PoreNetwork, axis: int) -> Said:
-    return said(
+def _no_flow(network: PoreNetwork, axis: int) -> Message:
+    return message(
+        "pores.pore-space-not-connect",
         "The pore space does not connect the two faces of {axis} (porosity {porosity:.4f}): its permeability is 0. A "
         "larger sample or a finer scan may show a path.",
         axis=AXES[axis],

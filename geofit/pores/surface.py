@@ -17,7 +17,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.implicit.field import Box, Field
 from geofit.implicit.isosurface import isosurface
@@ -224,19 +224,21 @@ def pore_surface(
     """
     if construction not in ("contact", "blend"):
         raise VolumeError(
-            said(
+            message(
+                "pores.construction-unknown-contact",
                 "construction={name} is unknown. Give 'contact' or 'blend'; geofit.metaballs covers the pores with few "
                 "balls.",
                 name=repr(construction),
             )
         )
     if not kappa > 0:
-        raise VolumeError(said("kappa={kappa} is not positive.", kappa=kappa))
+        raise VolumeError(message("pores.kappa-not-positive", "kappa={kappa} is not positive.", kappa=kappa))
     if network is None:
         network = pore_network(volume)
     if network.pore_of is None or network.pore_of.shape != volume.shape:
         raise VolumeError(
-            said(
+            message(
+                "pores.network-voxels-volume",
                 "The network has no voxels of a volume of shape {shape}. Compute it from this volume with "
                 "pore_network.",
                 shape=volume.shape,

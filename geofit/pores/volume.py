@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import GeofitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = ["RockVolume", "VolumeError", "label_shares"]
 
@@ -131,21 +131,29 @@ def label_shares(array: NDArray[Any]) -> dict[Any, float]:
 def _check_array(values: NDArray[Any]) -> None:
     if values.ndim != 3:
         raise VolumeError(
-            said(
+            message(
+                "pores.array-axes-rock",
                 "The array has {count} axes; a rock volume has three. Give a single slice the shape "
                 "(1, rows, columns).",
                 count=values.ndim,
             )
         )
     if values.size == 0:
-        raise VolumeError(said("The array of shape {shape} has no voxel.", shape=values.shape))
+        raise VolumeError(
+            message("pores.array-shape-voxel", "The array of shape {shape} has no voxel.", shape=values.shape)
+        )
     if values.dtype.kind not in "buif":
         raise VolumeError(
-            said("The array has the type {kind}; voxels need numbers or booleans.", kind=str(values.dtype))
+            message(
+                "pores.array-type-voxels",
+                "The array has the type {kind}; voxels need numbers or booleans.",
+                kind=str(values.dtype),
+            )
         )
     if values.dtype.kind == "f" and not np.isfinite(values).all():
         raise VolumeError(
-            said(
+            message(
+                "pores.voxels-nan-infinite",
                 "{count} voxels are NaN or infinite. Give them the value of rock or of pore before reading.",
                 count=int((~np.isfinite(values)).sum()),
             )
@@ -159,7 +167,8 @@ def _pore_mask(values: NDArray[Any], pore: Any) -> NDArray[np.bool_]:
         shares = label_shares(values)
         if pore is None:
             raise VolumeError(
-                said(
+                message(
+                    "pores.value-pore-volume",
                     "Which value is pore? The volume has the values {labels}. State it: pore={example}.",
                     labels=_listed(shares),
                     example=next(iter(reversed(shares))),
@@ -167,7 +176,8 @@ def _pore_mask(values: NDArray[Any], pore: Any) -> NDArray[np.bool_]:
             )
         if len(shares) > 2:
             raise VolumeError(
-                said(
+                message(
+                    "pores.volume-different-values",
                     "The volume has {count} different values ({labels}), but pore={pore} names only one. List all "
                     "values of pore voxels, for example pore=[{pore}] if all others are rock, or pore=range(0, 100) "
                     "for a threshold.",
@@ -181,7 +191,8 @@ def _pore_mask(values: NDArray[Any], pore: Any) -> NDArray[np.bool_]:
         mask = np.isin(values, np.asarray(list(pore)))
     if not mask.any():
         raise VolumeError(
-            said(
+            message(
+                "pores.voxel-pore-value",
                 "No voxel has the pore value {pore}; the volume has the values {labels}. Check which value is pore.",
                 pore=list(pore) if several and len(pore) <= _SHOWN else pore,
                 labels=_listed(label_shares(values)),
@@ -198,12 +209,16 @@ def _listed(shares: dict[Any, float]) -> str:
 def _voxel_edges(voxel: float | Collection[float] | None) -> tuple[float, float, float]:
     if voxel is None:
         raise VolumeError(
-            said("The size of a voxel is missing. State its edge length in metres, for example voxel=5e-6.")
+            message(
+                "pores.size-voxel-missing",
+                "The size of a voxel is missing. State its edge length in metres, for example voxel=5e-6.",
+            )
         )
     edges = np.asarray(list(voxel) if isinstance(voxel, Collection) else [voxel] * 3, dtype=float)
     if edges.shape != (3,) or not np.isfinite(edges).all() or (edges <= 0).any():
         raise VolumeError(
-            said(
+            message(
+                "pores.voxel-not-voxel",
                 "voxel={voxel} is not a voxel size. Give one positive edge length in metres, or three, one for each "
                 "axis of the array.",
                 voxel=voxel,

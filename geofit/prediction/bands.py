@@ -12,7 +12,7 @@ from scipy.special import ndtri
 from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import FitError, SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.prediction import OffData, Uncertainty
 from geofit.fitting.calibration import Calibration, uncalibrated
 from geofit.fitting.horizon_fit import HorizonFit
@@ -147,7 +147,12 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike)
     places = np.atleast_2d(np.asarray(xyz, float))
     if places.shape[1] == 2:
         if frame.kind != "map":
-            raise FitError("A surface over its best plane needs (n, 3) coordinates; (n, 2) were given.")
+            raise FitError(
+                message(
+                    "prediction.surface-best-plane-needs",
+                    "A surface over its best plane needs (n, 3) coordinates; (n, 2) were given.",
+                )
+            )
         plane = frame.plan(places)
     else:
         plane = frame.to_local(places)[:, :2]
@@ -187,12 +192,20 @@ def band(surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9) 
     """
     if not 0 < share < 1:
         raise SettingsError(
-            said("share is {share!r}; a probability above 0 and below 1 is needed, for instance 0.9.", share=share)
+            message(
+                "prediction.share-probability-above-below",
+                "share is {share!r}; a probability above 0 and below 1 is needed, for instance 0.9.",
+                share=share,
+            )
         )
     uncertainty = found.uncertainty if isinstance(found, OffData) else found
     if uncertainty is None:
         raise FitError(
-            said("No standard deviation is known of '{name}'; see the notes of its examination.", name=surface.name)
+            message(
+                "prediction.no-standard-deviation-known",
+                "No standard deviation is known of '{name}'; see the notes of its examination.",
+                name=surface.name,
+            )
         )
     model = _model(surface)
     space = model.net.space
@@ -231,8 +244,10 @@ def _sd(model: Model, uncertainty: Uncertainty, plane: Floats) -> Floats:
 def _model(surface: HorizonFit) -> Model:
     if surface.model is None:
         raise FitError(
-            said(
-                "'{name}' was not fitted here: nothing is known about what lies between its points.", name=surface.name
+            message(
+                "prediction.not-fitted-nothing-known",
+                "'{name}' was not fitted here: nothing is known about what lies between its points.",
+                name=surface.name,
             )
         )
     return surface.model

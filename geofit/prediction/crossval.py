@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.guard import guarded
-from geofit.data.messages import Said, said
+from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, Scheme
 from geofit.fitting.calibration import Calibration, calibrate, gathered, share_inside, variance_of
 from geofit.fitting.deletion import LinearFit, Prediction
@@ -123,7 +123,14 @@ def left_out(
         for method, predict in methods.items():
 
             def missing(reason: str, method: str = method) -> None:
-                report(said("{method} was not compared: {reason}", method=said(method), reason=reason))
+                report(
+                    message(
+                        "prediction.method-not-compared",
+                        "{method} was not compared: {reason}",
+                        method=method,
+                        reason=reason,
+                    )
+                )
 
             estimate = guarded(predict, None, missing)
             if estimate is not None:
@@ -147,18 +154,19 @@ def left_out(
     )
 
 
-def about_the_hull(given: Posterior, fold: Fold) -> Said | None:
+def about_the_hull(given: Posterior, fold: Fold) -> Message | None:
     """Say how much of the error comes from points beyond the hull of the others, where every method extrapolates."""
     beyond = beyond_hull(given.plane, fold.groups) & np.isfinite(fold.predicted.error)
     within = ~beyond & np.isfinite(fold.predicted.error)
     if not beyond.any() or not within.any():
         return None
-    return said(
+    return message(
+        "prediction.points-left-lie-beyond",
         "{beyond} of {total} points left out by {scheme} lie beyond the hull of the others, where every method "
         "extrapolates: error {outer:.3g} m there, {inner:.3g} m within",
         beyond=int(beyond.sum()),
         total=int(beyond.sum() + within.sum()),
-        scheme=said(fold.scheme),
+        scheme=fold.scheme,
         outer=_rms(fold.predicted.error[beyond]),
         inner=_rms(fold.predicted.error[within]),
     )

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from geofit.data.guard import guarded
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion
 from geofit.data.progress import Progress, tell
 from geofit.fitting.calibration import Calibration, uncalibrated
@@ -61,12 +61,22 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
     """
     model = surface.model
     if model is None:
-        return _nothing(said("'{name}' was not fitted here: no point can be left out of it", name=surface.name))
+        return _nothing(
+            message(
+                "prediction.not-fitted-no-point",
+                "'{name}' was not fitted here: no point can be left out of it",
+                name=surface.name,
+            )
+        )
     with threadpool_limits(limits=1):
-        notes: list[str] = []
+        notes: list[Message] = []
 
-        def missing(reason: str) -> None:
-            notes.append(said("the error off the data cannot be told: {reason}", reason=reason))
+        def missing(reason: Message) -> None:
+            notes.append(
+                message(
+                    "prediction.error-off-data-cannot", "the error off the data cannot be told: {reason}", reason=reason
+                )
+            )
 
         look = sections_by_refit if model.problem.chart.parametric else _examine
         found = guarded(lambda: look(surface, model, progress), None, missing)
@@ -74,7 +84,7 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
 
 
 def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> OffData:
-    notes: list[str] = []
+    notes: list[Message] = []
     tell(progress, "uncertainty", 0.0)
     given = posterior(model)
     grid = grid_over(surface)
@@ -84,15 +94,28 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Of
     folds, calibration, outliers = guarded(
         lambda: _left_out(model, given, grid, progress, notes),
         nothing,
-        lambda reason: notes.append(said("no point was left out, the band is not calibrated: {reason}", reason=reason)),
+        lambda reason: notes.append(
+            message(
+                "prediction.not-calibrated",
+                "no point was left out, the band is not calibrated: {reason}",
+                reason=reason,
+            )
+        ),
     )
     if model.net.lines is not None:
-        notes.append(said("the core is linear across its sections; its left-out errors are those of a cubic one"))
+        notes.append(
+            message(
+                "prediction.core-linear-across-sections",
+                "the core is linear across its sections; its left-out errors are those of a cubic one",
+            )
+        )
     tell(progress, "other methods", 0.65)
     plate = guarded(
         lambda: None if many else thin_plate_inverse(given.plane),
         None,
-        lambda reason: notes.append(said("no other method was compared: {reason}", reason=reason)),
+        lambda reason: notes.append(
+            message("prediction.no-other-method", "no other method was compared: {reason}", reason=reason)
+        ),
     )
     results = []
     for fold in folds:
@@ -103,17 +126,23 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Of
     tell(progress, "next holes", 0.8)
     spread = Spread(model, given, calibration)
     if not len(grid.plane):
-        notes.append(said("the points have no area: there is no standard deviation between them"))
+        notes.append(
+            message("prediction.no-area", "the points have no area: there is no standard deviation between them")
+        )
     none: tuple[Suggestion, ...] = ()
     suggestions = guarded(
         lambda: suggest_holes(grid, spread) if len(grid.plane) else none,
         none,
-        lambda reason: notes.append(said("no holes are suggested: {reason}", reason=reason)),
+        lambda reason: notes.append(
+            message("prediction.no-holes-suggested", "no holes are suggested: {reason}", reason=reason)
+        ),
     )
     uncertainty = guarded(
         lambda: uncertainty_on(grid, spread) if len(grid.plane) else None,
         None,
-        lambda reason: notes.append(said("the standard deviation is not known: {reason}", reason=reason)),
+        lambda reason: notes.append(
+            message("prediction.no-standard-deviation", "the standard deviation is not known: {reason}", reason=reason)
+        ),
     )
     tell(progress, "done", 1.0)
     return OffData(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
@@ -128,7 +157,8 @@ def _left_out(
         folds, calibration = one_by_one(model, given), uncalibrated()
         outliers: tuple[Outlier, ...] = ()
         notes.append(
-            said(
+            message(
+                "prediction.points-too-many-leave",
                 "{count} points are too many to leave out in groups: each is left out alone, of the regional field, "
                 "and no other method is compared",
                 count=len(given.value),
@@ -141,24 +171,30 @@ def _left_out(
         calibration = calibrated(fit, folds, grid.plane, Spread(model, given, uncalibrated()).variance(grid.plane))
         outliers = find_outliers(fit, calibration.at(given.plane))
         if not given.exact_net:
-            notes.append(said("so many control points: the regional field alone is left out, on a coarser net"))
+            notes.append(
+                message(
+                    "prediction.many-control-points-regional",
+                    "so many control points: the regional field alone is left out, on a coarser net",
+                )
+            )
     return folds, calibration, outliers
 
 
-def _not_held(found: LeftOut) -> list[str]:
+def _not_held(found: LeftOut) -> list[Message]:
     low, high = HELD
     if not np.isfinite(found.inside) or low <= round(found.inside, 2) <= high:
         return []
     return [
-        said(
+        message(
+            "prediction.points-left-lie-inside",
             "{share:.0%} of the points left out by {scheme} lie inside the 90 % band ({raw:.0%} before it was held to "
             "the places between the data)",
             share=found.inside,
-            scheme=said(found.scheme),
+            scheme=found.scheme,
             raw=found.inside_raw,
         )
     ]
 
 
-def _nothing(note: str) -> OffData:
+def _nothing(note: Message) -> OffData:
     return OffData((), None, (), (), (note,))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from geofit.data.errors import GeofitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.prediction import LeftOut, OffData
 from geofit.data.progress import Progress, tell
 from geofit.fitting.horizon_fit import HorizonFit
@@ -29,10 +29,21 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
     groups.sort(key=lambda group: float(np.median(chart.plane[group, 0])))
     error = np.full(len(points), np.nan)
     label = np.zeros(len(points), dtype=chart.section.dtype)
-    notes = [said("a folded surface has no standard deviation: leaving out its sections is all that can be said")]
+    notes = [
+        message(
+            "prediction.folded-surface-no-standard",
+            "a folded surface has no standard deviation: leaving out its sections is all that can be said",
+        )
+    ]
     inner = groups[1:-1]
     if len(inner) > MOST_SECTIONS:
-        notes.append(said("{count} sections are too many to leave out by new fits", count=len(inner)))
+        notes.append(
+            message(
+                "prediction.sections-too-many-leave",
+                "{count} sections are too many to leave out by new fits",
+                count=len(inner),
+            )
+        )
         inner = []
     failed = 0
     for k, group in enumerate(inner):
@@ -47,11 +58,22 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
         label[group] = chart.section[group]
     tell(progress, "done", 1.0)
     if failed:
-        notes.append(said("without {failed} of the sections no surface can be laid", failed=failed))
+        notes.append(
+            message(
+                "prediction.without-sections-no-surface",
+                "without {failed} of the sections no surface can be laid",
+                failed=failed,
+            ).with_severity("warning")
+        )
     known = error[np.isfinite(error)]
     if not len(known):
         return OffData((), None, (), (), tuple(notes))
-    notes.append(said("errors are distances from the surface through the other sections; the outermost two stay"))
+    notes.append(
+        message(
+            "prediction.errors-distances-surface-through",
+            "errors are distances from the surface through the other sections; the outermost two stay",
+        )
+    )
     found = LeftOut(
         scheme="section",
         groups=len(np.unique(label[label != ""])),

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from geofit.data.messages import Said, said
+from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
 from geofit.project.provenance import (
     Apart,
@@ -60,7 +60,7 @@ class Command(ABC):
 
     @property
     @abstractmethod
-    def text(self) -> Said:
+    def text(self) -> Message:
         """What the step does, as the Edit menu names it."""
 
     @abstractmethod
@@ -76,7 +76,11 @@ class Command(ABC):
     def undo(self, document: Document) -> None:
         """Take it back."""
         if self._before is None:
-            raise DocumentError(said("'{step}' was not done yet and cannot be undone.", step=self.text))
+            raise DocumentError(
+                message(
+                    "project.not-done-yet-cannot", "'{step}' was not done yet and cannot be undone.", step=self.text
+                )
+            )
         document.become(self._before)
 
     def to_data(self) -> dict[str, Any]:
@@ -99,8 +103,8 @@ class SetSettings(Command):
     settings: FitSettings
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Settings of {name}", name=self.horizon)
+    def text(self) -> Message:  # noqa: D102
+        return message("step.settings", "Settings of {name}", name=self.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
         _known(state, self.horizon)
@@ -120,8 +124,8 @@ class SetCore(Command):
     core: Core
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Core of {name}", name=self.horizon)
+    def text(self) -> Message:  # noqa: D102
+        return message("step.core", "Core of {name}", name=self.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
         _known(state, self.horizon)
@@ -158,14 +162,21 @@ class ExcludeRow(_RowCommand):
     kind = "exclude"
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Exclude {file} row {row} from {name}", file=self.row.file, row=self.row.row, name=self.horizon)
+    def text(self) -> Message:  # noqa: D102
+        return message(
+            "step.exclude",
+            "Exclude {file} row {row} from {name}",
+            file=self.row.file,
+            row=self.row.row,
+            name=self.horizon,
+        )
 
     def on(self, state: State) -> State:  # noqa: D102
         rows = self._excluded(state)
         if self.row in rows:
             raise DocumentError(
-                said(
+                message(
+                    "project.row-excluded-already",
                     "{file} row {row} is excluded from '{name}' already.",
                     file=self.row.file,
                     row=self.row.row,
@@ -182,14 +193,21 @@ class IncludeRow(_RowCommand):
     kind = "include"
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Include {file} row {row} in {name}", file=self.row.file, row=self.row.row, name=self.horizon)
+    def text(self) -> Message:  # noqa: D102
+        return message(
+            "step.include",
+            "Include {file} row {row} in {name}",
+            file=self.row.file,
+            row=self.row.row,
+            name=self.horizon,
+        )
 
     def on(self, state: State) -> State:  # noqa: D102
         rows = self._excluded(state)
         if self.row not in rows:
             raise DocumentError(
-                said(
+                message(
+                    "project.row-not-excluded",
                     "{file} row {row} is not excluded from '{name}'.",
                     file=self.row.file,
                     row=self.row.row,
@@ -207,8 +225,8 @@ class SetSurface(Command):
     recipe: Recipe
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Fit {name}", name=self.recipe.horizon)
+    def text(self) -> Message:  # noqa: D102
+        return message("step.fit", "Fit {name}", name=self.recipe.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
         _known(state, self.recipe.horizon)
@@ -228,9 +246,9 @@ class PartAtFaults(Command):
     blocks: dict[str, Part]
 
     @property
-    def text(self) -> Said:  # noqa: D102
+    def text(self) -> Message:  # noqa: D102
         faults = dict.fromkeys(fault.horizon for part in self.blocks.values() for fault in part.faults)
-        return said("Part {name} at {faults}", name=self.horizon, faults=", ".join(faults))
+        return message("step.part", "Part {name} at {faults}", name=self.horizon, faults=", ".join(faults))
 
     def on(self, state: State) -> State:  # noqa: D102
         former = [name for name, part in state.parts.items() if part.horizon == self.horizon] or [self.horizon]
@@ -238,7 +256,8 @@ class PartAtFaults(Command):
         taken = [name for name in self.blocks if name in state.order and name not in former]
         if taken:
             raise DocumentError(
-                said(
+                message(
+                    "site.block-called-horizon-rename",
                     "A block of '{name}' is called '{block}', and so is a horizon. Rename the horizon.",
                     name=self.horizon,
                     block=taken[0],
@@ -276,7 +295,13 @@ class _HandCommand(Command):
     def on(self, state: State) -> State:
         recipe = state.recipes.get(self.horizon)
         if recipe is None:
-            raise DocumentError(said("'{name}' has no surface to adjust. Fit it first.", name=self.horizon))
+            raise DocumentError(
+                message(
+                    "project.no-surface-adjust-fit",
+                    "'{name}' has no surface to adjust. Fit it first.",
+                    name=self.horizon,
+                )
+            )
         changed = replace(recipe, edits=(*recipe.edits, self.edit))
         return replace(state, recipes={**state.recipes, self.horizon: changed})
 
@@ -292,9 +317,9 @@ class AdjustControlPoint(_HandCommand):
     dz: float
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said(
-            "Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})",
+    def text(self) -> Message:  # noqa: D102
+        return message(
+            "step.move-control-point", "Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})",
             i=self.i, j=self.j, patch=self.patch, dz=self.dz, name=self.horizon,
         )  # fmt: skip
 
@@ -314,9 +339,9 @@ class ChangeWeight(_HandCommand):
     weight: float
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said(
-            "Weight {weight:g} for control point {i}, {j} of {patch} ({name})",
+    def text(self) -> Message:  # noqa: D102
+        return message(
+            "step.weight", "Weight {weight:g} for control point {i}, {j} of {patch} ({name})",
             weight=self.weight, i=self.i, j=self.j, patch=self.patch, name=self.horizon,
         )  # fmt: skip
 
@@ -334,8 +359,8 @@ class PullToPoint(_HandCommand):
     share: float
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Pull {name} to point {number}", name=self.horizon, number=self.index + 1)
+    def text(self) -> Message:  # noqa: D102
+        return message("step.pull", "Pull {name} to point {number}", name=self.horizon, number=self.index + 1)
 
     @property
     def edit(self) -> HandEdit:  # noqa: D102
@@ -352,14 +377,20 @@ class PushApart(Command):
     minimum: float
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Push apart {names}", names=", ".join(self.moved))
+    def text(self) -> Message:  # noqa: D102
+        return message("step.separate", "Push apart {names}", names=", ".join(self.moved))
 
     def recipes(self, state: State) -> dict[str, Recipe]:
         """Return the new recipes of the horizons that move."""
         missing = [name for name in self.sequence if name not in state.recipes]
         if missing:
-            raise DocumentError(said("'{name}' has no surface that could be moved. Fit it first.", name=missing[0]))
+            raise DocumentError(
+                message(
+                    "project.no-surface-moved-fit",
+                    "'{name}' has no surface that could be moved. Fit it first.",
+                    name=missing[0],
+                )
+            )
         return {
             name: replace(former, edits=(*former.edits, Apart(self.sequence, self.minimum, others)))
             for name in self.moved
@@ -383,12 +414,18 @@ class SetOrder(Command):
     order: tuple[str, ...]
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Order of the horizons")
+    def text(self) -> Message:  # noqa: D102
+        return message("step.order", "Order of the horizons")
 
     def on(self, state: State) -> State:  # noqa: D102
         if sorted(self.order) != sorted(state.order):
-            raise DocumentError(said("The order must name each horizon once: {names}.", names=", ".join(state.order)))
+            raise DocumentError(
+                message(
+                    "project.order-name-horizon-once",
+                    "The order must name each horizon once: {names}.",
+                    names=", ".join(state.order),
+                )
+            )
         return replace(state, order=self.order)
 
     @classmethod
@@ -404,12 +441,12 @@ class RenameSite(Command):
     name: str
 
     @property
-    def text(self) -> Said:  # noqa: D102
-        return said("Rename the site to {name}", name=self.name)
+    def text(self) -> Message:  # noqa: D102
+        return message("step.rename", "Rename the site to {name}", name=self.name)
 
     def on(self, state: State) -> State:  # noqa: D102
         if not self.name.strip():
-            raise DocumentError("The site's name is empty. Give it a word.")
+            raise DocumentError(message("project.site-name-empty-give", "The site's name is empty. Give it a word."))
         return replace(state, name=self.name)
 
 
@@ -430,8 +467,15 @@ def command_from(data: Mapping[str, Any]) -> Command:
 
 def _known(state: State, horizon: str) -> None:
     if horizon not in state.order:
-        names = ", ".join(state.order) or said("none")
-        raise DocumentError(said("The site has no horizon '{name}'. It has {names}.", name=horizon, names=names))
+        names = ", ".join(state.order) or message("site.none", "none")
+        raise DocumentError(
+            message(
+                "project.site-no-horizon",
+                "The site has no horizon '{name}'. It has {names}.",
+                name=horizon,
+                names=names,
+            )
+        )
 
 
 def _without(values: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.prediction import OffData
 from geofit.data.settings import FitSettings
@@ -279,8 +279,15 @@ class Document:
     def _given(self, name: str) -> PointSet:
         horizons = self._site.horizons
         if name not in horizons:
-            names = ", ".join(horizons) or said("none")
-            raise DocumentError(said("The site has no horizon '{name}'. It has {names}.", name=name, names=names))
+            names = ", ".join(horizons) or message("site.none", "none")
+            raise DocumentError(
+                message(
+                    "project.site-no-horizon",
+                    "The site has no horizon '{name}'. It has {names}.",
+                    name=name,
+                    names=names,
+                )
+            )
         return horizons[name]
 
     def _give(self, horizons: Mapping[str, PointSet], faults: Iterable[Recipe]) -> Given:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import listed, said
+from geofit.data.messages import Message, message
 from geofit.data.progress import Progress
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
@@ -31,7 +31,7 @@ class Parted:
     horizon: str
     blocks: Mapping[str, Part]
     faults: Mapping[Recipe, HorizonFit]
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,9 @@ def part_at_faults(
     notes = list(found.notes)
     homeless = [points.describe(int(i)) for i in out if block[i] < 0]
     if homeless:
-        notes.append(said("excluded, and in no block: {points}", points=listed(homeless)))
+        notes.append(
+            message("project.excluded-no-block", "excluded, and in no block: {points}", points=tuple(homeless))
+        )
     corners = tuple((float(x), float(y)) for x, y in list(area.exterior.coords)[:-1])
     blocks = {
         name: Part(

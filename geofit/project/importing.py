@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -11,7 +11,8 @@ import numpy as np
 
 from geofit.data.errors import InputError
 from geofit.data.files import legible, replacing
-from geofit.data.messages import Verbatim, listed, said
+from geofit.data.languages import EN, Language, translate
+from geofit.data.messages import Message, Verbatim, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, ImportIssue, Site, TableCount
 from geofit.io.boreholes import load_boreholes
@@ -22,13 +23,14 @@ from geofit.io.guess import taken_as
 from geofit.io.import_plan import Part, Plan, campaigns, look_at, settle
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
-from geofit.io.site_file import load_site
+from geofit.io.site_file import build_site
+from geofit.io.source import Source
 from geofit.io.toml_text import toml_value
-from geofit.report.language import EN, Language
-from geofit.report.language import tell as in_words
 
 __all__ = ["Import", "import_files"]
 
+#: The tables of a site file in order: each with its head, "[site]" or "[[picks]]".
+Tables = list[tuple[str, dict[str, Any]]]
 #: Fewer contacts make no surface: the code gets no [[horizon]] unless it is asked for.
 FEWEST_CONTACTS = 3
 
@@ -95,11 +97,17 @@ def import_files(
     """
     site_file = Path(site_file)
     if not files:
-        raise InputError("No file is given", "Name the tables, drawings, maps and grids of the site.")
+        raise InputError(
+            message("import.no-file-given", "No file is given"),
+            message("import.name-tables-drawings-maps", "Name the tables, drawings, maps and grids of the site."),
+        )
     if legible(site_file.name) != site_file.name:
         raise InputError(
-            "The name of the site file is not UTF-8, and its mapping file cannot name it",
-            "Choose another name.",
+            message(
+                "import.site-file-name-not-utf8",
+                "The name of the site file is not UTF-8, and its mapping file cannot name it",
+            ),
+            message("import.choose-another-name", "Choose another name."),
             file=legible(str(site_file)),
         )
     folder = site_file.parent
@@ -112,14 +120,18 @@ def import_files(
     while True:
         settle(plan)
         horizons = _horizons(plan, site_file, mapping_file, crs, base, top, language)
-        _write(plan, site_file, mapping_file, crs, horizons)
+        tables = _tables(plan, site_file, mapping_file, crs, horizons)
         tell(progress, "read the site", 0.6)
         try:
-            site = load_site(site_file)
+            site = _read(tables, plan, site_file)
             break
         except InputError as error:
             if not plan.drop(error):
                 raise
+    _write(tables, plan, site_file, mapping_file)
+    written = Journal()
+    written.read(Source(path=site_file))
+    site = replace(site, inputs={**written.inputs, **site.inputs})
     issues = (*site.issues, *plan.issues, *_guesses(plan))
     counts = (*site.counts, *plan.counts)
     issue_file = site_file.with_name(f"{site_file.stem}_issues.csv")
@@ -135,18 +147,34 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
     notes = []
     for part in (part for parts in plan.parts.values() for part in parts):
         preview, name = part.preview, part.source.name
-        others = listed(
-            said("{kind} {merit:.2f}", kind=kind, merit=merit) for kind, merit in list(preview.kinds.items())[1:4]
+        others = tuple(
+            message("import.kind-merit", "{kind} {merit:.2f}", kind=kind, merit=merit)
+            for kind, merit in list(preview.kinds.items())[1:4]
         )
-        reason = said("Taken as {kind}, confidence {confidence:.2f}", kind=preview.kind, confidence=preview.confidence)
+        reason = message(
+            "import.taken-confidence",
+            "Taken as {kind}, confidence {confidence:.2f}",
+            kind=preview.kind,
+            confidence=preview.confidence,
+        )
         if others:
-            reason = said("{text}; else {others}", text=reason, others=others)
-        notes.append(ImportIssue(name, 0, "", "", "note", reason, said("State another kind in the mapping file.")))
+            reason = message("import.table-alternatives", "{text}; else {others}", text=reason, others=others)
+        notes.append(
+            ImportIssue(
+                name,
+                0,
+                "",
+                "",
+                "note",
+                reason,
+                message("import.state-kind-mapping-file", "State another kind in the mapping file."),
+            )
+        )
         for guess in preview.roles:
             if guess.stated:
                 continue
-            remedy = said("Name another column in the mapping file.")
-            severity: Literal["note", "warning"] = "warning" if guess.reason.startswith("by its values") else "note"
+            remedy = message("import.name-column-mapping-file", "Name another column in the mapping file.")
+            severity: Literal["note", "warning"] = "warning" if guess.basis == "values" else "note"
             notes.append(ImportIssue(name, 0, guess.column, "", severity, taken_as(guess), remedy))
     return notes
 
@@ -165,16 +193,16 @@ def _horizons(
     if not limits:
         return []
     # Beside a [[horizon]] only listed names are read, so those of the other files are asked for first.
-    _write(plan, site_file, mapping_file, crs, [], boreholes=False)
+    tables = _tables(plan, site_file, mapping_file, crs, [], boreholes=False)
     try:
-        others = list(load_site(site_file).horizons)
+        others = list(_read(tables, plan, site_file).horizons)
     except InputError:
         others = []  # the file at fault is dropped when the whole site is read
     named = {name.casefold() for name in others}
     for table in limits:
         # In the language that was asked for, unless another file uses the English name.
-        if table["name"].casefold() not in named:
-            table["name"] = in_words(table["name"], language)
+        english = str(table["name"])
+        table["name"] = english if english.casefold() in named else translate(table["name"], language)
     limited = {table["name"].casefold() for table in limits}
     return limits + [{"name": name} for name in others if name.casefold() not in limited]
 
@@ -222,13 +250,17 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
             "",
             "",
             "note",
-            said(
+            message(
+                "import.base-codes-fewer-contacts",
                 "The base of {count} codes has fewer than {least} contacts and makes no horizon: {names}",
                 count=len(few),
                 least=FEWEST_CONTACTS,
                 names=names,
             ),
-            "Add a [[horizon]] to the site file where one is wanted (--base, --top).",
+            message(
+                "import.add-horizon-site-file",
+                "Add a [[horizon]] to the site file where one is wanted (--base, --top).",
+            ),
         )
         if issue not in plan.issues:
             plan.issues.append(issue)
@@ -236,13 +268,13 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
     return [{"name": _name("base", code), "base": code} for code in ordered]
 
 
-def _name(limit: str, code: str) -> str:
+def _name(limit: str, code: str) -> Message:
     if limit == "top":
-        return said("top of {code}", code=Verbatim(code))
-    return said("base of {code}", code=Verbatim(code))
+        return message("import.top-of-stratum", "top of {code}", code=Verbatim(code))
+    return message("import.base-of-stratum", "base of {code}", code=Verbatim(code))
 
 
-def _write(
+def _tables(
     plan: Plan,
     site_file: Path,
     mapping_file: Path,
@@ -250,16 +282,9 @@ def _write(
     horizons: Sequence[Mapping[str, Any]],
     *,
     boreholes: bool = True,
-) -> None:
-    """Write the mapping and the site file that refers to it."""
-    parts = [part for parts in plan.parts.values() for part in parts if part.preview.kind in SCHEMAS]
-    remarks = {
-        (i, guess.role): guess.reason + (f", confidence {guess.confidence:.2f}" if not guess.stated else "")
-        for i, part in enumerate(parts)
-        for guess in part.preview.roles
-    }
-    save_mappings([part.mapping for part in parts], mapping_file, remarks)
-    blocks: list[tuple[str, dict[str, Any]]] = [
+) -> Tables:
+    """Return the tables of the site file, each with its head."""
+    blocks: Tables = [
         ("[site]", {"name": site_file.stem, **({"crs": crs} if crs else {}), "mapping": mapping_file.name})
     ]
     for key in ("boundary", "ground"):
@@ -289,8 +314,35 @@ def _write(
     blocks += [("[[grids]]", {**_file(part), "horizon": part.source.path.stem}) for part in plan.of("grid")]
     blocks += [("[[orientations]]", _file(part)) for part in plan.of("orientations")]
     blocks += [("[[horizon]]", dict(table)) for table in horizons]
+    return blocks
+
+
+def _parts(plan: Plan) -> list[Part]:
+    return [part for parts in plan.parts.values() for part in parts if part.preview.kind in SCHEMAS]
+
+
+def _read(tables: Tables, plan: Plan, site_file: Path) -> Site:
+    """Read the site that the tables describe, before anything is written."""
+    top: dict[str, Any] = {}
+    for head, table in tables:
+        if head.startswith("[["):
+            top.setdefault(head.strip("[]"), []).append(table)
+        else:
+            top[head.strip("[]")] = table
+    return build_site(top, site_file, Journal(), mappings=[part.mapping for part in _parts(plan)])
+
+
+def _write(tables: Tables, plan: Plan, site_file: Path, mapping_file: Path) -> None:
+    """Write the mapping and the site file that refers to it."""
+    parts = _parts(plan)
+    remarks = {
+        (i, guess.role): str(guess.reason) + (f", confidence {guess.confidence:.2f}" if not guess.stated else "")
+        for i, part in enumerate(parts)
+        for guess in part.preview.roles
+    }
+    save_mappings([part.mapping for part in parts], mapping_file, remarks)
     lines = []
-    for head, table in blocks:
+    for head, table in tables:
         lines += [head, *(f"{key} = {toml_value(value)}" for key, value in table.items()), ""]
     with replacing(site_file) as written:
         written.write_text("\n".join(lines), encoding="utf-8")

@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from geofit.data.languages import language
+from geofit.data.messages import Message
 from geofit.data.prediction import OffData
 from geofit.data.progress import Progress, tell
 from geofit.project.fault_blocks import Blocks, site_fit
 from geofit.project.run import Form, write_reports
-from geofit.report.language import language
 from geofit.report.result import HorizonResult
 
 __all__ = ["ReportFiles", "write_report_files"]
@@ -25,7 +26,7 @@ class ReportFiles:
     """
 
     files: Mapping[Form, Path]
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
     offdata: Mapping[str, OffData]
 
 

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Literal
 from geofit.data.errors import InputError
 from geofit.data.files import file_stems, replacing
 from geofit.data.guard import guarded
-from geofit.data.messages import said
+from geofit.data.languages import EN, Language
+from geofit.data.messages import EMPTY, Message, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
-from geofit.report.language import EN, Language
 from geofit.report.result import HorizonResult
 
 if TYPE_CHECKING:
@@ -46,8 +46,8 @@ class Delivery:
 
     out: Path
     results: tuple[HorizonResult, ...]
-    failures: Mapping[str, str]
-    warnings: tuple[str, ...]
+    failures: Mapping[str, Message]
+    warnings: tuple[Message, ...]
     orders: tuple[Order, ...] = ()
     cuts: tuple[FaultCut, ...] = ()
     contradictions: tuple[Contradiction, ...] = ()
@@ -131,7 +131,7 @@ def deliver(
         share = (1.0 - FITS) / len(fits.surfaces)
         part = _within(progress, FITS + i * share, FITS + (i + 1) * share, name)
 
-        def failed(reason: str, name: str = name) -> None:
+        def failed(reason: Message, name: str = name) -> None:
             failures[name] = reason
 
         stem, seconds = out / stems[name], fits.seconds[name]
@@ -163,7 +163,7 @@ class Reports:
     """What was written of a report, by form, what is to be told about it, and what it was made from."""
 
     files: Mapping[Form, Path]
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
     results: tuple[HorizonResult, ...]
 
 
@@ -244,7 +244,7 @@ def write_reports(
         fits = SiteFit(surfaces, {name: name for name in surfaces})
     orders, unordered = _orders(made[0].site, fits)
     report = accuracy_report(made, orders, cuts=fits.cuts, date=date)
-    whole, font = draw_site(made, language) if pictured else Pictures({}, None, ""), _font_warning(made)
+    whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
     tell(progress, "report", 0.95)
     _write_report(report, whole, images, out, language, font, forms)
     files = {form: out / f"report.{form}" for form in forms}
@@ -254,9 +254,11 @@ def write_reports(
 def _within(progress: Progress | None, low: float, high: float, name: str = "") -> Progress:
     """Return a listener for a part that takes the whole run from one share to another."""
 
-    def listen(stage: str, fraction: float, /) -> None:
+    def listen(stage: str | Message, fraction: float, /) -> None:
         tell(
-            progress, said("{name}: {stage}", name=name, stage=stage) if name else stage, low + (high - low) * fraction
+            progress,
+            message("run.stage-of", "{name}: {stage}", name=name, stage=stage) if name else stage,
+            low + (high - low) * fraction,
         )
 
     return listen
@@ -268,7 +270,7 @@ class _Made:
 
     result: HorizonResult
     images: Mapping[str, bytes]
-    warnings: tuple[str, ...]
+    warnings: tuple[Message, ...]
 
 
 def _written(
@@ -310,19 +312,30 @@ def _storage(surface: HorizonFit) -> tuple[Storage | None, tuple[str, ...]]:
         lambda: equal_accuracy(surface, surface.settings.interior_tolerance),
         None,
         lambda reason: missing.append(
-            said("{name}: its storage was not compared: {reason}", name=surface.name, reason=reason)
+            message(
+                "run.storage-not-compared",
+                "{name}: its storage was not compared: {reason}",
+                name=surface.name,
+                reason=reason,
+            )
         ),
     )
     return found, tuple(missing)
 
 
-def _write_bands(surface: HorizonFit, offdata: OffData, stem: Path) -> tuple[str, ...]:
+def _write_bands(surface: HorizonFit, offdata: OffData, stem: Path) -> tuple[Message, ...]:
     """Write the surfaces between which the rock lies with 90 %; return why there are none."""
     from geofit.cad.step import write_step
     from geofit.prediction.bands import band
 
     if offdata.uncertainty is None:
-        return (said("{name}: no 90 % surfaces, its standard deviation is not known", name=surface.name),)
+        return (
+            message(
+                "run.no-90-surfaces-standard",
+                "{name}: no 90 % surfaces, its standard deviation is not known",
+                name=surface.name,
+            ),
+        )
     for side, one in zip(("upper", "lower"), band(surface, offdata), strict=True):
         write_step({one.name: one}, stem.with_name(f"{stem.name}_{side}90.step"))
     return ()
@@ -341,19 +354,25 @@ class _Clock:
         self._since = now
 
 
-def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, str]:
+def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Message]:
     """Compare the horizons of the site's order that were fitted; None and the reason where that is not possible."""
     from geofit.site.fit_site import compare
 
     if site.order and len([name for name in site.order if name in fits.horizon.values()]) < 2:
-        return None, ""
-    missing: list[str] = []
+        return None, EMPTY
+    missing: list[Message] = []
     compared = guarded(
         lambda: compare(site, fits),
         None,
-        lambda reason: missing.append(said("The order of the horizons was not examined: {reason}", reason=reason)),
+        lambda reason: missing.append(
+            message(
+                "run.order-horizons-not-examined",
+                "The order of the horizons was not examined: {reason}",
+                reason=reason,
+            )
+        ),
     )
-    return compared, missing[0] if missing else ""
+    return compared, missing[0] if missing else EMPTY
 
 
 def _write_report(
@@ -362,7 +381,7 @@ def _write_report(
     images: Mapping[str, bytes],
     out: Path,
     language: Language,
-    warning: str,
+    warning: Message,
     forms: Sequence[Form],
 ) -> None:
     """Write the report in its forms; ``whole`` shows the site, ``images`` its horizons."""
@@ -387,19 +406,19 @@ def _write_issues(site: Site, out: Path, language: Language) -> None:
     write_issues(site.issues, out / "import_issues.csv", language)
 
 
-def _font_warning(results: Sequence[HorizonResult]) -> str:
+def _font_warning(results: Sequence[HorizonResult]) -> Message:
     from geofit.report.fonts import missing_font
 
     kinds = {str(kind) for result in results for kind in set(result.surface.points.kind.tolist())}
-    return missing_font([results[0].site.name, *(result.name for result in results), *kinds]) or ""
+    return missing_font([results[0].site.name, *(result.name for result in results), *kinds]) or EMPTY
 
 
 def _chosen(site: Site, horizons: Sequence[str]) -> list[str]:
     unknown = [name for name in horizons if name not in site.horizons]
     if unknown:
         raise InputError(
-            said("There is no horizon '{name}'", name=unknown[0]),
-            said("The horizons are: {names}.", names=", ".join(site.horizons)),
+            message("run.no-horizon", "There is no horizon '{name}'", name=unknown[0]),
+            message("run.known-horizons", "The horizons are: {names}.", names=", ".join(site.horizons)),
             file=site.name,
         )
     return [name for name in site.horizons if not horizons or name in horizons]
@@ -410,7 +429,7 @@ def _make(out: Path) -> None:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            said("The folder cannot be made: {error}", error=error.strerror or str(error)),
-            "Name another one with --out.",
+            message("run.folder-cannot", "The folder cannot be made: {error}", error=error.strerror or str(error)),
+            message("run.name-other-folder", "Name another one with --out."),
             file=str(out),
         ) from None

@@ -11,6 +11,7 @@ import numpy as np
 
 from geofit.checks.check import check
 from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
@@ -49,12 +50,16 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
     project = open_project(path)
     source = next((source for source in project.sources if source.role == _SITE), None)
     if source is None:
-        raise InputError("The project names no site file", "Open the site file (site.toml) instead.", file=str(path))
+        raise InputError(
+            message("project.project-names-no-site", "The project names no site file"),
+            message("project.open-site-file-site", "Open the site file (site.toml) instead."),
+            file=str(path),
+        )
     site_file = (path.parent / source.path).resolve()
     if not site_file.is_file():
         raise InputError(
-            "The project's site file is not there any more",
-            "Put it back, or open the site file where it is now.",
+            message("project.project-site-file-not", "The project's site file is not there any more"),
+            message("project.put-back-open-site", "Put it back, or open the site file where it is now."),
             file=str(site_file),
         )
     site = read_site(site_file, progress)

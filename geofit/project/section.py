@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.sampling.cut import CutLine, cut_section, section_line
 from geofit.surfaces.protocol import Surface
 
@@ -42,12 +42,13 @@ def section(
     cuts = {name: cut_section(surface, corners, tolerance=tolerance) for name, surface in surfaces.items()}
     if not any(cuts.values()):
         raise InputError(
-            said(
+            message(
+                "export.section-line-meets-no",
                 "The section line from {first} to {last} meets no horizon",
                 first=corners[0].tolist(),
                 last=corners[-1].tolist(),
             ),
-            "Give it in the surfaces' map coordinates, metres.",
+            message("export.give-surfaces-map-coordinates", "Give it in the surfaces' map coordinates, metres."),
         )
     out.mkdir(parents=True, exist_ok=True)
     files = [out / name for name in ("section.dxf", "section_3d.dxf", "section.csv", "section.png")]
@@ -73,8 +74,10 @@ def read_line(text: str) -> Floats:
         return _line_file(Path(text))
     if len(values) < 4 or len(values) % 2 or not all(map(math.isfinite, values)):
         raise InputError(
-            said("Numbers given for the section line: {count}", count=len(values)),
-            "Give x0,y0,x1,y1, metres; further corners add two numbers each.",
+            message(
+                "export.numbers-given-section-line", "Numbers given for the section line: {count}", count=len(values)
+            ),
+            message("export.give-x0-y0-x1", "Give x0,y0,x1,y1, metres; further corners add two numbers each."),
             value=text,
         )
     return np.array(values).reshape(-1, 2)
@@ -87,7 +90,11 @@ def _line_file(path: Path) -> Floats:
     from geofit.io.source import as_source
 
     if not path.is_file():
-        raise InputError("There is no such file", "Give a file with columns x and y, or x0,y0,x1,y1.", file=str(path))
+        raise InputError(
+            message("import.file-missing", "There is no such file"),
+            message("export.give-file-columns-x0", "Give a file with columns x and y, or x0,y0,x1,y1."),
+            file=str(path),
+        )
     journal = Journal()
     rows = read_rows(as_source(path), BOUNDARY, journal)
     corners = np.column_stack(rows.places())

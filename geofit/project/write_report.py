@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import Literal
 
 from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.run import Form, write_reports
-from geofit.report.language import language as language_of
 from geofit.report.result import HorizonResult
 from geofit.site.fit_site import SiteFit
 
@@ -72,7 +72,11 @@ def write_report(
         case _:
             given = list(fits)
     if not given:
-        raise InputError("There is no fit to report", "Give at least one horizon.", file=str(folder))
+        raise InputError(
+            message("run.no-fit", "There is no fit to report"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(folder),
+        )
     place = site or Site(name=", ".join(fit.name for fit in given), horizons={fit.name: fit.points for fit in given})
     written = write_reports(
         [HorizonResult(fit, place) for fit in given],

@@ -7,15 +7,12 @@ part that was not examined at all is None as a whole, and the reader is told so.
 from __future__ import annotations
 
 import json
-import types
-import typing
-from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from geofit.data.accuracy import plain
+from geofit.data.accuracy import Exceedance, plain
 from geofit.data.files import replacing
+from geofit.data.messages import Message
 
 __all__ = [
     "AccuracyReport",
@@ -37,7 +34,6 @@ __all__ = [
     "RejectedRow",
     "SeamLine",
     "SuggestionLine",
-    "from_json",
     "to_json",
     "write_json",
 ]
@@ -84,7 +80,7 @@ class CheckLine:
     value: float | None
     limit: float | None
     unit: str
-    text: str
+    text: Message
     places: tuple[tuple[float, float, float], ...]
 
 
@@ -131,10 +127,10 @@ class FileCheck:
 class ConflictLine:
     """Two points that contradict each other: which stayed, which gave way, by how much (m), and why."""
 
-    kept: str
-    dropped: str
+    kept: Message
+    dropped: Message
     difference: float
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True)
@@ -191,7 +187,7 @@ class OffDataReport:
     sd_max: float | None
     suggestions: tuple[SuggestionLine, ...]
     outliers: tuple[OutlierLine, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 @dataclass(frozen=True)
@@ -210,7 +206,7 @@ class OrderLine:
     crossing_area: float
     crossing_volume: float
     deepest: tuple[float, float] | None
-    text: str
+    text: Message
 
 
 @dataclass(frozen=True)
@@ -225,9 +221,9 @@ class ContradictionLine:
     x: float
     y: float
     lack: float
-    above: str
-    below: str
-    text: str
+    above: Message
+    below: Message
+    text: Message
 
 
 @dataclass(frozen=True)
@@ -257,7 +253,7 @@ class CutLine:
     throw_min: float
     throw_mean: float
     throw_max: float
-    text: str
+    text: Message
     places: tuple[CutPlace, ...]
 
 
@@ -266,7 +262,8 @@ class HorizonReport:
     """Everything said about one horizon; metres.
 
     ``verdict`` is PASS or FAIL by sigma against epsilon alone; ``sound`` tells whether every check holds too.
-    ``over`` counts points beyond each tolerance. ``pictures`` names those that belong here, by what they show.
+    ``over`` counts points beyond tolerances, by the name of the setting. ``pictures`` names those that
+    belong here, by what they show.
     """
 
     name: str
@@ -285,9 +282,9 @@ class HorizonReport:
     periphery_max_abs: float | None
     within_interior: float | None
     tolerances: tuple[float, float, float]
-    over: tuple[tuple[str, int], ...]
-    reason: str
-    notes: tuple[str, ...]
+    over: tuple[tuple[str, Exceedance], ...]
+    reason: Message
+    notes: tuple[Message, ...]
     groups: tuple[GroupLine, ...]
     worst: tuple[PointLine, ...]
     seams: tuple[SeamLine, ...]
@@ -334,8 +331,8 @@ class RejectedRow:
     row: int
     column: str
     value: str
-    reason: str
-    remedy: str
+    reason: Message
+    remedy: Message
 
 
 @dataclass(frozen=True)
@@ -353,7 +350,7 @@ class AccuracyReport:
     crs: str
     date: str
     horizons: tuple[HorizonReport, ...]
-    failures: Words
+    failures: tuple[tuple[str, Message], ...]
     orders: tuple[OrderLine, ...] | None
     contradictions: tuple[ContradictionLine, ...]
     cuts: tuple[CutLine, ...]
@@ -369,27 +366,7 @@ def to_json(report: AccuracyReport) -> str:
     return json.dumps(plain(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
 
 
-def from_json(text: str) -> AccuracyReport:
-    """Return the report that :func:`to_json` wrote; texts that could be told in Chinese come back in English."""
-    report: AccuracyReport = _restored(AccuracyReport, json.loads(text))
-    return report
-
-
 def write_json(report: AccuracyReport, path: Path) -> None:
     """Write the report as JSON (UTF-8)."""
     with replacing(path) as part:
         part.write_text(to_json(report), encoding="utf-8")
-
-
-def _restored(kind: Any, value: Any) -> Any:
-    """Turn what JSON holds back into a type: dataclasses, tuples of one or of several types, and None."""
-    origin, inner = typing.get_origin(kind), typing.get_args(kind)
-    if origin in (types.UnionType, typing.Union):
-        return None if value is None else _restored(next(k for k in inner if k is not type(None)), value)
-    if origin is tuple:
-        kinds = [inner[0]] * len(value) if inner[-1] is Ellipsis else inner
-        return tuple(_restored(k, v) for k, v in zip(kinds, value, strict=True))
-    if isinstance(kind, type) and is_dataclass(kind):
-        hints: Mapping[str, Any] = typing.get_type_hints(kind)
-        return kind(**{f.name: _restored(hints[f.name], value[f.name]) for f in fields(kind)})
-    return float(value) if kind is float else value

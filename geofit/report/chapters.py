@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from geofit.data.languages import Language, sentence, translate
+from geofit.data.messages import Message
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport
 from geofit.report.document import (
@@ -19,7 +21,6 @@ from geofit.report.document import (
     Verdict,
 )
 from geofit.report.horizon_chapter import horizon_chapter
-from geofit.report.language import Language, sentence, tell
 from geofit.report.structure_blocks import structure_blocks
 
 __all__ = ["document"]
@@ -28,7 +29,9 @@ __all__ = ["document"]
 LONGEST = 40
 
 
-def document(report: AccuracyReport, t: Language, *, missing_picture: str = "", warning: str = "") -> Document:
+def document(
+    report: AccuracyReport, t: Language, *, missing_picture: Message | None = None, warning: Message | None = None
+) -> Document:
     """Lay an accuracy report out as chapters.
 
     Parameters
@@ -37,7 +40,7 @@ def document(report: AccuracyReport, t: Language, *, missing_picture: str = "", 
         What to say.
     t : Language
         In which language.
-    missing_picture : str
+    missing_picture : Message or None
         Why there are no pictures in space; empty if there are.
     warning : str
         Something the reader must know about the report itself, a missing font for one.
@@ -57,13 +60,13 @@ def document(report: AccuracyReport, t: Language, *, missing_picture: str = "", 
     )
 
 
-def _cover(report: AccuracyReport, t: Language, missing_picture: str, warning: str) -> Chapter:
+def _cover(report: AccuracyReport, t: Language, missing_picture: Message | None, warning: Message | None) -> Chapter:
     blocks: list[Block] = []
     facts = [t("Coordinate system: {crs}", crs=report.crs or t("not stated")), t("Date: {date}", date=report.date)]
     facts.append("geofit " + dict(report.versions)["geofit"])
     blocks.append(Paragraph(" · ".join(facts), "quiet"))
     if warning:
-        blocks.append(Paragraph(tell(warning, t), "warning"))
+        blocks.append(Paragraph(translate(warning, t), "warning"))
     blocks.append(Heading(t("Verdict")))
     columns = (
         Column(t("Horizon")),
@@ -89,7 +92,7 @@ def _cover(report: AccuracyReport, t: Language, missing_picture: str, warning: s
     for name, reason in report.failures:
         blocks.append(Paragraph(t("{name} could not be fitted: {reason}", name=name, reason=reason), "warning"))
     if missing_picture:
-        blocks.append(Paragraph(tell(missing_picture, t), "warning"))
+        blocks.append(Paragraph(translate(missing_picture, t), "warning"))
     else:
         blocks.append(Picture(report.picture, t("All horizons and holes.")))
     blocks.append(Heading(t("Signatures")))
@@ -110,7 +113,7 @@ def verdict_word(horizon: HorizonReport, t: Language) -> str:
 def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
     failed = [check for check in horizon.all_checks if check.passed is False]
     if failed:
-        names = ", ".join(dict.fromkeys(tell(check.name, t) for check in failed))
+        names = ", ".join(dict.fromkeys(translate(check.name, t) for check in failed))
         checks = Mark(False, t("{count} failed: {names}", count=len(failed), names=names))
     else:
         held = sum(check.passed is True for check in horizon.all_checks)
@@ -166,7 +169,7 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
                 str(r.row) if r.row else "–",
                 r.column or "–",
                 r.value or "–",
-                f"{sentence(r.reason, t)} {tell(r.remedy, t)}".strip(),
+                f"{sentence(r.reason, t)} {translate(r.remedy, t)}".strip(),
             )
             for r in report.rejected[:LONGEST]
         )

@@ -10,7 +10,7 @@ from functools import lru_cache
 from typing import Any
 
 from geofit.data.errors import MissingDependencyError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 __all__ = ["NO_CHINESE_FONT", "FontFile", "PdfFonts", "families", "missing_font", "pdf_fonts"]
 
@@ -21,12 +21,15 @@ CHINESE = (
     "Hiragino Sans GB", "Heiti SC", "STHeiti", "Noto Sans CJK JP", "WenQuanYi Micro Hei", "WenQuanYi Zen Hei",
     "SimHei", "SimSun", "Droid Sans Fallback", "Arial Unicode MS", "Noto Serif CJK SC", "AR PL UMing CN",
 )  # fmt: skip
-_INSTALL = said(
+_INSTALL = message(
+    "report.install-debian-ubuntu-apt",
     "Install one (Debian and Ubuntu: apt-get install fonts-noto-cjk; Windows has Microsoft YaHei among its optional "
-    "features) and run again."
+    "features) and run again.",
 )
-NO_CHINESE_FONT = said(
-    "A Chinese report needs a font with Chinese characters, and this machine has none. {install}", install=_INSTALL
+NO_CHINESE_FONT = message(
+    "report.chinese-report-needs-font",
+    "A Chinese report needs a font with Chinese characters, and this machine has none. {install}",
+    install=_INSTALL,
 )
 
 
@@ -55,12 +58,13 @@ def families() -> list[str]:
     return ["DejaVu Sans", *([chinese] if chinese else [])]
 
 
-def missing_font(texts: Iterable[str]) -> str | None:
+def missing_font(texts: Iterable[str]) -> Message | None:
     """Say what to install if a text has Chinese characters and no font has them; None if all is well."""
     wide = next((t for t in texts if any(unicodedata.east_asian_width(c) in "WF" for c in t)), None)
     if wide is None or _chinese() is not None:
         return None
-    return said(
+    return message(
+        "report.no-font-machine-characters",
         "No font on this machine has the characters of '{text}': pictures and PDF show boxes in their place. {install} "
         "Tables and text of the HTML and the JSON are complete.",
         text=wide,

@@ -15,6 +15,7 @@ import numpy as np
 
 import geofit
 from geofit.data.accuracy import Check, Seam
+from geofit.data.messages import EMPTY, Message
 from geofit.data.prediction import LeftOut, OffData
 from geofit.data.site import Site
 from geofit.report.accuracy_report import (
@@ -73,7 +74,7 @@ def accuracy_report(
     *,
     cuts: Sequence[FaultCut] = (),
     contradictions: Sequence[Contradiction] = (),
-    failures: Mapping[str, str] | None = None,
+    failures: Mapping[str, Message] | None = None,
     date: str = "",
 ) -> AccuracyReport:
     """Gather the report of a site.
@@ -88,7 +89,7 @@ def accuracy_report(
         What faults displace, by :func:`geofit.site.throw.throws`.
     contradictions : sequence of Contradiction
         What :func:`geofit.site.separate.separate_horizons` could not mend.
-    failures : mapping of str to str, optional
+    failures : mapping of str to Message, optional
         Horizons that could not be fitted, and why.
     date : str
         ISO 8601; empty: :func:`today`.
@@ -142,8 +143,8 @@ def _horizon(result: HorizonResult) -> HorizonReport:
         periphery_max_abs=float(out.max()) if len(out) else None,
         within_interior=float((out <= settings.interior_tolerance).mean()) if len(out) else None,
         tolerances=(settings.boundary_tolerance, settings.interior_tolerance, settings.epsilon),
-        over=tuple((str(name), int(n)) for name, n in a.over.items()),
-        reason=surface.partition.reason if surface.partition else "",
+        over=tuple(a.over.items()),
+        reason=surface.partition.reason if surface.partition is not None else EMPTY,
         notes=a.notes,
         groups=tuple(
             GroupLine(by, name, g.n, g.sigma, g.max_abs, g.mean)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geofit.report.language import EN, Language
+from geofit.data.languages import EN, Language
 from geofit.report.result import HorizonResult
 from geofit.report.style import CORE, FAIL, INK, LINE, MUTED, PAPER, quiet
 

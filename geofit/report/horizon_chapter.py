@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import zip_longest
+from typing import Literal
 
-from geofit.data.messages import said
+from geofit.data.languages import Language, gravest_first, sentence, translate
+from geofit.data.messages import Message, message
 from geofit.report import digits
 from geofit.report.accuracy_report import CheckLine, FileCheck, GroupLine, HorizonReport
 from geofit.report.document import (
@@ -21,7 +23,6 @@ from geofit.report.document import (
     Table,
     Verdict,
 )
-from geofit.report.language import Language, sentence, tell
 from geofit.report.off_data_blocks import off_data_blocks
 from geofit.report.point_table import point_cells, point_columns
 
@@ -34,40 +35,40 @@ MOST_PLACES = 3
 #: Longer tables of groups stand in two halves side by side.
 LONGEST_SINGLE = 6
 _GROUPS = {
-    "kind": (said("By kind of source"), said("Kind of source")),
-    "section": (said("By section"), said("Section")),
-    "hole": (said("By hole"), said("Hole")),
-    "patch": (said("By patch"), said("Patch")),
+    "kind": (message("report.by-kind", "By kind of source"), message("report.kind", "Kind of source")),
+    "section": (message("report.by-section", "By section"), message("report.section", "Section")),
+    "hole": (message("report.by-hole", "By hole"), message("report.hole", "Hole")),
+    "patch": (message("report.by-patch", "By patch"), message("report.patch", "Patch")),
 }
 _SETTINGS = {
-    "epsilon": said("Control error ε, m"),
-    "interior_tolerance": said("Interior tolerance, m"),
-    "boundary_tolerance": said("Boundary tolerance, m"),
-    "across": said("Interpolation across the sections"),
-    "seam": said("Seams"),
-    "core": said("Core"),
-    "frame": said("Frame"),
-    "smoothing": said("Smoothing"),
-    "robust": said("Outliers take no part"),
-    "max_iterations": said("Most iterations"),
-    "max_control_points": said("Most control points"),
-    "conflict_distance": said("Conflict distance, m"),
+    "epsilon": message("report.control-error", "Control error ε, m"),
+    "interior_tolerance": message("report.interior-tolerance", "Interior tolerance, m"),
+    "boundary_tolerance": message("report.boundary-tolerance", "Boundary tolerance, m"),
+    "across": message("report.interpolation-across-sections", "Interpolation across the sections"),
+    "seam": message("report.seams", "Seams"),
+    "core": message("report.core", "Core"),
+    "frame": message("report.frame", "Frame"),
+    "smoothing": message("report.smoothing", "Smoothing"),
+    "robust": message("report.outliers-take-no-part", "Outliers take no part"),
+    "max_iterations": message("report.max-iterations", "Most iterations"),
+    "max_control_points": message("report.max-control-points", "Most control points"),
+    "conflict_distance": message("report.conflict-distance", "Conflict distance, m"),
 }
 _FIT = {
-    "control_points": said("Control points"),
-    "energy": said("Bending energy"),
-    "smoothing": said("Smoothing"),
-    "iterations": said("Iterations"),
-    "frame": said("Frame"),
-    "order": said("Derivative in the energy"),
-    "across": said("Interpolation across the sections"),
-    "noise": said("Noise, m"),
-    "spacing": said("Spacing, m"),
-    "rounds": said("Rounds"),
+    "control_points": message("report.control-points", "Control points"),
+    "energy": message("report.bending-energy", "Bending energy"),
+    "smoothing": message("report.smoothing", "Smoothing"),
+    "iterations": message("report.iterations", "Iterations"),
+    "frame": message("report.frame", "Frame"),
+    "order": message("report.derivative-energy", "Derivative in the energy"),
+    "across": message("report.interpolation-across-sections", "Interpolation across the sections"),
+    "noise": message("report.noise", "Noise, m"),
+    "spacing": message("report.spacing", "Spacing, m"),
+    "rounds": message("report.rounds", "Rounds"),
 }
 
 
-def horizon_chapter(h: HorizonReport, t: Language, missing_picture: str = "") -> Chapter:
+def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | None = None) -> Chapter:
     """Lay out everything about one horizon."""
     blocks: list[Block] = [
         Paragraph(_sentence(h, t)),
@@ -114,15 +115,21 @@ def _facts(h: HorizonReport, t: Language) -> Facts:
 
 
 def _notes(h: HorizonReport, t: Language) -> list[Block]:
-    texts = [t("Core: {reason}", reason=h.reason)] if h.reason else []
-    return [Paragraph(sentence(text, t)) for text in (*texts, *h.notes)]
+    core: list[Block] = []
+    if h.reason:
+        core = [Paragraph(sentence(t("Core: {reason}", reason=h.reason), t), _style(h.reason))]
+    return [*core, *(Paragraph(sentence(note, t), _style(note)) for note in gravest_first(h.notes))]
 
 
-def _pictures(h: HorizonReport, t: Language, missing_picture: str) -> list[Block]:
+def _style(note: Message) -> Literal["plain", "warning"]:
+    return "plain" if note.severity == "info" else "warning"
+
+
+def _pictures(h: HorizonReport, t: Language, missing_picture: Message | None) -> list[Block]:
     pictures = dict(h.pictures)
     blocks: list[Block] = [Heading(t("The surface"))]
     if missing_picture:
-        blocks.append(Paragraph(missing_picture, "warning"))
+        blocks.append(Paragraph(translate(missing_picture, t), "warning"))
     else:
         caption = t("Dots: data points. Thick line: edge of the core. Thin lines: contours.")
         blocks.append(Picture(pictures["view"], caption))
@@ -134,7 +141,10 @@ def _pictures(h: HorizonReport, t: Language, missing_picture: str) -> list[Block
 def _deviations(h: HorizonReport, t: Language) -> list[Block]:
     pictures = dict(h.pictures)
     boundary, interior, control = (digits.given(value) for value in h.tolerances)
-    rows = tuple((_bound(name, t), digits.count(n), digits.share(n / max(h.n, 1))) for name, n in h.over)
+    rows = tuple(
+        (_bound(name, over.limit, t), digits.count(over.count), digits.share(over.count / max(h.n, 1)))
+        for name, over in h.over
+    )
     bands = t(
         "Bands end at the tolerances of this fit: boundary {boundary} m, interior {interior} m, control error "
         "{control} m. Triangles point to where the point lies: ▲ above the surface, ▼ below.",
@@ -153,10 +163,11 @@ def _deviations(h: HorizonReport, t: Language) -> list[Block]:
     ]
 
 
-def _bound(name: str, t: Language) -> str:
-    """Return the name of a tolerance, its value and unit behind."""
-    word, *value = name.rsplit(" ", 2)
-    return " ".join([tell(word, t), *value])
+def _bound(name: str, limit: float, t: Language) -> str:
+    """Return a tolerance with its value and unit."""
+    if name == "epsilon":
+        return t("control error ε {value:g} m", value=limit)
+    return t("interior tolerance {value:g} m", value=limit)
 
 
 def _groups(h: HorizonReport, t: Language) -> list[Block]:
@@ -169,14 +180,14 @@ def _groups(h: HorizonReport, t: Language) -> list[Block]:
         if len(rows) > LONGEST_GROUPS:
             shown = sorted(rows, key=lambda group: -group.max_abs)[:LONGEST_GROUPS]
         columns = (
-            Column(tell(word, t)),
+            Column(translate(word, t)),
             Column(t("Points"), "number"),
             Column(t("σ, m"), "number"),
             Column(t("Largest |d|, m"), "number"),
             Column(t("Mean d, m"), "number"),
         )
         table = Table(columns, tuple(_group_row(group, t) for group in shown))
-        blocks += [Heading(tell(title, t), 3), _doubled(table) if len(shown) > LONGEST_SINGLE else table]
+        blocks += [Heading(translate(title, t), 3), _doubled(table) if len(shown) > LONGEST_SINGLE else table]
         if len(rows) > LONGEST_GROUPS:
             text = t(
                 "The {shown} with the largest residuals; {count} more stand in report.json.",
@@ -196,14 +207,14 @@ def _doubled(table: Table) -> Table:
 
 
 def _group_row(group: GroupLine, t: Language) -> tuple[Cell, ...]:
-    name = tell(group.name, t) if group.by in ("kind", "patch") else group.name
+    name = translate(group.name, t) if group.by in ("kind", "patch") else group.name
     figures = (digits.metres(value) for value in (group.sigma, group.max_abs, group.mean))
     return (name, digits.count(group.n), *figures)
 
 
 def _worst(h: HorizonReport, t: Language) -> list[Block]:
     columns = (*point_columns(t), Column(t("Patch")), Column(t("d, m"), "number"))
-    rows = tuple((*point_cells(p, t), tell(p.patch, t), digits.metres(p.residual)) for p in h.worst)
+    rows = tuple((*point_cells(p, t), translate(p.patch, t), digits.metres(p.residual)) for p in h.worst)
     return [Heading(t("The {count} largest residuals", count=len(h.worst)), 3), Table(columns, rows)]
 
 
@@ -226,10 +237,10 @@ def _check_table(checks: Sequence[CheckLine], t: Language) -> Table:
     words = {True: t("holds"), False: t("does not hold"), None: t("not applicable")}
     rows = tuple(
         (
-            tell(c.name, t),
+            translate(c.name, t),
             Mark(c.passed, words[c.passed]),
-            digits.measured(c.value, tell(c.unit, t)),
-            digits.measured(c.limit, tell(c.unit, t)),
+            digits.measured(c.value, translate(c.unit, t)),
+            digits.measured(c.limit, translate(c.unit, t)),
             _detail(c, t),
         )
         for c in checks
@@ -243,7 +254,8 @@ def _detail(check: CheckLine, t: Language) -> str:
     if check.passed is not False or not check.places:
         return text
     places = "; ".join(f"({', '.join(digits.place(value) for value in p)})" for p in check.places[:MOST_PLACES])
-    return f"{text} {t('Worst at {places} m.', places=places)}"
+    worst = t("Worst at {places} m.", places=places)
+    return f"{text} {worst}"
 
 
 def _seam_table(h: HorizonReport, t: Language) -> Table:
@@ -261,7 +273,7 @@ def _seam_table(h: HorizonReport, t: Language) -> Table:
     for a, b in dict.fromkeys([*seams, *(pair for pair in back if pair[::-1] not in seams)]):
         found = (seams.get((a, b)), back.get((a, b)) or back.get((b, a)))
         figures = [value for seam in found for value in ((seam.gap, seam.angle) if seam else (None, None))]
-        rows.append((f"{tell(a, t)} – {tell(b, t)}", *(digits.metres(value) for value in figures)))
+        rows.append((f"{translate(a, t)} – {translate(b, t)}", *(digits.metres(value) for value in figures)))
     return Table(columns, tuple(rows))
 
 
@@ -301,22 +313,23 @@ def _conflicts(h: HorizonReport, t: Language) -> list[Block]:
         Column(t("Why"), "wide"),
     )
     rows = tuple(
-        (tell(c.kept, t), tell(c.dropped, t), digits.metres(c.difference), tell(c.text, t)) for c in h.conflicts
+        (translate(c.kept, t), translate(c.dropped, t), digits.metres(c.difference), translate(c.text, t))
+        for c in h.conflicts
     )
     return [*blocks, Table(columns, rows)]
 
 
 def _value(key: str, value: str, t: Language) -> str:
     """Return the value of a setting; a map is a kind of source, too, and is another word then."""
-    return t("the map") if (key, value) == ("frame", "map") else tell(value, t)
+    return t("the map") if (key, value) == ("frame", "map") else translate(value, t)
 
 
 def _made(h: HorizonReport, t: Language) -> list[Block]:
-    settings = [(tell(_SETTINGS.get(key, key), t), _value(key, value, t)) for key, value in h.settings]
-    figures = [(tell(_FIT.get(key, key), t), _value(key, value, t)) for key, value in h.fit]
+    settings = [(translate(_SETTINGS.get(key, key), t), _value(key, value, t)) for key, value in h.settings]
+    figures = [(translate(_FIT.get(key, key), t), _value(key, value, t)) for key, value in h.fit]
     patches = tuple(
         (
-            tell(p.name, t),
+            translate(p.name, t),
             f"{p.degree[0]} × {p.degree[1]}",
             f"{p.control[0]} × {p.control[1]} = {digits.count(p.control[0] * p.control[1])}",
         )

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from geofit.data.messages import said
+from geofit.data.languages import Language, sentence, translate
+from geofit.data.messages import message
 from geofit.report import digits
 from geofit.report.accuracy_report import HorizonReport, LeftOutLine, OffDataReport
 from geofit.report.document import Block, Cell, Column, Facts, Heading, Mark, Paragraph, Picture, Table
-from geofit.report.language import Language, sentence, tell
 from geofit.report.point_table import point_cells, point_columns
 
 __all__ = ["CALIBRATED", "off_data_blocks"]
@@ -14,9 +14,9 @@ __all__ = ["CALIBRATED", "off_data_blocks"]
 #: Of the left-out points this share should lie inside the 90 % band.
 CALIBRATED = (0.85, 0.95)
 _SCHEMES = {
-    "hole": said("one hole at a time"),
-    "section": said("one section at a time"),
-    "block": said("one block at a time"),
+    "hole": message("report.hole-time", "one hole at a time"),
+    "section": message("report.section-time", "one section at a time"),
+    "block": message("report.block-time", "one block at a time"),
 }
 #: Methods beside ours, in the order of their columns.
 _PEERS = ("thin plate", "kriging")
@@ -97,7 +97,7 @@ def _scheme_row(scheme: LeftOutLine, t: Language) -> tuple[Cell, ...]:
         good = low <= round(scheme.inside, 2) <= high
         calibrated = Mark(good, t("holds") if good else t("outside 85–95 %"))
     return (
-        tell(_SCHEMES.get(scheme.scheme, scheme.scheme), t),
+        translate(_SCHEMES.get(scheme.scheme, scheme.scheme), t),
         digits.count(scheme.groups),
         digits.count(scheme.points),
         *cells,

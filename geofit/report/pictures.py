@@ -12,10 +12,11 @@ import numpy as np
 
 from geofit.data.errors import MissingDependencyError
 from geofit.data.files import replacing
+from geofit.data.languages import EN, Language, translate
+from geofit.data.messages import Message
 from geofit.report import digits, plots, scene
 from geofit.report.gather import SITE_PICTURE, picture_name
 from geofit.report.histogram import histogram, normal_plot
-from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
 from geofit.report.style import FAIL, HORIZONS, INK, MUTED, PASS, drawing
 from geofit.report.uncertainty import uncertainty_map
@@ -40,16 +41,16 @@ class Pictures:
 
     images: Mapping[str, bytes] = field(repr=False)
     scene: Scene | None
-    missing: str
+    missing: Message | None
 
 
 def draw(result: HorizonResult, t: Language = EN) -> Pictures:
     """Draw all pictures of a horizon, with words in a language."""
     try:
         view: Scene | None = scene.horizon_scene(result)
-        missing = ""
+        missing: Message | None = None
     except MissingDependencyError as error:
-        view, missing = None, str(error)
+        view, missing = None, error.message
     flat = {
         "plan": _map(plots.site_plan, result, t, plots.map_shape(result, plan=True)),
         "deviation": _map(plots.deviation_map, result, t, plots.map_shape(result, plan=False)),
@@ -71,7 +72,7 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
     try:
         view = scene.site_scene([r.surface for r in results], results[0].site.holes)
     except MissingDependencyError as error:
-        return Pictures({}, None, str(error))
+        return Pictures({}, None, error.message)
     with drawing(TYPE):
         tall = min(WIDTH * view.image.shape[0] / view.image.shape[1], 3.7)
         height = tall + 0.45
@@ -84,8 +85,8 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
             handles=swatches, loc="lower left", ncols=min(len(swatches), 6), handlelength=1.2, borderaxespad=0,
             bbox_to_anchor=(0, 0.2 / height), columnspacing=1.4,
         )  # fmt: skip
-        figure.text(0, 0.02 / height, tell(view.caption, t), size=7.5, color=MUTED)
-        return Pictures({SITE_PICTURE: _png(figure)}, view, "")
+        figure.text(0, 0.02 / height, translate(view.caption, t), size=7.5, color=MUTED)
+        return Pictures({SITE_PICTURE: _png(figure)}, view, None)
 
 
 def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Language = EN) -> None:
@@ -125,7 +126,7 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
             t("σ is not below ε = {epsilon:g} m", epsilon=a.epsilon),
         )
         relation = below if a.passed else above
-        failed = ", ".join(tell(check.name, t) for check in a.checks if check.passed is False)
+        failed = ", ".join(translate(check.name, t) for check in a.checks if check.passed is False)
         rest = " · " + t("does not hold: {names}", names=failed) if failed else ""
         figure.text(0.555, second, relation + rest, color=MUTED, size=10)
         data = _png(figure, margin=40)

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.languages import EN, Language, translate
 from geofit.data.site import Hole
 from geofit.report.histogram import histogram
-from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
 from geofit.report.style import CORE, INK, LINE, MUTED, bands, kind_style, quiet
 from geofit.report.view import choose_view, rims, trimmed
@@ -47,7 +47,7 @@ def space(axes: Axes, scene: Scene, t: Language = EN) -> None:
     bar = axes.figure.colorbar(colours, cax=scale, ticks=_ticks(*scene.limits), orientation="horizontal")
     bar.outline.set_visible(False)
     scale.set_title(t("Elevation, m"), fontsize=7.5, fontweight="normal", color=MUTED, pad=3)
-    axes.text(1.0, -BELOW, tell(scene.caption, t), size=7.5, color=MUTED, ha="right", transform=axes.transAxes)
+    axes.text(1.0, -BELOW, translate(scene.caption, t), size=7.5, color=MUTED, ha="right", transform=axes.transAxes)
     scale.tick_params(length=0, pad=2)
 
 
@@ -80,7 +80,7 @@ def site_plan(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
         marker, colour = kind_style(kind)
         axes.scatter(
             xyz[of, 0], xyz[of, 1], s=9 if marker == "." else 16, marker=marker, color=colour, lw=0, zorder=4,
-            label=f"{tell(kind, t)} ({int(of.sum())})", rasterized=len(xyz) > MANY,
+            label=f"{translate(kind, t)} ({int(of.sum())})", rasterized=len(xyz) > MANY,
         )  # fmt: skip
     axes.set_title(t("Site plan"))
     map_axes(axes, t("Easting, m"), t("Northing, m"))
@@ -122,7 +122,7 @@ def deviation_map(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
                 3 + i,
             )
     axes.set_title(t("Deviation of every point"))
-    map_axes(axes, *(tell(label, t) for label in view.labels))
+    map_axes(axes, *(translate(label, t) for label in view.labels))
     legend(axes)
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from geofit.data.languages import Language, translate
 from geofit.report import digits
 from geofit.report.accuracy_report import PointLine
 from geofit.report.document import Cell, Column
-from geofit.report.language import Language, tell
 
 __all__ = ["point_cells", "point_columns"]
 
@@ -26,4 +26,4 @@ def point_columns(t: Language) -> tuple[Column, ...]:
 def point_cells(p: PointLine, t: Language) -> tuple[Cell, ...]:
     """Return the cells of :func:`point_columns`."""
     place = (digits.place(value) for value in (p.x, p.y, p.z))
-    return (p.file or "–", str(p.row or "–"), tell(p.kind, t), p.source or "–", *place)
+    return (p.file or "–", str(p.row or "–"), translate(p.kind, t), p.source or "–", *place)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ import geofit
 from geofit.checks.storage import Storage
 from geofit.data.accuracy import Accuracy, ReadBack, Seam, plain
 from geofit.data.files import replacing
+from geofit.data.messages import Message
 from geofit.data.prediction import OffData
 from geofit.data.site import ImportIssue, Site
 from geofit.fitting.horizon_fit import HorizonFit
@@ -71,7 +72,7 @@ class HorizonResult:
         return core if len(core) == self.accuracy.n else np.zeros(self.accuracy.n, bool)
 
     @property
-    def dropped(self) -> dict[int, str]:
+    def dropped(self) -> dict[int, Message]:
         """Points that were not fitted, and why (conflicts settled by accuracy)."""
         return {int(c.dropped): c.text for c in self.accuracy.conflicts}
 
@@ -115,7 +116,7 @@ def horizon_data(result: HorizonResult) -> dict[str, Any]:
             "max_abs": out.max() if len(out) else None,
             "share_within_interior_tolerance": within.mean() if len(out) else None,
         },
-        "partition": partition and asdict(partition),
+        "partition": partition,
         "by_patch": a.by_patch,
         "by_kind": a.by_kind,
         "by_hole": a.by_hole,
@@ -136,7 +137,7 @@ def horizon_data(result: HorizonResult) -> dict[str, Any]:
             }
             for c in a.conflicts
         ],
-        "rejected": [asdict(issue) for issue in result.rejected],
+        "rejected": result.rejected,
         "notes": a.notes,
         "read_back": _read_back(result.read_back),
         "storage": {
@@ -149,8 +150,8 @@ def horizon_data(result: HorizonResult) -> dict[str, Any]:
         "fit": {key: value for key, value in surface.diagnostics.items() if key != "seconds"},
         "seconds": result.seconds,
         "inputs": [{"file": f, "sha256": h} for f, h in result.site.inputs.items()],
-        "rows": [asdict(count) for count in result.site.counts],
-        "settings": asdict(surface.settings),
+        "rows": result.site.counts,
+        "settings": surface.settings,
         "crs": result.site.crs,
         "version": geofit.__version__,
     }
@@ -175,8 +176,7 @@ def _seam(seam: Seam) -> dict[str, Any]:
 def _read_back(back: ReadBack | None) -> dict[str, Any] | None:
     if back is None:
         return None
-    data = asdict(back)
-    return data | {
+    return {f.name: getattr(back, f.name) for f in fields(back)} | {
         "valid": back.brep_valid,
         "passed": back.passed,
         "seams": [_seam(s) for s in back.seams],

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import MissingDependencyError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.result import HorizonResult
@@ -27,9 +27,10 @@ __all__ = ["NO_OPENGL", "Scene", "elevation_colours", "horizon_scene", "site_sce
 
 Floats = NDArray[np.float64]
 
-NO_OPENGL = said(
+NO_OPENGL = message(
+    "report.3d-picture-missing-machine",
     "The 3D picture is missing: this machine has no OpenGL library. "
-    "Install one (Debian and Ubuntu: apt-get install libgl1 libegl1 libxrender1) and run again."
+    "Install one (Debian and Ubuntu: apt-get install libgl1 libegl1 libxrender1) and run again.",
 )
 
 #: Steps of a patch's mesh on each side.
@@ -54,11 +55,13 @@ class Scene:
     limits: tuple[float, float]
 
     @property
-    def caption(self) -> str:
+    def caption(self) -> Message:
         """Direction and scale in words."""
         if self.raised == 1:
-            return said("Seen from the south-west, true scale.")
-        return said("Seen from the south-west, heights × {times}.", times=self.raised)
+            return message("report.seen-south-west-true", "Seen from the south-west, true scale.")
+        return message(
+            "report.seen-south-west-heights", "Seen from the south-west, heights × {times}.", times=self.raised
+        )
 
 
 def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -> Scene:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from geofit.data.languages import Language, sentence, translate
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, CutLine, OrderLine
 from geofit.report.document import Block, Cell, Column, Heading, Mark, Paragraph, Table
-from geofit.report.language import Language, sentence, tell
 
 __all__ = ["structure_blocks"]
 
@@ -84,8 +84,8 @@ def _contradictions(report: AccuracyReport, t: Language) -> list[Block]:
             digits.metres(c.lack),
             digits.place(c.x),
             digits.place(c.y),
-            tell(c.above, t) or "–",
-            tell(c.below, t) or "–",
+            translate(c.above, t) or "–",
+            translate(c.below, t) or "–",
         )
         for c in report.contradictions
     )

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.files import replacing, spreadsheet_cell
+from geofit.data.files import replacing
+from geofit.data.languages import EN, Language, translate
 from geofit.data.site import ImportIssue
-from geofit.report.language import EN, Language, tell
 from geofit.report.result import HorizonResult
 
 __all__ = ["write_issues", "write_residuals"]
@@ -39,7 +40,7 @@ def write_residuals(result: HorizonResult, path: Path, language: Language = EN) 
             a.patch[i],
             "yes" if core[i] else "no",
             "no" if i in dropped else "yes",
-            tell(dropped.get(i, ""), language),
+            translate(dropped.get(i, ""), language),
         )
         for i in range(len(points))
     )
@@ -50,7 +51,15 @@ def write_issues(issues: Sequence[ImportIssue], path: Path, language: Language =
     """Write everything that the readers found, errors first; only reasons and remedies are told in the language."""
     order = {"error": 0, "warning": 1, "note": 2}
     rows = (
-        (i.severity, i.file, i.row or "", i.column, i.value, tell(i.reason, language), tell(i.remedy, language))
+        (
+            i.severity,
+            i.file,
+            i.row or "",
+            i.column,
+            i.value,
+            translate(i.reason, language),
+            translate(i.remedy, language),
+        )
         for i in sorted(issues, key=lambda i: order[i.severity])
     )
     _write(path, ISSUE_HEADER, rows)

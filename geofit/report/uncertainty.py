@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.languages import EN, Language
 from geofit.data.prediction import Uncertainty
-from geofit.report.language import EN, Language
 from geofit.report.plots import legend, map_axes
 from geofit.report.result import HorizonResult
 from geofit.report.style import FAIL, INK, MUTED

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.splines.patch import Patch
 
@@ -25,7 +25,7 @@ class View:
 
     axes: Floats
     start: Floats
-    labels: tuple[str, str]
+    labels: tuple[Message, Message]
     caption: str
 
     def of(self, xyz: Floats) -> Floats:
@@ -38,7 +38,12 @@ def choose_view(surface: HorizonFit) -> View:
     normal = np.mean([_normals(patch) for patch in surface.patches], axis=0)
     dip = np.degrees(np.arctan2(np.hypot(normal[0], normal[1]), abs(normal[2])))
     if dip < STEEP:
-        return View(np.eye(3)[:2], np.zeros(3), (said("Easting, m"), said("Northing, m")), "plan")
+        return View(
+            np.eye(3)[:2],
+            np.zeros(3),
+            (message("report.easting", "Easting, m"), message("report.northing", "Northing, m")),
+            "plan",
+        )
     strike = np.array([-normal[1], normal[0], 0.0])
     strike /= np.linalg.norm(strike)
     # Seen so that the strike runs to the right and towards the east (or the north).
@@ -50,10 +55,13 @@ def choose_view(surface: HorizonFit) -> View:
         np.stack([strike, [0.0, 0.0, 1.0]]),
         strike * along.min(),
         (
-            said(
-                "Along strike towards {azimuth:03.0f}°, m (mean dip {dip:.0f}°)", azimuth=float(azimuth), dip=float(dip)
+            message(
+                "report.along-strike-towards-mean",
+                "Along strike towards {azimuth:03.0f}°, m (mean dip {dip:.0f}°)",
+                azimuth=float(azimuth),
+                dip=float(dip),
             ),
-            said("Elevation, m"),
+            message("report.elevation", "Elevation, m"),
         ),
         "across the strike",
     )

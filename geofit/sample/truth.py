@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 __all__ = [
     "BOUNDARY",
@@ -366,8 +366,11 @@ def horizon_truth(name: str) -> MapTruth | PlaneTruth | FoldTruth:
     """
     if name not in _TRUTHS:
         raise SettingsError(
-            said(
-                "The sample site has no horizon {name!r}; choose one of {names}.", name=name, names=", ".join(HORIZONS)
+            message(
+                "sample.sample-site-no-horizon",
+                "The sample site has no horizon {name!r}; choose one of {names}.",
+                name=name,
+                names=", ".join(HORIZONS),
             )
         )
     return _TRUTHS[name]

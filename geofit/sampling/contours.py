@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
 from geofit.sampling.isolines import plane_lines
 from geofit.surfaces.protocol import Surface
@@ -77,11 +77,18 @@ def contours(
     low, high = float(z.min()), float(z.max())
     step = interval_for(low, high) if interval is None else interval
     if not (step > 0 and math.isfinite(step)):
-        raise SettingsError(said("The contour interval is {step}; give metres above 0.", step=step))
+        raise SettingsError(
+            message(
+                "geometry.contour-interval-give-metres",
+                "The contour interval is {step}; give metres above 0.",
+                step=step,
+            )
+        )
     first, last = math.ceil(low / step), math.floor(high / step)
     if last - first > MOST:
         raise SettingsError(
-            said(
+            message(
+                "geometry.interval-contours-give-above",
                 "An interval of {step:g} m makes {count} contours from {low:.1f} to {high:.1f} m; give one above "
                 "{least:.2g} m.",
                 step=step,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
 from geofit.geometry.projection import project
 from geofit.sampling.isolines import plane_lines
@@ -44,11 +44,17 @@ def section_line(line: ArrayLike) -> Floats:
     corners = np.asarray(line, float)
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
         raise SettingsError(
-            said("The section line has shape {shape}; (k, 2) finite map coordinates are needed.", shape=corners.shape)
+            message(
+                "geometry.section-line-shape-finite",
+                "The section line has shape {shape}; (k, 2) finite map coordinates are needed.",
+                shape=corners.shape,
+            )
         )
     apart = np.append(True, np.linalg.norm(np.diff(corners, axis=0), axis=1) > JOIN)
     if apart.sum() < 2:
-        raise SettingsError("The section line has one place only; give two different ends.")
+        raise SettingsError(
+            message("geometry.section-line-place-give", "The section line has one place only; give two different ends.")
+        )
     return np.asarray(corners[apart])
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.sampling.contours import interval_for
@@ -72,15 +72,23 @@ def _extent(surface: Surface) -> tuple[Floats, Floats]:
 def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Floats, Floats], Floats]) -> Ground:
     low, high = box
     if not (high > low).all():
-        raise SettingsError("The horizons do not stand over one another; there is no thickness between them.")
+        raise SettingsError(
+            message(
+                "geometry.horizons-not-stand-no",
+                "The horizons do not stand over one another; there is no thickness between them.",
+            )
+        )
     step = interval_for(0.0, float((high - low).max()) * 20 / CELLS) if cell is None else cell
     if not (step > 0 and math.isfinite(step)):
-        raise SettingsError(said("The cell size is {step}; give metres above 0.", step=step))
+        raise SettingsError(
+            message("geometry.cell-size-give-metres", "The cell size is {step}; give metres above 0.", step=step)
+        )
     first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
     count = last - first + 1
     if count.min() < 2:
         raise SettingsError(
-            said(
+            message(
+                "geometry.cell-leaves-no-grid",
                 "A cell of {step:g} m leaves no grid; the surface is {width:.1f} m wide.",
                 step=step,
                 width=(high - low).min(),
@@ -88,7 +96,12 @@ def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Float
         )
     if count.prod() > MOST_CELLS:
         raise SettingsError(
-            said("A cell of {step:g} m makes {count:.3g} cells; give a larger one.", step=step, count=count.prod())
+            message(
+                "geometry.cell-cells-give-larger",
+                "A cell of {step:g} m makes {count:.3g} cells; give a larger one.",
+                step=step,
+                count=count.prod(),
+            )
         )
     x, y = (step * (first[k] + np.arange(int(count[k]))) for k in (0, 1))
     return Ground(x, y, np.stack([value(x, np.full_like(x, north)) for north in y]))

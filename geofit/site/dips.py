@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.accuracy import Check
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Orientations
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.projection import project
@@ -102,13 +102,15 @@ def _check(deviations: tuple[DipDeviation, ...], orientations: Orientations) -> 
     first = worst[0]
     beyond = [one for one in worst if one.angle > LIMIT]
     if not beyond:
-        text = said(
+        text = message(
+            "check.measured-dips-agree-surface",
             "the measured dips ({n}) agree with the surface, the worst by {angle:.0f} degrees",
             n=len(worst),
             angle=first.angle,
         )
         return Check("dips", True, first.angle, LIMIT, "deg", text)
-    text = said(
+    text = message(
+        "check.measured-dips-contradict-surface",
         "measured dips that contradict the surface: {count} of {n}, the worst is {azimuth:.0f}/{dip:.0f} where "
         "the surface dips {surface_azimuth:.0f}/{surface_dip:.0f} ({angle:.0f} degrees between the planes); the "
         "measurement belongs to another structure, or the surface is wrong there",

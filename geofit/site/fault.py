@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.zero_contours import zero_lines
 
@@ -44,7 +44,8 @@ class Fault:
         line = np.asarray(fault, float)
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
             raise SettingsError(
-                said(
+                message(
+                    "site.fault-shape-fitted-surface",
                     "Fault {number} has shape {shape}; a fitted surface or at least two (easting, northing) corners of "
                     "its trace are needed.",
                     number=number + 1,

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, InputError
-from geofit.data.messages import listed, said
+from geofit.data.messages import Message, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
@@ -52,7 +52,7 @@ class Parting:
     names: tuple[str, ...]
     sides: tuple[Sides, ...]
     block: NDArray[np.int64]
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +65,7 @@ class BlockFit:
     blocks: tuple[HorizonFit, ...]
     block: NDArray[np.int64]
     cuts: tuple[FaultCut, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 def fit_faulted(site: Site, name: str, progress: Progress | None = None) -> BlockFit:
@@ -80,18 +80,18 @@ def fit_faulted(site: Site, name: str, progress: Progress | None = None) -> Bloc
     """
     if name not in site.horizons:
         raise InputError(
-            said("There is no horizon '{name}'", name=name),
-            said("The horizons are: {names}.", names=", ".join(site.horizons)),
+            message("run.no-horizon", "There is no horizon '{name}'", name=name),
+            message("run.known-horizons", "The horizons are: {names}.", names=", ".join(site.horizons)),
         )
     cutting = [fault for fault, cut in site.faults.items() if name in cut]
     if not cutting:
         raise InputError(
-            said("No fault of the site cuts '{name}'", name=name),
-            said('Write F1 = ["{name}"] under [faults].', name=name),
+            message("site.no-fault-site-cuts", "No fault of the site cuts '{name}'", name=name),
+            message("site.write-f1-under-faults", 'Write F1 = ["{name}"] under [faults].', name=name),
         )
     faults = []
     for k, fault in enumerate(cutting):
-        tell(progress, said("fault {name}", name=fault), 0.5 * k / len(cutting))
+        tell(progress, message("site.fault-name", "fault {name}", name=fault), 0.5 * k / len(cutting))
         settings = site.settings.get(fault, FitSettings())
         faults.append(fit_horizon(site.horizons[fault], settings, site.boundary, name=fault))
     settings = site.settings.get(name, FitSettings())
@@ -144,7 +144,7 @@ def fit_blocks(
     parted = part(points, faults, area, name)
     blocks: dict[Sides, HorizonFit] = {}
     for k, (title, sides) in enumerate(zip(parted.names, parted.sides, strict=True)):
-        tell(progress, said("block {name}", name=title), 0.5 + 0.5 * k / len(parted.names))
+        tell(progress, message("site.block-name", "block {name}", name=title), 0.5 + 0.5 * k / len(parted.names))
         mine = points[np.flatnonzero(parted.block == k)]
         blocks[sides] = fit_block(mine, parted.faults, sides, settings, area, name=title)
     cuts = throws(blocks, parted.faults, name, area)
@@ -167,12 +167,19 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
     Parameters and errors as :func:`fit_blocks`; ``area`` is the study area.
     """
     known = [Fault.of(fault, k, area) for k, fault in enumerate(faults)]
-    notes: list[str] = []
+    notes: list[Message] = []
     cutting, sides = [], [np.zeros((len(points), 0), np.int64)]
     for fault in known:
         side = fault.side(points.xyz)
         if side.min() == side.max():
-            notes.append(said("all points of {horizon} lie on one side of {fault}", horizon=name, fault=fault.name))
+            notes.append(
+                message(
+                    "site.points-lie-side",
+                    "all points of {horizon} lie on one side of {fault}",
+                    horizon=name,
+                    fault=fault.name,
+                ).with_severity("warning")
+            )
         else:
             cutting.append(fault)
             sides.append(side[:, None])
@@ -183,18 +190,27 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
     for k, title in enumerate(names):
         mine = np.flatnonzero(block == k)
         if len(mine) < FEWEST:
-            text = said(
+            text = message(
+                "site.too-few-points-block",
                 "Too few points in the block '{block}' of {horizon}: {count} ({points}); at least {least} are needed "
                 "to lay a surface. Give more points there, or leave the fault out.",
                 block=title,
                 horizon=name,
                 count=len(mine),
-                points=listed(points.describe(int(i)) for i in mine),
+                points=tuple(points.describe(int(i)) for i in mine),
                 least=FEWEST,
             )
             raise FitError(text)
         if len(mine) < FEW:
-            notes.append(said("{block} rests on {count} points only", block=title, count=len(mine)))
+            notes.append(
+                plural_message(
+                    "site.rests-points",
+                    "{block} rests on {count} point only",
+                    "{block} rests on {count} points only",
+                    block=title,
+                    count=len(mine),
+                ).with_severity("warning")
+            )
     rows = tuple(tuple(row) for row in signs[order].tolist())
     return Parting(tuple(cutting), tuple(names), rows, block, tuple(notes))
 
@@ -264,7 +280,8 @@ def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, t
         side = fault.side(np.column_stack([inner, height(*inner.T)]))
         mine = [piece for piece, one in zip(pieces, side, strict=True) if one == sign]
         if not mine:
-            text = said(
+            text = message(
+                "site.block-points-side-surface",
                 "The block '{block}' has points on a side of {fault} where its surface has no area. Look at the points "
                 "beside the fault: one on the wrong side makes a block of its own.",
                 block=title,

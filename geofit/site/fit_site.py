@@ -11,7 +11,7 @@ from typing import Any
 
 from geofit.data.errors import FitError, PointsError, SettingsError
 from geofit.data.guard import guarded
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
@@ -39,12 +39,12 @@ class SiteFit:
     surfaces: dict[str, HorizonFit] = field(default_factory=dict)
     horizon: dict[str, str] = field(default_factory=dict)
     seconds: dict[str, float] = field(default_factory=dict)
-    failures: dict[str, str] = field(default_factory=dict)
+    failures: dict[str, Message] = field(default_factory=dict)
     faults: dict[str, HorizonFit] = field(default_factory=dict)
     cuts: tuple[FaultCut, ...] = ()
     moved: dict[str, float] = field(default_factory=dict)
     contradictions: tuple[Contradiction, ...] = ()
-    warnings: tuple[str, ...] = ()
+    warnings: tuple[Message, ...] = ()
 
     def __repr__(self) -> str:
         parts = [f"{name} {fit.accuracy.verdict}" for name, fit in self.surfaces.items() if fit.accuracy is not None]
@@ -93,14 +93,14 @@ def fit_site(
     found = SiteFit()
     for k, name in enumerate(names):
 
-        def listen(stage: str, fraction: float, /, name: str = name, k: int = k) -> None:
+        def listen(stage: str | Message, fraction: float, /, name: str = name, k: int = k) -> None:
             tell(
                 progress,
-                said("{name}: {stage}", name=name, stage=stage),
+                message("run.stage-of", "{name}: {stage}", name=name, stage=stage),
                 (k + min(max(fraction, 0.0), 1.0)) / len(names),
             )
 
-        def failed(reason: str, name: str = name) -> None:
+        def failed(reason: Message, name: str = name) -> None:
             found.failures[name] = reason
 
         guarded(partial(fits.add, name, found, listen), None, failed)
@@ -141,7 +141,8 @@ class _Fits:
         taken = [surface.name for surface in surfaces if surface.name in (*found.surfaces, *self._site.horizons)]
         if faults and any(title != name for title in taken):
             raise SettingsError(
-                said(
+                message(
+                    "site.block-called-horizon-rename",
                     "A block of '{name}' is called '{block}', and so is a horizon. Rename the horizon.",
                     name=name,
                     block=taken[0],
@@ -157,7 +158,12 @@ class _Fits:
             found.faults[name] = self._whole(name, listen)
         except (FitError, PointsError) as error:
             raise FitError(
-                said("the fault {fault} cannot be laid: {reason}", fault=name, reason=error.args[0])
+                message(
+                    "site.fault-cannot-laid",
+                    "the fault {fault} cannot be laid: {reason}",
+                    fault=name,
+                    reason=error.args[0],
+                )
             ) from None
         return found.faults[name]
 
@@ -171,7 +177,7 @@ class _Fits:
         return replace(self._site.settings.get(name, FitSettings()), **self._changes)
 
 
-def _noted(block: HorizonFit, notes: Sequence[str]) -> HorizonFit:
+def _noted(block: HorizonFit, notes: Sequence[Message]) -> HorizonFit:
     assert block.accuracy is not None
     return block.with_(accuracy=replace(block.accuracy, notes=(*block.accuracy.notes, *notes)))
 
@@ -181,17 +187,26 @@ def _push_apart(site: Site, found: SiteFit) -> None:
     sequence = [name for name in site.order if name in found.surfaces]
     blocked = [name for name in site.order if name in found.horizon.values() and name not in found.surfaces]
     if blocked:
-        text = said("{names}: cut by a fault, so not pushed apart from other horizons", names=", ".join(blocked))
-        found.warnings += (text,)
+        text = message(
+            "site.cut-fault-not-pushed",
+            "{names}: cut by a fault, so not pushed apart from other horizons",
+            names=", ".join(blocked),
+        )
+        found.warnings += (text.with_severity("warning"),)
     if len(sequence) < 2:
         if blocked:
             return
-        found.warnings += (said("no repair: the order of the site names no two fitted horizons without a fault"),)
+        found.warnings += (
+            message(
+                "site.no-repair-order-site",
+                "no repair: the order of the site names no two fitted horizons without a fault",
+            ).with_severity("warning"),
+        )
         return
     try:
         done = separate_horizons(found.surfaces, sequence)
     except SettingsError as error:
-        found.warnings += (said("no repair: {reason}", reason=error.args[0]),)
+        found.warnings += (message("site.no-repair", "no repair: {reason}", reason=error).with_severity("warning"),)
         return
     found.surfaces.update(done.surfaces)
     found.moved, found.contradictions = dict(done.moved), done.contradictions

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.cells import tabulate
 from geofit.geometry.elevation import RIM, Plan, plan_map
@@ -45,7 +45,8 @@ class Relief:
         mappings = [plan_map(patch) for patch in surface.patches]
         self._mappings: list[Plan] = [one for one in mappings if one is not None]
         if not mappings or len(self._mappings) < len(mappings):
-            text = said(
+            text = message(
+                "site.no-height-field-map",
                 "'{name}' is no height field over the map, so nothing can be said to lie above or below it. Name "
                 "fitted horizons only; leave out faults, overturned folds and triangles read from files.",
                 name=surface.name,

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.accuracy import Check
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.height_field import Relief
@@ -54,12 +54,23 @@ class Order:
         """Return the check; it does not hold where horizons cross below the ground, and is None without common area."""
         names = {"upper": self.upper, "lower": self.lower}
         if not self.area:
-            return Check("order", None, 0.0, 0.0, "m", said("{upper} and {lower} share no area", **names))
+            return Check(
+                "order",
+                None,
+                0.0,
+                0.0,
+                "m",
+                message("site.share-no-area", "{upper} and {lower} share no area", **names),
+            )
         if not self.crossings:
-            text = said(
+            text = message(
+                "site.above-everywhere",
                 "{upper} lies above {lower} everywhere: {low:.2f} to {high:.2f} m, {mean:.2f} m on average",
-                low=self.min, high=self.max, mean=self.mean, **names,
-            )  # fmt: skip
+                low=self.min,
+                high=self.max,
+                mean=self.mean,
+                **names,
+            )
             return Check("order", True, 0.0, 0.0, "m", text)
         deepest = max(self.crossings, key=lambda crossing: crossing.depth)
         figures = {
@@ -68,12 +79,14 @@ class Order:
         }  # fmt: skip
         below = [crossing for crossing in self.crossings if not crossing.in_air >= 1.0]
         if not below:
-            text = said(
+            text = message(
+                "site.lies-below-above-ground",
                 "{upper} lies below {lower} above the ground only (places: {count}): {area:.0f} m2, {volume:.0f} m3",
                 **figures,
             )
             return Check("order", True, 0.0, 0.0, "m", text)
-        text = said(
+        text = message(
+            "site.lies-below-places-m2",
             "{upper} lies below {lower} (places: {count}): {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m "
             "at ({x:.1f}, {y:.1f})",
             **figures,
@@ -158,15 +171,18 @@ def require_sequence(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str]
     """Raise SettingsError unless each name of a sequence has a surface and stands once."""
     missing = [name for name in sequence if name not in surfaces]
     if missing:
-        text = said(
+        text = message(
+            "site.order-names-no-surface",
             "The order names '{name}', which has no surface; there are {names}. Fit it, or take it out of the order.",
             name=missing[0],
-            names=", ".join(surfaces) or said("none"),
+            names=", ".join(surfaces) or message("site.none", "none"),
         )
         raise SettingsError(text)
     if len(set(sequence)) < len(sequence):
-        text = said(
-            "The order names a horizon twice: {names}. Name each once, top to bottom.", names=", ".join(sequence)
+        text = message(
+            "site.order-names-horizon-twice",
+            "The order names a horizon twice: {names}. Name each once, top to bottom.",
+            names=", ".join(sequence),
         )
         raise SettingsError(text)
 

@@ -19,7 +19,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import Said, said
+from geofit.data.messages import EMPTY, Message, message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.site.height_field import Relief
@@ -56,18 +56,25 @@ class Contradiction:
     x: float
     y: float
     lack: float
-    above: str
-    below: str
+    above: Message
+    below: Message
 
     @property
-    def text(self) -> Said:
+    def text(self) -> Message:
         """What contradicts what, in words."""
-        return said(
+        none = message("site.no-exact-point", "no exact point")
+        return message(
+            "site.contradiction",
             "{upper} and {lower} cannot be pushed apart at ({x:.1f}, {y:.1f}), {lack:.3f} m are missing: {above} of "
             "{upper} stands against {below} of {lower}",
-            upper=self.upper, lower=self.lower, x=self.x, y=self.y, lack=self.lack,
-            above=self.above or said("no exact point"), below=self.below or said("no exact point"),
-        )  # fmt: skip
+            upper=self.upper,
+            lower=self.lower,
+            x=self.x,
+            y=self.y,
+            lack=self.lack,
+            above=self.above or none,
+            below=self.below or none,
+        ).with_severity("warning")
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +116,13 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
     """
     require_sequence(surfaces, sequence)
     if not (minimum >= 0 and np.isfinite(minimum)):
-        raise SettingsError(said("The least thickness is {value}; give metres, 0 or more.", value=minimum))
+        raise SettingsError(
+            message(
+                "site.least-thickness-give-metres",
+                "The least thickness is {value}; give metres, 0 or more.",
+                value=minimum,
+            )
+        )
     stack = _Stack([_Layer(surfaces[name]) for name in sequence], minimum)
     with threadpool_limits(limits=1):
         stack.push_apart()
@@ -126,7 +139,8 @@ class _Layer:
 
     def __init__(self, surface: HorizonFit) -> None:
         if surface.model is None or surface.model.problem.chart.frame.kind != "map":
-            text = said(
+            text = message(
+                "site.no-control-net-map",
                 "'{name}' has no control net over the map: it was read from a file, or is no height field. Fit it "
                 "again, or take it out of the order.",
                 name=surface.name,
@@ -149,10 +163,10 @@ class _Layer:
         """Return the matrix from coefficients to heights at some of its points."""
         return self.model.net.space.matrix(self.plane[which])
 
-    def nearest_exact(self, x: float, y: float) -> str:
+    def nearest_exact(self, x: float, y: float) -> Message:
         """Name the exact point nearest to a place, empty without one."""
         if not len(self.exact):
-            return ""
+            return EMPTY
         points = self.model.problem.points
         away = np.linalg.norm(points.xyz[self.exact, :2] - (x, y), axis=1)
         return points.describe(int(self.exact[away.argmin()]))
@@ -171,7 +185,11 @@ class _Layer:
         """Return the checked surface of the control points moved; it says that it was."""
         new = self.surface.refitted(self.moved())
         assert new.accuracy is not None
-        note = said("moved by up to {most:.3f} m to keep the order of strata", most=float(np.abs(self.change).max()))
+        note = message(
+            "site.moved-keep-order-strata",
+            "moved by up to {most:.3f} m to keep the order of strata",
+            most=float(np.abs(self.change).max()),
+        )
         accuracy = replace(new.accuracy, notes=(*new.accuracy.notes, note))
         return new.with_(accuracy=accuracy)
 

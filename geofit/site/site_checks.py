@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from geofit.data.guard import guarded
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Ground, Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.clip import inside
@@ -44,12 +44,16 @@ def check_surroundings(surface: HorizonFit, site: Site, horizon: str = "") -> Ho
         guarded(
             lambda: check_dips(surface, _of_block(measured, surface, horizon) if horizon else measured)[1],
             None,
-            lambda reason: missing.append(said("the dips were not compared: {reason}", reason=reason)),
+            lambda reason: missing.append(
+                message("site.dips-not-compared", "the dips were not compared: {reason}", reason=reason)
+            ),
         ),
         guarded(
             lambda: check_ground(surface, site.ground, tolerance),
             None,
-            lambda reason: missing.append(said("the ground was not compared: {reason}", reason=reason)),
+            lambda reason: missing.append(
+                message("site.ground-not-compared", "the ground was not compared: {reason}", reason=reason)
+            ),
         ),
     )
     found = [check for check in asked if check is not None]

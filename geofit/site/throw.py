@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import Said, said
+from geofit.data.messages import Message, message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.fault import BEYOND_TRACE, HALVINGS, Fault, longer, size
 from geofit.site.height_field import Relief
@@ -50,14 +50,21 @@ class FaultCut:
     heave: Floats
 
     @property
-    def text(self) -> Said:
+    def text(self) -> Message:
         """The throw in words."""
-        return said(
+        return message(
+            "site.throw",
             "{fault} throws {horizon} down by {low:.2f} to {high:.2f} m, {mean:.2f} m on average over {length:.0f} m: "
             "{up} lies above {down}",
-            fault=self.fault, horizon=self.horizon, low=float(self.throw.min()), high=float(self.throw.max()),
-            mean=float(self.throw.mean()), length=float(self.distance[-1]), up=self.up, down=self.down,
-        )  # fmt: skip
+            fault=self.fault,
+            horizon=self.horizon,
+            low=float(self.throw.min()),
+            high=float(self.throw.max()),
+            mean=float(self.throw.mean()),
+            length=float(self.distance[-1]),
+            up=self.up,
+            down=self.down,
+        )
 
 
 def throws(

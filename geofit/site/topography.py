@@ -8,7 +8,7 @@ from scipy.spatial import Delaunay
 from threadpoolctl import threadpool_limits
 
 from geofit.data.accuracy import Check
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 
@@ -63,7 +63,8 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
     if wrong.any():
         worst = np.flatnonzero(wrong)[np.argsort(-height[wrong], kind="stable")]
         value = float(height[worst[0]])
-        text = said(
+        text = message(
+            "check.horizon-stands-above-ground",
             "the horizon stands above the ground: by {value:.1f} m at {x:.0f}, {y:.0f}, where its own points hold it; "
             "{points} points and {area:.0f} square metres in all are more than {tolerance:g} m above it",
             value=value,
@@ -76,14 +77,19 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
         return Check("above ground", False, value, tolerance, "m", text, named)
     if above.any():
         highest = float(height[above].max())
-        text = said(
+        text = message(
+            "check.away-points-horizon-goes",
             "away from its points the horizon goes on above the ground, up to {value:.1f} m over {area:.0f} square "
             "metres: eroded there, or not held by any point",
             value=highest,
             **area,
         )
         return Check("above ground", None, highest, tolerance, "m", text)
-    text = said("the horizon stays below the ground (within {tolerance:g} m)", tolerance=tolerance)
+    text = message(
+        "check.horizon-stays-below-ground",
+        "the horizon stays below the ground (within {tolerance:g} m)",
+        tolerance=tolerance,
+    )
     return Check("above ground", True, max(float(height[known].max()), 0.0), tolerance, "m", text)
 
 

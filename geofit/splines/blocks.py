@@ -14,6 +14,7 @@ from scipy.linalg import LinAlgError, cholesky, solve_triangular
 from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
+from geofit.data.messages import message
 from geofit.splines.tensor import RIDGES
 
 __all__ = ["BlockFactor", "InverseBlocks"]
@@ -40,7 +41,12 @@ class BlockFactor:
         self.size = band.shape[1]
         self.width = max(min(len(band) - 1, self.size), 1)
         if not (band[0] > 0).all():
-            raise FitError("The posterior of the fit is improper: some control points are held by nothing.")
+            raise FitError(
+                message(
+                    "splines.posterior-fit-improper-some",
+                    "The posterior of the fit is improper: some control points are held by nothing.",
+                )
+            )
         # Scaled to a unit diagonal, as in geofit.splines.tensor.Factor.
         self._scale = 1 / np.sqrt(band[0])
         self._starts = np.arange(0, self.size, self.width)
@@ -51,7 +57,12 @@ class BlockFactor:
                 return
             except LinAlgError:
                 continue
-        raise FitError("The posterior of the fit is improper: points and energy leave control points free.")
+        raise FitError(
+            message(
+                "splines.posterior-fit-improper-points",
+                "The posterior of the fit is improper: points and energy leave control points free.",
+            )
+        )
 
     def _cut(self, band: Floats) -> tuple[list[Floats], list[Floats]]:
         """Return the scaled diagonal blocks (lower triangles) and the blocks below them."""

@@ -19,7 +19,7 @@ from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.splines import bspline
 from geofit.splines.sums import CellSums, cell_sums
 
@@ -156,7 +156,8 @@ class Factor:
         diagonal = band[0]
         if not (diagonal > 0).all():
             raise FitError(
-                said(
+                message(
+                    "splines.control-points-held-neither",
                     "Control points held by neither data nor energy: {count}. Use fewer knots, or a larger smoothing.",
                     count=int((diagonal <= 0).sum()),
                 )
@@ -172,8 +173,11 @@ class Factor:
             except LinAlgError:
                 continue
         raise FitError(
-            "The system of the fit is not positive definite: too few points, or points that contradict "
-            "each other, leave control points free. Use fewer knots, or a larger smoothing."
+            message(
+                "splines.system-fit-not-positive",
+                "The system of the fit is not positive definite: too few points, or points that contradict "
+                "each other, leave control points free. Use fewer knots, or a larger smoothing.",
+            )
         )
 
     def solve(self, right: Floats) -> Floats:

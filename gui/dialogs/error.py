@@ -74,10 +74,9 @@ class ErrorDialog(QDialog):
 
     def _message(self, error: Exception) -> str:
         if isinstance(error, InputError) and error.remedy:
-            told, remedy = spoken(str(error)), spoken(error.remedy)
-            return f"{told.removesuffix(remedy).rstrip()}\n\n{remedy}" if told.endswith(remedy) else told
+            return f"{spoken(error.fault)}\n\n{spoken(error.remedy)}"
         if isinstance(error, GeofitError):
-            return spoken(str(error))
+            return spoken(error)
         if isinstance(error, OSError):
             return self.tr("{reason}\n\nCheck that the folder is there, can be written, and has room.").format(
                 reason=failure(error)

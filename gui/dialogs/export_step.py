@@ -29,6 +29,7 @@ from PySide6.QtWidgets import (
 
 from geofit.data.accuracy import Check
 from geofit.data.files import file_stems
+from geofit.data.messages import message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import verdict_mark
@@ -177,7 +178,9 @@ class ExportDialog(TaskDialog):
         sigma = self._surfaces[name].accuracy
         first = Check(
             "σ", None if sigma is None else back.sigma < sigma.epsilon, back.sigma, sigma.epsilon if sigma else np.nan,
-            "m", self.tr("{faces} faces; σ of all points from the surface in the file").format(faces=back.faces),
+            "m", message(
+                "check.sigma-in-file", "{faces} faces; σ of all points from the surface in the file", faces=back.faces
+            ),
         )  # fmt: skip
         return [first, *back.checks]
 

@@ -109,7 +109,7 @@ class ReportDialog(TaskDialog):
             forms.addWidget(box)
         form = self._form = QFormLayout()
         form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.FieldsStayAtSizeHint)
-        form.addRow(self.tr("Site"), QLabel(site.name))
+        form.addRow(self.tr("Site", "ReportDialog"), QLabel(site.name))
         label = QLabel(self.tr("&Folder"))
         label.setBuddy(self.folder)
         form.addRow(self.tr("&Language"), self.language)

@@ -19,6 +19,8 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.data.accuracy import Accuracy, Check, ReadBack
+from geofit.data.languages import gravest_first
+from geofit.data.messages import Message
 from geofit.data.prediction import OffData
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, verdict_mark
@@ -111,7 +113,7 @@ class ChecksPanel(QWidget):
         self._group(self.tr("Throw at faults"), [self._cut(cut) for cut in cuts])
         self._group(self.tr("Away from the data"), self._away(offdata))
         self._group(self.tr("Conflicts"), self._conflicts(surface, accuracy))
-        self._group(self.tr("Notes"), [self._note(note) for note in accuracy.notes])
+        self._group(self.tr("Notes"), [self._note(note) for note in gravest_first(accuracy.notes)])
         self._group(self.tr("STEP file read back"), self._file(read_back))
         self.tree.expandAll()
         self._fit_columns()
@@ -195,7 +197,7 @@ class ChecksPanel(QWidget):
             ).format(share=100 * left.inside, bias=left.bias)
             name = schemes.get(left.scheme, left.scheme)
             rows.append(self._row(name, None, measured(left.rms, "m"), words=words, word=self.tr("for knowledge")))
-        return rows + [self._note(note) for note in offdata.notes]
+        return rows + [self._note(note) for note in gravest_first(offdata.notes)]
 
     def _conflicts(self, surface: HorizonFit, a: Accuracy) -> list[QTreeWidgetItem]:
         rows = []
@@ -208,10 +210,12 @@ class ChecksPanel(QWidget):
             rows.append(item)
         return rows
 
-    def _note(self, note: str) -> QTreeWidgetItem:
+    def _note(self, note: Message) -> QTreeWidgetItem:
         item = QTreeWidgetItem([spoken(note)])
         item.setFirstColumnSpanned(True)
         item.setToolTip(0, spoken(note))
+        if note.severity != "info":
+            item.setIcon(0, icon("stale"))
         return item
 
     def _file(self, back: ReadBack | None) -> list[QTreeWidgetItem]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import GeofitError
+from geofit.data.messages import EMPTY
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
@@ -97,6 +98,6 @@ def taken(chart: Chart, box: CoreBox) -> tuple[int, bool]:
     if (high <= low).any():
         return 0, False
     given = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
-    split = split_rectangle(chart.plane, given, chart.area, "")
+    split = split_rectangle(chart.plane, given, chart.area, EMPTY)
     widened = split.core is not None and not np.allclose(split.core, given)
     return int(split.inside.sum()), widened

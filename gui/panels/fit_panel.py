@@ -189,8 +189,8 @@ class FitPanel(QWidget):
             ),
         )  # fmt: skip
         self._add(
-            "robust", self.tr("Outliers"),
-            ChoiceField({False: self.tr("Fitted too"), True: self.tr("Left out")}),
+            "robust", self.tr("Outliers", "FitPanel"),
+            ChoiceField({False: self.tr("Fitted too"), True: self.tr("Left out", "FitPanel")}),
             self.tr(
                 "Peripheral points that their neighbours do not bear out. They are named and count in sigma either way."
             ),

@@ -8,14 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from geofit.data.messages import said
+from geofit.data.languages import Language
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.canvas import Canvas, Ink, place, recolour, wrapped
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.words import spoken
+from geofit.gui.words import spoken_language
 from geofit.report.histogram import histogram, normal_plot
-from geofit.report.language import Language
 from geofit.report.result import HorizonResult
 
 __all__ = ["HistogramPanel"]
@@ -92,7 +91,7 @@ class HistogramPanel(QWidget):
 
 def _told(template: str, /, **values: Any) -> str:
     """Say a label of the report in the language of the windows."""
-    return spoken(said(template, **values))
+    return spoken_language()(template, **values)
 
 
 def _explain(axes: Axes, ink: Ink, limits: tuple[float, float], inner: tuple[float, float]) -> None:

@@ -10,7 +10,8 @@ from PySide6.QtCore import QMessageLogContext, QObject, QtMsgType, Signal, qInst
 from PySide6.QtGui import QColor, QGuiApplication, QPalette, QTextCharFormat, QTextCursor
 from PySide6.QtWidgets import QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
-from geofit.gui.words import failure, spoken
+from geofit.data.messages import Message
+from geofit.gui.words import spoken
 from geofit.report.style import FAIL
 
 __all__ = ["LogPanel", "qt_to_logging"]
@@ -125,11 +126,5 @@ class _Formatter(logging.Formatter):
 
 
 def _message(record: logging.LogRecord) -> str:
-    """Return a record's message as the window speaks; what other libraries say stays as it is."""
-    if not isinstance(record.msg, str) or not isinstance(record.args, tuple):
-        return record.getMessage()
-    told = tuple(
-        failure(value) if isinstance(value, BaseException) else spoken(value) if isinstance(value, str) else value
-        for value in record.args
-    )
-    return spoken(record.msg) % told if told else spoken(record.msg)
+    """Return a record's message in the user's language; what other libraries log stays as it is."""
+    return spoken(record.msg) if isinstance(record.msg, Message) else record.getMessage()

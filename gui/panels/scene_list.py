@@ -107,7 +107,7 @@ class SceneList(QWidget):
 
     def _group(self, horizon: str) -> QTreeWidgetItem:
         if horizon not in self._groups:
-            group = QTreeWidgetItem([horizon or self.tr("Site")])
+            group = QTreeWidgetItem([horizon or self.tr("Site", "SceneList")])
             group.setFlags(group.flags() | Qt.ItemFlag.ItemIsUserCheckable | Qt.ItemFlag.ItemIsAutoTristate)
             bold = group.font(0)
             bold.setBold(True)

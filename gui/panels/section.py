@@ -263,7 +263,7 @@ class SectionPanel(QWidget):
         if self._data is None:
             return
         words = {
-            "ground": self.tr("ground"),
+            "ground": self.tr("ground", "SectionPanel"),
             "band": self.tr("90 % band"),
             "elevation": self.tr("Elevation, m"),
         }

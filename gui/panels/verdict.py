@@ -81,10 +81,8 @@ class VerdictBadge(QFrame):
             )
             self._figures.setText(words.format(sigma=metres(accuracy.sigma), epsilon=given(accuracy.epsilon)))
             beyond = " · ".join(
-                self.tr("{count} over {limit}").format(
-                    count=count(over), limit=name.split(" ", name.count(" ") - 1)[-1]
-                )
-                for name, over in accuracy.over.items()
+                self.tr("{count} over {limit}").format(count=count(over.count), limit=f"{given(over.limit)} m")
+                for over in accuracy.over.values()
             )
             most = self.tr("max |d| {most} m of {n} points").format(most=metres(accuracy.max_abs), n=count(accuracy.n))
             self._more.setText(f"{most}\n{beyond}")

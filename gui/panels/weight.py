@@ -21,7 +21,7 @@ class WeightBox(QWidget):
         self.value.setDecimals(2)
         self.value.setSingleStep(0.1)
         self.value.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self.value.setAccessibleName(self.tr("Weight"))
+        self.value.setAccessibleName(self.tr("Weight", "WeightBox"))
         self.value.setToolTip(
             self.tr("1 is neutral; above 1 the surface is drawn to the control point, below 1 it is let go.")
         )

@@ -8,6 +8,7 @@ import sys
 from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QSurfaceFormat
 
 from geofit.data.errors import MissingDependencyError
+from geofit.data.messages import message
 
 __all__ = ["NoOpenGLError", "require_opengl"]
 
@@ -32,8 +33,12 @@ def require_opengl() -> None:
     platform = QGuiApplication.platformName()
     if platform in FLAT:
         raise NoOpenGLError(
-            f"The 3D view needs a display; Qt runs on its '{platform}' platform, which has no OpenGL. "
-            "Start the application on a desktop (or under Xvfb), without QT_QPA_PLATFORM set."
+            message(
+                "window.no-display-for-3d",
+                "The 3D view needs a display; Qt runs on its '{platform}' platform, which has no OpenGL. "
+                "Start the application on a desktop (or under Xvfb), without QT_QPA_PLATFORM set.",
+                platform=platform,
+            )
         )
     if sys.platform.startswith("linux"):
         name = "libEGL.so.1" if platform.startswith("wayland") else "libGL.so.1"
@@ -41,15 +46,29 @@ def require_opengl() -> None:
             ctypes.CDLL(name)
         except OSError:
             raise NoOpenGLError(
-                f"The 3D view needs OpenGL; the library {name} is missing on this machine. "
-                "Install it (Debian and Ubuntu: apt-get install libgl1 libegl1) and start again."
+                message(
+                    "window.opengl-library-missing",
+                    "The 3D view needs OpenGL; the library {name} is missing on this machine. "
+                    "Install it (Debian and Ubuntu: apt-get install libgl1 libegl1) and start again.",
+                    name=name,
+                )
             ) from None
     found = _version()
     if found is None or found < VERSION:
-        have = "gives no OpenGL at all" if found is None else f"gives OpenGL {found[0]}.{found[1]}"
+        have = (
+            message("window.driver-without-opengl", "gives no OpenGL at all")
+            if found is None
+            else message("window.driver-opengl", "gives OpenGL {major}.{minor}", major=found[0], minor=found[1])
+        )
         raise NoOpenGLError(
-            f"The 3D view needs OpenGL {VERSION[0]}.{VERSION[1]}; the graphics driver {have}. "
-            "Update the driver, or use Mesa's software renderer (LIBGL_ALWAYS_SOFTWARE=1 on Linux)."
+            message(
+                "window.opengl-too-old",
+                "The 3D view needs OpenGL {major}.{minor}; the graphics driver {have}. Update the driver, or use "
+                "Mesa's software renderer (LIBGL_ALWAYS_SOFTWARE=1 on Linux).",
+                major=VERSION[0],
+                minor=VERSION[1],
+                have=have,
+            )
         )
 
 

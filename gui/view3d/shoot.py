@@ -14,7 +14,7 @@ from vtkmodules.vtkRenderingCore import vtkWindowToImageFilter
 
 from geofit.data.errors import SettingsError
 from geofit.data.files import replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.stage import Stage
 
@@ -39,7 +39,8 @@ def shoot(
     width, height = round(canvas.width() * scale), round(canvas.height() * scale)
     if not (scale > 0 and 0 < max(width, height) <= MOST):
         raise SettingsError(
-            said(
+            message(
+                "window.scale-picture-pixels-give",
                 "A scale of {scale:g} makes a picture of {width} × {height} pixels; give one above 0 and below "
                 "{most:.1f}.",
                 scale=scale,

@@ -43,7 +43,7 @@ class ResultPage(QWidget):
         export.clicked.connect(self.issues.export_action.trigger)
         above = QSplitter(Qt.Orientation.Horizontal)
         above.addWidget(_titled(self.tr("Horizons"), self.horizons))
-        above.addWidget(_titled(self.tr("Files"), self.files))
+        above.addWidget(_titled(self.tr("Files", "ResultPage"), self.files))
         below = QHBoxLayout()
         below.addWidget(self.notes)
         below.addStretch()
@@ -96,7 +96,7 @@ class ResultPage(QWidget):
         self.issues.show_columns(
             (
                 Column(
-                    self.tr("Kind"),
+                    self.tr("Kind", "ResultPage"),
                     np.array([words[one.severity] for one in issues], str),
                     icons=lambda row: icon(_MARK[issues[row].severity]),
                     order=self._severity,

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
 from geofit.io.extra import need
@@ -68,9 +68,13 @@ def write_geoh5(
     InputError
         If there is no surface.
     """
-    h5py = need("h5py", "geoh5", said("Writing {format}", format="geoh5"))
+    h5py = need("h5py", "geoh5", message("export.need-package", "Writing {format}", format="geoh5"))
     if not meshes:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(path),
+        )
     # In memory: on a full disk the library ends the process.
     whole = BytesIO()
     with h5py.File(whole, "w", track_order=False) as file:

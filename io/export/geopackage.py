@@ -11,7 +11,7 @@ import numpy as np
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.extra import need
 from geofit.sampling.contours import Contour
 
@@ -37,12 +37,16 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
     InputError
         If there is no contour, or the file cannot be written.
     """
-    pyogrio = need("pyogrio", "gis", said("Writing {format}", format="GeoPackage"))
+    pyogrio = need("pyogrio", "gis", message("export.need-package", "Writing {format}", format="GeoPackage"))
     import shapely
 
     rows = [(name, contour) for name, lines in contours.items() for contour in lines]
     if not rows:
-        raise InputError("There is no contour to write", "Choose a smaller interval.", file=str(path))
+        raise InputError(
+            message("export.no-contour-write", "There is no contour to write"),
+            message("export.choose-smaller-interval", "Choose a smaller interval."),
+            file=str(path),
+        )
     geometry = shapely.to_wkb(np.array([shapely.LineString(contour.line) for _, contour in rows]))
     fields = [
         np.array([name for name, _ in rows], object),
@@ -61,8 +65,10 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
             )  # fmt: skip
     except (pyogrio.errors.DataSourceError, pyogrio.errors.CRSError) as error:
         raise InputError(
-            said("The file cannot be written: {error}", error=str(error)),
-            "Check the path; give the system as EPSG:number, or none: --crs ''.",
+            message("export.file-cannot-written", "The file cannot be written: {error}", error=error),
+            message(
+                "export.check-path-give-system", "Check the path; give the system as EPSG:number, or none: --crs ''."
+            ),
             file=str(path),
         ) from None
     else:

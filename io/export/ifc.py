@@ -12,7 +12,7 @@ import numpy as np
 from geofit import __version__
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.extra import need
@@ -65,9 +65,13 @@ def write_ifc(
     InputError
         If there is neither a surface nor a hole.
     """
-    ifcopenshell = need("ifcopenshell", "ifc", said("Writing {format}", format="IFC"))
+    ifcopenshell = need("ifcopenshell", "ifc", message("export.need-package", "Writing {format}", format="IFC"))
     if not surfaces and not holes:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(path),
+        )
     model = _Model(ifcopenshell, site, crs)
     for name, surface in surfaces.items():
         model.horizon(name, surface, tolerance)

@@ -12,7 +12,7 @@ import numpy as np
 from geofit import __version__
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
 
 __all__ = ["write_landxml"]
@@ -42,8 +42,12 @@ def write_landxml(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None
         area = ax * by - ay * bx
         if area.min() <= 0 <= area.max():
             raise InputError(
-                said("'{name}' is upright or overturned in places; a LandXML TIN has one elevation a place", name=name),
-                "Write it as STEP, OBJ or GOCAD TSurf.",
+                message(
+                    "export.upright-overturned-places-landxml",
+                    "'{name}' is upright or overturned in places; a LandXML TIN has one elevation a place",
+                    name=name,
+                ),
+                message("export.write-step-obj-gocad", "Write it as STEP, OBJ or GOCAD TSurf."),
                 file=str(path),
             )
         triangles = mesh.triangles if area.min() > 0 else mesh.triangles[:, ::-1]

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.pores.network import PoreNetwork
 
 __all__ = [
@@ -208,7 +208,10 @@ def write_statoil(
         ``<stem>_node1.dat``, ``_node2.dat``, ``_link1.dat``, ``_link2.dat``.
     """
     if axis not in (0, 1, 2):
-        raise InputError(said("axis={axis} is not an axis of the volume", axis=axis), said("Give 0, 1 or 2."))
+        raise InputError(
+            message("export.axis-not-axis", "axis={axis} is not an axis of the volume", axis=axis),
+            message("export.give-0-1-2", "Give 0, 1 or 2."),
+        )
     folder, unit = Path(folder), network.unit
     order = [axis, *(other for other in range(3) if other != axis)]
     pores, throats, ends = network.pores, network.throats, network.face_throats
@@ -287,8 +290,13 @@ def read_statoil(folder: str | PathLike[str], stem: str) -> StatoilNetwork:
         len(rows["node1"]) - 1 == len(rows["node2"]) == count and len(rows["link1"]) - 1 == len(rows["link2"]) == links
     ):
         raise InputError(
-            said("its four files state {pores} pores and {throats} links, but list others", pores=count, throats=links),
-            said("Export the network again."),
+            message(
+                "export.four-files-pores",
+                "its four files state {pores} pores and {throats} links, but list others",
+                pores=count,
+                throats=links,
+            ),
+            message("export.export-network-again", "Export the network again."),
             file=str(Path(folder) / stem),
         )
     node1 = np.array([row[1:4] for row in rows["node1"][1:]], float)
@@ -307,6 +315,6 @@ def _rows(folder: Path, name: str) -> list[list[str]]:
             data = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
             return [line.split() for line in data.decode("ascii").splitlines() if line.strip()]
     raise InputError(
-        said("a network needs four files, and this one is missing"), said("Put it beside the others."),
+        message("export.network-four-files", "a network needs four files, and this one is missing"), message("export.put-beside", "Put it beside the others."),
         file=str(folder / name),
     )  # fmt: skip

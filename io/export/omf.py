@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
 
@@ -60,7 +61,11 @@ def write_omf(
         If there is no surface.
     """
     if not meshes:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(path),
+        )
     model = _Model()
     elements = []
     for k, (name, mesh) in enumerate(meshes.items()):

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
 
 __all__ = ["common_origin", "write_glb", "write_obj", "write_ply", "write_stl"]
@@ -183,7 +184,11 @@ def _state_origin(origin: Floats, path: str | PathLike[str], axes: str) -> None:
 
 def _given(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Mapping[str, Mesh]:
     if not meshes:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(path))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(path),
+        )
     return meshes
 
 

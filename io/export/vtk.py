@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import file_stems, replacing
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
 
@@ -47,8 +47,13 @@ def write_vtp(
     off = np.full(len(data), np.nan) if deviation is None else np.asarray(deviation, float)
     if len(off) != len(data):
         raise InputError(
-            said("Deviations given: {count}; points: {points}", count=len(off), points=len(data)),
-            "Give the deviations with their points, one for each.",
+            message(
+                "export.deviations-given-points",
+                "Deviations given: {count}; points: {points}",
+                count=len(off),
+                points=len(data),
+            ),
+            message("export.give-deviations-points", "Give the deviations with their points, one for each."),
             file=str(path),
         )
     xyz = np.concatenate([mesh.xyz, data])

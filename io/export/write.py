@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.sampling.contours import contours
 from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
 from geofit.surfaces.protocol import Surface
@@ -158,12 +158,21 @@ def write_surface(
     out = Path(path)
     given: Surfaces = surfaces if isinstance(surfaces, Mapping) else {surfaces.name: surfaces}
     if not given:
-        raise InputError("No surface to write", "Give at least one horizon.", file=str(out))
+        raise InputError(
+            message("export.no-surface-write", "No surface to write"),
+            message("export.give-least-horizon", "Give at least one horizon."),
+            file=str(out),
+        )
     to = format or format_of(out)
     chosen = _format(to)
     if unit != "m" and not chosen.unit:
         raise SettingsError(
-            said("unit is '{unit}'; {format} files are in metres. Use STEP, or leave it out.", unit=unit, format=to)
+            message(
+                "export.unit-files-use",
+                "unit is '{unit}'; {format} files are in metres. Use STEP, or leave it out.",
+                unit=unit,
+                format=to,
+            )
         )
     if chosen.takes in ("surfaces", "site"):
         _need_patches(given, to, out)
@@ -203,8 +212,10 @@ def format_of(path: str | PathLike[str]) -> str:
             return name
     known = [ending for one in FORMATS.values() for ending in one.endings]
     raise InputError(
-        said("No format has the ending '{ending}'", ending=ending),
-        said("Name the format, or give a file that ends in {names}.", names=", ".join(known)),
+        message("export.format-ending", "No format has the ending '{ending}'", ending=ending),
+        message(
+            "export.format-file-ends", "Name the format, or give a file that ends in {names}.", names=", ".join(known)
+        ),
         file=str(path),
     )
 
@@ -236,7 +247,8 @@ def untrimmed(surfaces: Surfaces, format: str) -> list[str]:
     if _format(format).takes not in ("surfaces", "site"):
         return []
     return [
-        said(
+        message(
+            "export.faces-end-holes",
             "{name}: its faces end at holes or curves that {format} does not represent: the file has whole patches",
             name=name,
             format=format,
@@ -249,7 +261,8 @@ def untrimmed(surfaces: Surfaces, format: str) -> list[str]:
 def _format(name: str) -> Format:
     if name not in FORMATS:
         raise InputError(
-            said("There is no format '{to}'", to=name), said("Choose one of: {names}.", names=", ".join(FORMATS))
+            message("export.no-format", "There is no format '{to}'", to=name),
+            message("export.known-formats", "Choose one of: {names}.", names=", ".join(FORMATS)),
         )
     return FORMATS[name]
 
@@ -295,12 +308,17 @@ def _need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
     if meshes:
         others = [name for name, one in FORMATS.items() if one.takes not in ("surfaces", "site")]
         raise InputError(
-            said(
+            message(
+                "export.triangle-mesh-holds-nurbs",
                 "'{name}' is a triangle mesh; {to} holds NURBS surfaces, which would have to be fitted",
                 name=meshes[0],
                 to=to,
             ),
-            said("Fit its vertices (geofit fit), or choose one of: {names}.", names=", ".join(others)),
+            message(
+                "export.fit-vertices-geofit-fit",
+                "Fit its vertices (geofit fit), or choose one of: {names}.",
+                names=", ".join(others),
+            ),
             file=str(out),
         )
 
@@ -324,8 +342,12 @@ def _grids(surfaces: Surfaces, out: Path, options: _Options) -> list[tuple[Path,
     if options.value == "thickness":
         if len(surfaces) != 2:
             raise InputError(
-                said("Thickness lies between two horizons; given: {count}", count=len(surfaces)),
-                "Name the upper one, then the lower.",
+                message(
+                    "export.thickness-lies-two-horizons",
+                    "Thickness lies between two horizons; given: {count}",
+                    count=len(surfaces),
+                ),
+                message("export.name-upper-lower", "Name the upper one, then the lower."),
             )
         upper, lower = surfaces.values()
         return [(out, thickness_grid(upper, lower, options.cell))]
@@ -334,10 +356,17 @@ def _grids(surfaces: Surfaces, out: Path, options: _Options) -> list[tuple[Path,
         return [(files[name], elevation_grid(surface, options.cell)) for name, surface in surfaces.items()]
     if options.value != "deviation":
         raise SettingsError(
-            said("A grid of '{kind}' is unknown; choose elevation, deviation or thickness.", kind=options.value)
+            message(
+                "export.grid-unknown-choose-elevation",
+                "A grid of '{kind}' is unknown; choose elevation, deviation or thickness.",
+                kind=options.value,
+            )
         )
     data = dict(_points(surfaces, options))
     missing = [name for name in surfaces if name not in data]
     if missing:
-        raise InputError(said("There are no points of '{name}'", name=missing[0]), "Give them with --points.")
+        raise InputError(
+            message("export.no-points", "There are no points of '{name}'", name=missing[0]),
+            message("export.give-points", "Give them with --points."),
+        )
     return [(files[name], deviation_grid(surfaces[name], data[name], options.cell)) for name in surfaces]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import refused
 from surfaces import fold, horizon, nine
 
 from geofit.cad.export import write_brep, write_iges
@@ -93,10 +94,10 @@ def test_iges_is_in_metres_trimmed_and_named(surfaces, tmp_path):
         assert furthest(part, surface) < 2e-8
         assert area(part) == pytest.approx(area(surface.to_cadquery().wrapped), rel=1e-7)
     text = (tmp_path / "a.igs").read_text("ascii")
-    assert "T1_top" in text
+    assert "T1_top" in str(text)
     # The whole name is the property 406-15 of the group.
-    assert "406,1,6HT1 top;" in text
-    assert ",6,1HM," in text.replace("\n", "").replace(" ", "")
+    assert "406,1,6HT1 top;" in str(text)
+    assert ",6,1HM," in str(text).replace("\n", "").replace(" ", "")
 
 
 @pytest.mark.parametrize("writer", [write_brep, write_iges])
@@ -117,5 +118,5 @@ def test_the_unit_of_the_process_stays(surfaces, tmp_path):
 
 @pytest.mark.parametrize("writer", [write_brep, write_iges])
 def test_refuses_nothing(writer, tmp_path):
-    with pytest.raises(InputError, match="No surface"):
+    with refused(InputError, "export.no-surface-write"):
         writer({}, tmp_path / "a")

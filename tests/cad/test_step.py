@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 from surfaces import ORIGIN, fold, height_field, horizon, nine, split
 
 from geofit.cad.faces import edges_with_faces, to_geom
@@ -79,8 +80,8 @@ def test_a_file_in_millimetres_says_so_and_holds_the_same_surface(written, tmp_p
     assert back.core_max_abs <= 1e-8
     assert back.sigma == pytest.approx(found.sigma, rel=1e-9)
     text = (tmp_path / "mm.step").read_text("ascii").replace("\n", "")
-    assert "SI_UNIT(.MILLI.,.METRE.)" in text
-    assert "SI_UNIT($,.METRE.)" not in text
+    assert "SI_UNIT(.MILLI.,.METRE.)" in str(text)
+    assert "SI_UNIT($,.METRE.)" not in str(text)
     (ours,), (theirs,) = (read_step(file).values() for file in (path, tmp_path / "mm.step"))
     np.testing.assert_array_equal(theirs.origin, ORIGIN)
     for a, b in zip(ours.patches, theirs.patches, strict=True):
@@ -90,7 +91,7 @@ def test_a_file_in_millimetres_says_so_and_holds_the_same_surface(written, tmp_p
 
 
 def test_an_unknown_unit_is_refused(written, tmp_path):
-    with pytest.raises(InputError, match="m or mm"):
+    with refused(InputError, "export.step-file-unknown"):
         write_step({"T1": written[0]}, tmp_path / "ft.step", unit="ft")
     assert not list(tmp_path.iterdir())
 
@@ -100,9 +101,9 @@ def test_the_file_is_ascii_and_the_same_bytes_again(written, tmp_path):
     twice = write_step({"T1 顶板": surface}, tmp_path / "other name.step")["T1 顶板"]
     assert twice.sha256 == found.sha256
     text = path.read_bytes().decode("ascii")
-    assert "AP242" in text
-    assert "SI_UNIT($,.METRE.)" in text.replace("\n", "")
-    assert text.count("COLOUR_RGB") == 1
+    assert "AP242" in str(text)
+    assert "SI_UNIT($,.METRE.)" in str(text).replace("\n", "")
+    assert str(text).count("COLOUR_RGB") == 1
     assert "'2000-01-01T00:00:00'" in text.partition("DATA;")[0]
     assert [p.name for p in tmp_path.iterdir()] == ["other name.step"]
 
@@ -209,7 +210,7 @@ def test_a_gap_hidden_in_the_edge_tolerance_is_found(tmp_path):
 def test_a_gap_is_not_written(tmp_path):
     _, parts = nine()
     apart = (*parts[:4], replace(parts[4], control=parts[4].control + np.array([0, 0, 0.01])), *parts[5:])
-    with pytest.raises(StitchError, match="gape"):
+    with refused(StitchError, "fit.patches-not-share-edges"):
         write_step({"T1": horizon(apart)}, tmp_path / "gap.step")
     assert not list(tmp_path.iterdir())
 
@@ -296,17 +297,17 @@ def test_opencascade_settings_are_put_back(written):
 
 
 def test_what_cannot_be_read_says_so(tmp_path, capfd):
-    with pytest.raises(InputError, match="no such file"):
+    with refused(InputError, "import.file-missing"):
         read_step(tmp_path / "none.step")
     (tmp_path / "text.step").write_text("x, y, z\n1, 2, 3\n")
-    with pytest.raises(InputError, match="cannot be read as STEP"):
+    with refused(InputError, "import.not-step"):
         read_step(tmp_path / "text.step")
     (tmp_path / "empty.step").write_text("")
-    with pytest.raises(InputError, match="STEP"):
+    with refused(InputError, "import.not-step"):
         read_step(tmp_path / "empty.step")
-    with pytest.raises(InputError, match="cannot be written"):
+    with refused(InputError, "export.file-cannot-written"):
         write_step({"x": horizon([height_field()])}, tmp_path / "nowhere" / "x.step")
-    with pytest.raises(InputError, match="No surface"):
+    with refused(InputError, "export.no-surface-write"):
         write_step({}, tmp_path / "x.step")
 
 

@@ -20,6 +20,7 @@ import pytest
 from geofit.cli import console
 from geofit.cli.main import main
 from geofit.data.errors import Cancelled
+from geofit.data.messages import message
 from geofit.data.site import ImportIssue, Site
 from geofit.project import run as deliver
 
@@ -306,7 +307,12 @@ def test_other_import_errors_are_not_hidden():
 
 
 def test_only_the_first_findings_are_told(capsys):
-    issues = [ImportIssue("a.csv", i, "z", "?", "error", "no number", "write metres") for i in range(9)]
+    issues = [
+        ImportIssue(
+            "a.csv", i, "z", "?", "error", message("test.text", "no number"), message("test.text", "write metres")
+        )
+        for i in range(9)
+    ]
     console.print_issues(issues, "out/import_issues.csv")
     told = capsys.readouterr().err
     assert "Import: 9 errors. All of them: out/import_issues.csv" in told

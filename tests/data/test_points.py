@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
+from refusals import refused
 
 import geofit
 from geofit import PointSet
@@ -44,35 +45,43 @@ def test_no_points_are_a_set_too(empty):
 
 
 @pytest.mark.parametrize(
-    ("xyz", "words"),
+    ("xyz", "code", "params"),
     [
-        ([[0, 0]], r"xyz has shape \(1, 2\); an \(n, 3\) array of easting, northing, elevation is needed"),
-        ([1, 2, 3], r"xyz has shape \(3,\)"),
-        (np.zeros((2, 3, 3)), r"xyz has shape \(2, 3, 3\)"),
-        ([["a", 0, 0]], r"xyz must hold numbers: .*'a'.* Give an \(n, 3\) array"),
-        ([[0, 0, 0], [0, 0]], "xyz must hold numbers"),
-        ([[0, 0, 0], [1, np.nan, 2], [np.nan] * 3], r"2 of 3 points are not finite, the first at index 1: \[1.0, nan"),
-        ([[np.inf, 0, 0]], r"1 of 1 points are not finite.*inf.*Remove or complete"),
+        ([[0, 0]], "points.xyz-shape-array-easting", {"shape": (1, 2)}),
+        ([1, 2, 3], "points.xyz-shape-array-easting", {"shape": (3,)}),
+        (np.zeros((2, 3, 3)), "points.xyz-shape-array-easting", {"shape": (2, 3, 3)}),
+        ([["a", 0, 0]], "points.xyz-hold-numbers-give", {}),
+        ([[0, 0, 0], [0, 0]], "points.xyz-hold-numbers-give", {}),
+        (
+            [[0, 0, 0], [1, np.nan, 2], [np.nan] * 3],
+            "points.points-not-finite-first",
+            {"count": 2, "total": 3, "index": 1},
+        ),
+        (
+            [[np.inf, 0, 0]],
+            "points.points-not-finite-first",
+            {"count": 1, "total": 1, "index": 0, "place": [np.inf, 0, 0]},
+        ),
     ],
 )
-def test_coordinates_that_are_no_points_are_named(xyz, words):
-    with pytest.raises(PointsError, match=words):
+def test_coordinates_that_are_no_points_are_named(xyz, code, params):
+    with refused(PointsError, code, **params):
         PointSet(xyz)
 
 
 @pytest.mark.parametrize(
-    ("column", "words"),
+    ("column", "code", "params"),
     [
-        ({"kind": ["a", "b"]}, r"kind has shape \(2,\); 3 points need shape \(3,\) or one value for all"),
-        ({"hole": [["a", "b", "c"]]}, r"hole has shape \(1, 3\)"),
-        ({"accuracy": ["fine", "", ""]}, "accuracy cannot be read as float64: .*fine"),
-        ({"accuracy": [0.1, -0.3, 0.2]}, r"accuracy\[1\] is -0.3 m; one standard deviation must be above 0.*nan"),
-        ({"accuracy": 0.0}, r"accuracy\[0\] is 0 m"),
-        ({"row": ["x", 2, 3]}, "row cannot be read as int64"),
+        ({"kind": ["a", "b"]}, "points.wrong-shape", {"name": "kind", "shape": (2,), "n": 3}),
+        ({"hole": [["a", "b", "c"]]}, "points.wrong-shape", {"name": "hole", "shape": (1, 3), "n": 3}),
+        ({"accuracy": ["fine", "", ""]}, "points.cannot-read", {"name": "accuracy", "type": "float64"}),
+        ({"accuracy": [0.1, -0.3, 0.2]}, "points.accuracy-standard-deviation-above", {"index": 1, "value": -0.3}),
+        ({"accuracy": 0.0}, "points.accuracy-standard-deviation-above", {"index": 0, "value": 0.0}),
+        ({"row": ["x", 2, 3]}, "points.cannot-read", {"name": "row", "type": "int64"}),
     ],
 )
-def test_a_column_that_does_not_fit_is_named(column, words):
-    with pytest.raises(PointsError, match=words):
+def test_a_column_that_does_not_fit_is_named(column, code, params):
+    with refused(PointsError, code, **params):
         three(**column)
 
 
@@ -150,21 +159,34 @@ def test_with_replaces_columns_and_checks_them():
     higher = points.with_(xyz=points.xyz + np.array([0, 0, 10]))
     assert higher.hole.tolist() == ["B1"] * 3
     assert higher.xyz[0, 2] == 11
-    with pytest.raises(PointsError, match="not finite"):
+    with refused(PointsError, "points.points-not-finite-first", count=3, total=3):
         points.with_(xyz=points.xyz * np.nan)
 
 
 @pytest.mark.parametrize(
-    ("columns", "words"),
+    ("columns", "code", "params", "text"),
     [
-        ({"kind": "borehole", "hole": "ZK12", "file": "holes.csv", "row": 7}, "borehole ZK12, holes.csv row 7"),
-        ({"kind": "section", "section": "S3", "row": 9}, "section S3, row 9"),
-        ({"kind": "adit", "hole": "PD1", "section": "S3"}, "adit PD1"),
-        ({}, "point"),
+        (
+            {"kind": "borehole", "hole": "ZK12", "file": "holes.csv", "row": 7},
+            "point.in-file",
+            {"file": "holes.csv", "row": 7},
+            "borehole ZK12, holes.csv row 7",
+        ),
+        ({"kind": "section", "section": "S3", "row": 9}, "point.in-row", {"row": 9}, "section S3, row 9"),
+        (
+            {"kind": "adit", "hole": "PD1", "section": "S3"},
+            "point.kind-name",
+            {"kind": "adit", "name": "PD1"},
+            "adit PD1",
+        ),
+        ({}, "point.kind", {"kind": "point"}, "point"),
     ],
 )
-def test_a_point_is_described_as_a_person_would_look_it_up(columns, words):
-    assert three(**columns).describe(1) == words
+def test_a_point_is_described_as_a_person_would_look_it_up(columns, code, params, text):
+    found = three(**columns).describe(1)
+    assert found.code == code
+    assert params.items() <= found.params.items()
+    assert str(found) == text
 
 
 def geographic(n=12, seed=0, extent=0.02, middle=(110.123, 30.456), relief=40.0):

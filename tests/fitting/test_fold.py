@@ -90,7 +90,7 @@ def test_points_off_the_sections_have_no_place_yet():
     more = PointSet(points.xyz[:5] + np.array([1.0, 30.0, 2.0]), hole="B1")
     surface = loft(PointSet.concatenate([points, more]))
     assert surface.on_line.tolist() == [True] * len(points) + [False] * 5
-    assert "5 points between" in surface.notes[0]
+    assert surface.notes[0].params["count"] == 5
 
 
 def test_fewer_than_two_sections_place_nothing():

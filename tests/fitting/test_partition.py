@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from truth import paper_arrangement
 
+from geofit.data.messages import message
 from geofit.fitting.partition import split_all, split_auto, split_none, split_rectangle
 
 AREA = (0.0, 2000.0, 0.0, 2000.0)
+DRAWN = message("fit.core-polygon-drawn", "the core's polygon as drawn")
 
 
 def uniform(n, area=AREA, seed=0):
@@ -31,8 +33,8 @@ def test_the_papers_arrangement_is_found(seed):
     # The sections' own points, and no peripheral one; from one edge of the area to the other.
     np.testing.assert_array_equal(split.inside, truth.points.section != "")
     np.testing.assert_allclose(split.core, (700, 1300, 0, 2000), atol=1e-6)
-    assert "440 points" in split.reason
-    assert "157" in split.reason
+    assert split.reason.code == "fit.points-spacing-below-fill"
+    assert (split.reason.params["count"], split.reason.params["others"]) == (440, 157)
 
 
 @pytest.mark.parametrize("size", [(500, 900), (400, 400), (900, 300)])
@@ -56,7 +58,7 @@ def test_a_uniform_cloud_has_no_core(n, seed):
     split = split_auto(uniform(n, seed=seed), AREA)
     assert split.core is None
     assert not split.inside.any()
-    assert "no dense core" in split.reason
+    assert split.reason.code == "fit.no-dense-core-points"
 
 
 def test_a_regular_grid_has_no_core():
@@ -74,7 +76,7 @@ def with_a_line(angle):
 def test_one_dense_line_makes_no_core_and_the_reason_says_so(angle):
     split = split_auto(with_a_line(angle), AREA)
     assert split.core is None
-    assert "line" in split.reason
+    assert split.reason.code == "fit.dense-points-lie-along"
 
 
 @pytest.mark.parametrize("angle", [10, 20, 35, 45, 80])
@@ -86,7 +88,7 @@ def test_one_dense_line_across_the_axes_makes_no_core_either(angle):
 def test_few_points_have_no_core(n):
     split = split_auto(uniform(n), AREA)
     assert split.core is None
-    assert "too few" in split.reason
+    assert split.reason.code == "fit.points-too-few-tell"
     assert len(split.inside) == n
 
 
@@ -94,8 +96,8 @@ def test_more_points_than_can_be_interpolated_are_approximated_and_told():
     dense = uniform(6000, (700, 1300, 700, 1300))
     split = split_auto(np.concatenate([dense, uniform(400)]), AREA)
     assert split.core is None
-    assert "approximated" in split.reason
-    assert "core" in split.reason
+    assert split.reason.code == "fit.dense-points-need-control"
+    assert split.reason.severity == "warning"
 
 
 def test_points_all_at_few_places_do_not_crash():
@@ -131,27 +133,28 @@ def test_any_cloud_gives_a_split_that_tells_the_truth(seed):
 def test_a_drawn_rectangle_is_taken_as_it_is():
     plane = uniform(400)
     core = (600.0, 1200.0, 500.0, 1500.0)
-    split = split_rectangle(plane, core, AREA, "as drawn")
+    split = split_rectangle(plane, core, AREA, DRAWN)
     assert split.core == core
     np.testing.assert_array_equal(split.inside, within(plane, core))
-    assert split.reason.startswith("as drawn")
-    assert str(split.inside.sum()) in split.reason
+    assert split.reason.code == "fit.points-inside-outside"
+    assert split.reason.params["reason"] == DRAWN
+    assert split.reason.params["within"] == split.inside.sum()
 
 
 def test_a_drawn_side_next_to_the_areas_edge_moves_there():
     truth = paper_arrangement(0)
     plane = truth.points.xyz[:, :2] - (truth.area[0], truth.area[2])
-    split = split_rectangle(plane, (690.0, 1310.0, 1.0, 1999.0), AREA, "as drawn")
+    split = split_rectangle(plane, (690.0, 1310.0, 1.0, 1999.0), AREA, DRAWN)
     assert split.core == (690.0, 1310.0, 0.0, 2000.0)
     assert split.inside.sum() == 440
 
 
 def test_a_drawn_rectangle_without_points_or_with_all_of_them_degenerates():
     plane = uniform(50, (0, 500, 0, 500))
-    empty = split_rectangle(plane, (1500.0, 1900.0, 1500.0, 1900.0), AREA, "as drawn")
+    empty = split_rectangle(plane, (1500.0, 1900.0, 1500.0, 1900.0), AREA, DRAWN)
     assert empty.core is None
-    assert "no point lies inside" in empty.reason
-    full = split_rectangle(plane, (0.0, 600.0, 0.0, 600.0), AREA, "as drawn")
+    assert empty.reason.code == "fit.no-point-lies-inside"
+    full = split_rectangle(plane, (0.0, 600.0, 0.0, 600.0), AREA, DRAWN)
     assert full.core == AREA
     assert full.inside.all()
 

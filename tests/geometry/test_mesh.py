@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 from surfaces import ORIGIN, fold, height_field, horizon, nine, wave
 
 from geofit.data.errors import SettingsError
@@ -125,7 +126,7 @@ def test_an_outline_outside_leaves_all_and_a_plane_is_two_pieces_a_span():
 
 
 def test_refuses_a_tolerance_of_zero():
-    with pytest.raises(SettingsError, match="above 0"):
+    with refused(SettingsError, "geometry.chordal-tolerance-give-metres"):
         horizon([height_field()]).triangulate(0.0)
 
 

@@ -34,7 +34,7 @@ def changed(**changes):
 
 
 def test_an_empty_panel_says_what_to_do(panel):
-    assert "press Fit" in panel.pages.text
+    assert "press Fit" in str(panel.pages.text)
 
 
 def test_every_check_stands_there_with_its_result(panel):
@@ -57,7 +57,7 @@ def test_a_failed_check_differs_in_word_and_mark(panel):
 def test_a_conflict_leads_to_its_point(panel, qtbot):
     panel.show_surface(changed(conflicts=(Conflict(3, 9, 0.4, "the outcrop gave way"),)))
     row = groups(panel)["Conflicts"][0]
-    assert fitted().points.describe(9) in row.text(0)
+    assert str(fitted().points.describe(9)) in row.text(0)
     assert "gave way" in row.text(4)
     with qtbot.waitSignal(panel.point_chosen) as told:
         panel.tree.setCurrentItem(row)

@@ -22,10 +22,10 @@ def panel(qtbot):
 
 
 def test_empty_and_exact_say_so(panel):
-    assert "press Fit" in panel.pages.text
+    assert "press Fit" in str(panel.pages.text)
     exact = fitted().with_(core=fitted().points.row >= 0)
     panel.show_surface(exact)
-    assert "met exactly" in panel.pages.text
+    assert "met exactly" in str(panel.pages.text)
 
 
 def test_every_approximated_point_is_counted(panel):
@@ -100,7 +100,7 @@ def test_no_text_is_cut_off_or_stands_on_another(panel, qtbot, size):
 def test_long_texts_are_broken(text, lines):
     broken = wrapped(text, 60.0, 9.0)
     assert broken.count("\n") + 1 == lines
-    assert broken.replace("\n", "").replace(" ", "") == text.replace(" ", "")
+    assert broken.replace("\n", "").replace(" ", "") == str(text).replace(" ", "")
 
 
 def test_the_theme_reaches_the_figure(panel, qtbot):

@@ -217,7 +217,7 @@ def test_a_mapping_is_remembered_for_the_same_header(qtbot, tmp_path):
     for column, role in enumerate(("x", "y", "", "z")):
         name_column(wizard, column, role)
     press(qtbot, wizard, wizard.go)
-    (tmp_path / "two.csv").write_text(text.replace("30,1", "31,9"))
+    (tmp_path / "two.csv").write_text(str(text).replace("30,1", "31,9"))
     again = opened(qtbot, tmp_path, tmp_path / "two.csv")
     assert again.drafts()[0].remembered
     assert roles_shown(again) == ["x", "y", "", "z"]

@@ -20,6 +20,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.project.commands import SetSurface
 
 NAME = "T3-T2"
@@ -145,7 +146,7 @@ def test_06_settings_that_were_applied_make_the_result_stale(shown):
     shown.window.fitting.set_settings(NAME, replace(shown.document.settings(NAME), epsilon=0.3))
     shown.idle()
     assert shown.document.stale(NAME)
-    assert "settings" in shown.panels.verdict.text.lower()
+    assert "settings" in str(shown.panels.verdict.text).lower()
     shown.window.session.stack.undo()
     shown.idle()
     assert not shown.document.stale(NAME)
@@ -171,14 +172,14 @@ def test_08_table_and_view_choose_the_same_point(shown, qtbot):
     worst = fitted().accuracy.worst[0]
     shown.panels.residuals.point_chosen.emit(worst)
     assert shown.window.selecting.index() == worst
-    assert f"{fitted().points.xyz[worst, 2]:.2f} m" in shown.view.pointer.ring.text
+    assert f"{fitted().points.xyz[worst, 2]:.2f} m" in str(shown.view.pointer.ring.text)
 
 
 def test_09_the_badge_and_the_bands_say_what_the_check_says(shown):
     accuracy, text = fitted().accuracy, shown.panels.verdict.text
-    assert text.startswith("PASS")
+    assert str(text).startswith("PASS")
     for figure in (f"{accuracy.sigma:.3f}", f"{accuracy.epsilon:g}"):
-        assert figure in text
+        assert figure in str(text)
     key = f"points:{NAME}"
     shown.view.layers.change(key, colour_by="deviation")
     words = [swatch.text for swatch in shown.view.layers[key].legend.swatches]
@@ -212,7 +213,7 @@ def test_11_the_project_is_versioned_text_and_the_title_says_what_is_unsaved(sho
     shown.idle()
     assert not shown.window.isWindowModified()
     text = project.read_text("utf-8")
-    assert "version" in text
+    assert "version" in str(text)
     assert len(text.splitlines()) > 20, "lines that can be compared"
     assert not list(tmp_path.glob("*.tmp*"))
 
@@ -343,7 +344,12 @@ def test_20_errors_say_what_to_do_and_the_dark_theme_reaches_the_view(shown, qtb
     from geofit.gui.dialogs.system_report import system_report
     from geofit.gui.theme import apply_theme
 
-    dialog = ErrorDialog("Open a.csv", InputError("The file is empty", "Choose another.", file="a.csv"))
+    dialog = ErrorDialog(
+        "Open a.csv",
+        InputError(
+            message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+        ),
+    )
     qtbot.addWidget(dialog)
     assert dialog.message.text().endswith("Choose another.")
     assert "OpenGL: " in system_report()

@@ -26,7 +26,7 @@ def test_nothing_examined_offers_to_examine(panel, qtbot):
 
 def test_without_a_surface_there_is_nothing_to_examine(panel):
     panel.show_offdata(None, fitted=False)
-    assert "press Fit" in panel.pages.text
+    assert "press Fit" in str(panel.pages.text)
     assert not panel.pages.button.isVisible()
 
 
@@ -54,7 +54,7 @@ def test_an_outlier_leads_to_its_point_even_when_sorted(panel, qtbot):
     points = fitted().points
     panel.show_offdata(off_data(len(points)), points)
     panel.outliers.sortByColumn(1, Qt.SortOrder.AscendingOrder)
-    assert panel.outliers.rows.columns[0].text(0) == points.describe(7)
+    assert panel.outliers.rows.columns[0].text(0) == str(points.describe(7))
     with qtbot.waitSignal(panel.point_chosen) as told:
         panel.outliers.selectRow(0)
     assert told.args == [3]

@@ -148,8 +148,8 @@ def test_excluded_rows_that_lie_in_no_block_are_told():
         ExcludeRow("T2", Row.of(points, int(index))).redo(document)
     found = part(document)
     assert len(found.blocks) == 2
-    (note,) = (note for note in found.notes if "in no block" in note)
-    assert note.count("holes.csv row") == len(between) > 10
+    (note,) = (note for note in found.notes if "in no block" in str(note))
+    assert str(note).count("holes.csv row") == len(between) > 10
     PartAtFaults("T2", dict(found.blocks)).redo(document)
     assert rows(document) == rows_of(points) - {Row.of(points, int(index)) for index in between}
 
@@ -175,7 +175,7 @@ def test_a_fault_beside_all_points_parts_nothing():
     document = opened(replace(site, horizons={**site.horizons, "F1": far}))
     found = part(document)
     assert not found.blocks
-    assert any("lie on one side of F1" in note for note in found.notes)
+    assert any("lie on one side of F1" in str(note) for note in found.notes)
 
 
 def test_a_block_hears_of_the_dips_measured_on_its_side():

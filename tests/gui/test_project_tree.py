@@ -33,7 +33,7 @@ def go(tree, item):
 
 
 def test_no_site(tree):
-    assert "No site open" in tree.pages.text
+    assert "No site open" in str(tree.pages.text)
 
 
 def test_everything_of_the_site_is_listed(tree):

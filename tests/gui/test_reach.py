@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
+from geofit.data.messages import message
 from geofit.project.commands import SetSurface
 
 
@@ -101,7 +102,7 @@ def test_tab_passes_over_what_stands_behind(shown, key):
         if widget is shown.window.panels.tree.search:
             break
     else:
-        pytest.fail("Tab never came round")
+        pytest.fail(message("test.text", "Tab never came round"))
     assert {"tree", "scene", "fit", "residuals", "view"} <= places
     assert not places & {"adjust", "section", "plan", "checks"}
 

@@ -31,13 +31,13 @@ def column(panel, k):
 
 
 def test_an_empty_table_says_what_to_do(panel):
-    assert "press Fit" in panel.pages.text
+    assert "press Fit" in str(panel.pages.text)
 
 
 def test_the_worst_point_comes_first(panel):
     surface = fitted()
     panel.show_surface(surface)
-    assert panel.pages.text == ""
+    assert str(panel.pages.text) == ""
     sources = [panel.table.rows.source(r) for r in range(20)]
     assert sources == list(surface.accuracy.worst)
     assert float(column(panel, DISTANCE)[0]) == pytest.approx(surface.accuracy.max_abs, abs=1e-4)

@@ -31,9 +31,9 @@ def test_an_empty_list_says_what_to_do(qtbot):
 
     panel = SceneList(Layers())
     qtbot.addWidget(panel)
-    assert "open or import a site" in panel._place.text
+    assert "open or import a site" in str(panel._place.text)
     panel.layers.add(Layer("ground", "ground"))
-    assert panel._place.text == ""
+    assert str(panel._place.text) == ""
 
 
 def test_layers_stand_under_their_horizon_and_the_site_first(shown):

@@ -22,9 +22,9 @@ def panel(qtbot):
 
 
 def test_empty_and_single_patches_say_so(panel):
-    assert "press Fit" in panel.pages.text
+    assert "press Fit" in str(panel.pages.text)
     panel.show_surface(fitted().with_(accuracy=replace(fitted().accuracy, seams=())))
-    assert "no seams" in panel.pages.text
+    assert "no seams" in str(panel.pages.text)
 
 
 def test_every_seam_has_a_row_and_tells_its_number(panel, qtbot):

@@ -48,7 +48,7 @@ def lines(panel):
 
 
 def test_without_a_site_it_says_so(panel):
-    assert "No site open" in panel.pages.text
+    assert "No site open" in str(panel.pages.text)
 
 
 def test_traces_lie_on_their_surfaces(panel, qtbot):

@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLineEdit, QVBoxLayout
 
 from geofit.data.errors import InputError
+from geofit.data.messages import message
 from geofit.gui.dialogs.task_dialog import TaskDialog
 
 
@@ -93,7 +94,7 @@ def endless(_, progress):
         time.sleep(0.02)
     from geofit.data.errors import Cancelled
 
-    raise Cancelled("stopped")
+    raise Cancelled(message("test.text", "stopped"))
 
 
 def test_stop_ends_the_task_and_closing_too(qtbot):
@@ -111,7 +112,12 @@ def test_stop_ends_the_task_and_closing_too(qtbot):
 @pytest.mark.parametrize(
     ("error", "words"),
     [
-        (InputError("The file is empty", "Choose another.", file="a.csv"), "a.csv: The file is empty. Choose another."),
+        (
+            InputError(
+                message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+            ),
+            "a.csv: The file is empty. Choose another.",
+        ),
         (PermissionError(13, "Permission denied"), "that no other program has the file open"),
         (ValueError("seven"), "a mistake in geofit, not in your data; please report it: ValueError: seven"),
     ],

@@ -201,7 +201,7 @@ def test_axes_tell_true_coordinates_at_their_places():
     view = _projector(framed(Eye(np.zeros(3), 212.0, 32.0, 1.0), (box - ORIGIN) * (1, 1, 3), 4 / 3), stretch=3.0)
     found = marks(box, 200.0, view)
     assert {mark.text[0] for mark in found} >= {"E", "N"}
-    heights = [mark for mark in found if mark.text.endswith(" m")]
+    heights = [mark for mark in found if str(mark.text).endswith(" m")]
     assert len(heights) >= 3
     corners = [(x, y) for x in box[:, 0] for y in box[:, 1]]
     for mark in heights:

@@ -12,6 +12,7 @@ import pytest
 from PySide6.QtCore import QObject
 
 from geofit.data.errors import FitError
+from geofit.data.messages import message
 from geofit.data.progress import tell
 from geofit.gui import worker
 
@@ -29,7 +30,7 @@ def endless(*, progress):
 
 
 def failing(*, progress):
-    raise FitError("These points cannot be fitted.")
+    raise FitError(message("test.text", "These points cannot be fitted."))
 
 
 def mistaken(*, progress):
@@ -94,7 +95,7 @@ def test_failures_arrive_whole(owner, qtbot, caplog):
     assert isinstance(errors[0], FitError)
     assert isinstance(errors[1], ZeroDivisionError)
     assert errors[1].__traceback__ is not None
-    assert "ZeroDivisionError" in caplog.text
+    assert "ZeroDivisionError" in str(caplog.text)
 
 
 def test_a_process_of_its_own_gives_its_result(owner, qtbot):

@@ -46,7 +46,7 @@ def test_spellings(write, schema, header):
     found, journal = find(write(header + "\n" + ",".join(["1"] * width) + "\n"), schema)
     roles = [*schema.required, *schema.optional][:width]
     assert [found[role] for role in roles] == list(range(width))
-    guesses = [issue for issue in journal.issues if "is taken as" in issue.reason]
+    guesses = [issue for issue in journal.issues if "is taken as" in str(issue.reason)]
     assert len(guesses) == width
     assert all(issue.severity == "note" for issue in guesses)
 
@@ -59,7 +59,7 @@ def test_gempy_and_loopstructural_picks(write):
 def test_surest_spelling_wins_and_the_others_are_named(write):
     found, journal = find(write("hole,from,to,rock unit,rock code\nB1,0,1,a,b\n"), columns.INTERVALS)
     assert found["code"] == 4
-    assert any("also possible: 'rock unit'" in issue.reason for issue in journal.issues)
+    assert any("also possible: 'rock unit'" in str(issue.reason) for issue in journal.issues)
 
 
 def test_stated_columns_win(write):
@@ -89,4 +89,4 @@ def test_feet_are_converted_and_warned_of(write):
     rows = read_rows(Source(path=write("hole,x,y,z_ft\nB1,1,2,3\n")), columns.COLLAR, journal)
     assert rows.numbers("z").tolist() == [3 * 0.3048]
     assert rows.numbers("x").tolist() == [1.0]
-    assert any("feet" in issue.reason for issue in journal.issues if issue.severity == "warning")
+    assert any("feet" in str(issue.reason) for issue in journal.issues if issue.severity == "warning")

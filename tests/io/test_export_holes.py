@@ -54,8 +54,8 @@ def by_words(path):
 def by_xml(path):
     space = {"l": "http://www.landxml.org/schema/LandXML-1.2"}
     root = ET.parse(path).getroot()
-    place = {p.get("id"): [float(c) for c in p.text.split()] for p in root.findall(".//l:P", space)}
-    return np.array([[place[n] for n in f.text.split()] for f in root.findall(".//l:F", space)])[..., [1, 0, 2]]
+    place = {p.get("id"): [float(c) for c in str(p.text).split()] for p in root.findall(".//l:P", space)}
+    return np.array([[place[n] for n in str(f.text).split()] for f in root.findall(".//l:F", space)])[..., [1, 0, 2]]
 
 
 @pytest.mark.parametrize(

@@ -183,8 +183,8 @@ def test_landxml_follows_the_schema_and_agrees(meshes, tmp_path):
     assert surface.get("name") == "T1 <top> & 'x'"
     definition = surface.find("l:Definition", space)
     assert definition.get("surfType") == "TIN"
-    points = {p.get("id"): [float(c) for c in p.text.split()] for p in definition.findall("l:Pnts/l:P", space)}
-    faces = [[points[n] for n in f.text.split()] for f in definition.findall("l:Faces/l:F", space)]
+    points = {p.get("id"): [float(c) for c in str(p.text).split()] for p in definition.findall("l:Pnts/l:P", space)}
+    faces = [[points[n] for n in str(f.text).split()] for f in definition.findall("l:Faces/l:F", space)]
     back = np.array(faces)[..., [1, 0, 2]]
     assert np.abs(back - corners(mesh.xyz, mesh.triangles)).max() <= 5.1e-7
     assert float(definition.get("area2DSurf")) == pytest.approx(488000 + 2500, rel=0.05)
@@ -249,10 +249,10 @@ def test_landxml_holds_no_element_or_attribute_that_the_schema_lacks(meshes, tmp
         ids = [p.get("id") for p in surface.findall(".//{*}P")]
         assert all(re.fullmatch("[1-9][0-9]*", one) for one in ids)
         assert len(set(ids)) == len(ids) >= 3
-        faces = [f.text.split() for f in surface.findall(".//{*}F")]
+        faces = [str(f.text).split() for f in surface.findall(".//{*}F")]
         assert all(len(set(face)) == 3 and set(face) <= set(ids) for face in faces)
         # Northing, easting, elevation: the first of these is some 3,100 km, the second some 500 km.
-        place = np.array([[float(c) for c in p.text.split()] for p in surface.findall(".//{*}P")])
+        place = np.array([[float(c) for c in str(p.text).split()] for p in surface.findall(".//{*}P")])
         assert np.array_equal(np.round(place.mean(axis=0), -5), [3.1e6, 5e5, 0])
         heights = float(definition.get("elevMin")), float(definition.get("elevMax"))
         assert heights == pytest.approx((place[:, 2].min(), place[:, 2].max()), abs=1e-6)

@@ -90,7 +90,7 @@ def test_ags3_headers_over_two_lines_units_and_continuations(write):
     table = read_any_table(Source(path=path, table="GEOL"), Journal())
     assert table.columns[3] == ("Soft to firm CLAY", "GRANITE")
     assert table.columns[4] == ("Q", "G")
-    (issue,) = [issue for issue in holes.issues if "<CONT>" in issue.reason]
+    (issue,) = [issue for issue in holes.issues if "<CONT>" in str(issue.reason)]
     assert (issue.row, issue.value) == (11, "51")
 
 
@@ -205,7 +205,7 @@ def test_map_points_and_lines(tmp_path, ending):
     write_map(tmp_path / f"l.{ending}", [line], "EPSG:32650", horizon=["A"])
     lines = read_points(tmp_path / f"l.{ending}")
     assert lines.horizons["A"].row.tolist() == [1, 1, 1]
-    assert any("EPSG:32650" in issue.reason for issue in lines.issues)
+    assert any("EPSG:32650" in str(issue.reason) for issue in lines.issues)
 
 
 def test_boundary_from_a_map(tmp_path):

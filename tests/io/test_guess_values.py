@@ -30,11 +30,11 @@ def test_collars_and_logs(header, tmp_path, write):
     assert (found.kind, columns(found)) == ("collar", {"hole": 0, "x": 1, "y": 2, "z": 3})
     assert (logs.kind, columns(logs)) == ("intervals", {"hole": 0, "from": 1, "to": 2, "code": 3})
     assert found.confidence == CONFIDENCE < 0.5
-    assert all(guess.confidence <= CONFIDENCE and "by its values" in guess.reason for guess in found.roles)
+    assert all(guess.confidence <= CONFIDENCE and "by its values" in str(guess.reason) for guess in found.roles)
     site = import_files([collar, log], tmp_path / "s.toml")
     np.testing.assert_allclose(site.site.horizons["base of Q"].xyz[:, 2], [z - 9.5 for *_, z in HOLES])
-    told = [issue for issue in site.issues if "by its values" in issue.reason and issue.severity == "warning"]
-    assert {(issue.file, issue.reason.split(" is taken as ")[1].split(",")[0]) for issue in told} == {
+    told = [issue for issue in site.issues if "by its values" in str(issue.reason) and issue.severity == "warning"]
+    assert {(issue.file, str(issue.reason).split(" is taken as ")[1].split(",")[0]) for issue in told} == {
         ("one.csv", "hole"), ("one.csv", "x"), ("one.csv", "y"), ("one.csv", "z"),
         ("two.csv", "hole"), ("two.csv", "from"), ("two.csv", "to"), ("two.csv", "code"),
     }  # fmt: skip

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from geofit.data.errors import InputError
+from geofit.data.languages import ZH, translate
 from geofit.io import read_points, read_site
 from geofit.io.mapping import ColumnMapping, load_mappings
 from geofit.io.preview import preview_file
 from geofit.project.importing import import_files
-from geofit.report.language import ZH, tell
 
 WELLS = """\
 well,X,Y,KB,T1,T2 base,T3
@@ -45,7 +45,7 @@ def balance(site):
 
 
 def about(site, words):
-    return [issue for issue in site.issues if words in issue.reason]
+    return [issue for issue in site.issues if words in str(issue.reason)]
 
 
 def test_each_column_is_a_horizon_of_its_header(read):
@@ -61,8 +61,8 @@ def test_empty_cells_are_counted_and_a_row_of_them_is_listed(read):
     assert balance(site) == (4, 3)
     (note,) = about(site, "which make no pick")
     assert note.severity == "note"
-    assert note.reason.endswith(": T2 base 1, T3 1")
-    assert tell(note.reason, ZH).endswith("：T2 base 1, T3 1")
+    assert str(note.reason).endswith(": T2 base 1, T3 1")
+    assert translate(note.reason, ZH).endswith("：T2 base 1, T3 1")
     (lost,) = about(site, "no horizon's value")
     assert (lost.row, lost.severity) == (5, "error")
     assert about(site, "taken as elevations")[0].severity == "note"

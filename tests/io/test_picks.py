@@ -44,7 +44,7 @@ def test_one_swapped_row_is_listed_without_a_boundary(write):
     picks = read_points(write("x,y,z\n" + "\n".join(rows)))
     (issue,) = [issue for issue in picks.issues if issue.severity == "error"]
     assert (issue.row, issue.column) == (13, "x")
-    assert "exchanged" in issue.reason
+    assert "exchanged" in str(issue.reason)
 
 
 def test_large_coordinates_are_not_taken_for_swapped(write):
@@ -54,7 +54,7 @@ def test_large_coordinates_are_not_taken_for_swapped(write):
 
 def test_two_points_at_one_place(write):
     picks = read_points(write("x,y,z\n1,2,3\n4,5,6\n1,2,3\n4,5,7\n"))
-    found = {issue.row: issue.severity for issue in picks.issues if "Horizon" in issue.reason}
+    found = {issue.row: issue.severity for issue in picks.issues if "Horizon" in str(issue.reason)}
     assert found == {4: "note", 5: "warning"}
     assert picks.counts[0].used == 4
 

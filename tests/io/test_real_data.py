@@ -21,7 +21,7 @@ def folder(real_data, request):
 
 
 def count(issues, words):
-    return sum(words in issue.reason for issue in issues)
+    return sum(words in str(issue.reason) for issue in issues)
 
 
 def test_copper_creek(folder):

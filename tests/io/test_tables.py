@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from geofit.data.errors import InputError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers, read_table
@@ -63,10 +63,9 @@ def test_lines_count_as_an_editor_does(write, newline):
     table, journal = read(write(newline.join(lines)))
     assert table.lines.tolist() == [4, 7, 8]
     assert table.columns == (("1", "3", "5"), ("2", "4", "6"))
-    assert {
-        "Comment lines at the head that are not read: 1",
-        "Lines without any cell filled, which are no rows: 1",
-    } <= {issue.reason for issue in journal.issues}
+    assert {("import.comment-lines-head-not", 1), ("import.lines-without-cell-filled", 1)} <= {
+        (issue.reason.code, issue.reason.params.get("count")) for issue in journal.issues
+    }
 
 
 def test_quotes_hold_separators_and_line_breaks(write):
@@ -87,7 +86,8 @@ def test_rows_of_the_wrong_width(write):
     assert table.columns == (("1", "1"), ("2", "2"), ("", "3"))
     assert table.read == 3
     (issue,) = [issue for issue in journal.issues if issue.severity == "error"]
-    assert (issue.row, issue.reason) == (4, "Cells of the row: 4, of the header: 3")
+    assert (issue.row, issue.reason.code) == (4, "import.cells-row-header")
+    assert issue.reason.params == {"count": 4, "width": 3}
 
 
 def test_header_with_numbers_among_its_names(write):
@@ -163,7 +163,7 @@ def test_findings_that_are_alike_are_counted(monkeypatch):
     journal = Journal()
     for row in range(100):
         journal.add("note", "a.csv", "alike", row=row)
-        journal.add("note", "a.csv", said("alike too {row}", row=row), row=row)
+        journal.add("note", "a.csv", message("test.text", "alike too {row}", row=row), row=row)
     journal.add("note", "a.csv", "another", row=7)
     assert len(journal.issues) == 13
     more = [issue for issue in journal.issues if "95 more of this kind" in issue.reason]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from refusals import refused, with_code
 from scipy.interpolate import RBFInterpolator
 from truth import paper_arrangement, rms
 
@@ -184,18 +185,18 @@ def test_an_overturned_fold_leaves_out_its_sections_by_new_fits():
     assert sections.groups >= 5
     assert 0 < sections.rms < 10
     assert found.uncertainty is None
-    assert any("folded" in note for note in found.notes)
+    assert with_code(found.notes, "prediction.folded-surface-no-standard")
 
 
 def test_nothing_is_said_of_an_imported_surface():
     found = examine(sample("T3-T2")[0].with_(model=None))
     assert found.left_out == ()
     assert found.uncertainty is None
-    assert "not fitted here" in found.notes[0]
+    assert found.notes[0].code == "prediction.not-fitted-no-point"
 
 
 def test_examine_can_be_stopped():
-    with pytest.raises(geofit.GeofitError, match="Stopped"):
+    with refused(geofit.GeofitError, "run.cancelled"):
         examine(sample("T3-T2")[0], lambda stage, fraction: fraction < 0.4)
 
 
@@ -230,7 +231,7 @@ def test_robust_weights_find_the_truth_behind_blunders_and_leave_clean_data_alon
     assert rms(robust.elevation(x, y) - height) < 0.5 * rms(plain.elevation(x, y) - height)
     assert rms(robust.elevation(x, y) - height) < 1.1 * rms(clean.elevation(x, y) - height)
     assert np.flatnonzero(~robust.model.problem.kept).tolist() == wrong.tolist()
-    assert any("(3: " in note and "robust: peripheral points" in note for note in robust.accuracy.notes)
+    assert with_code(robust.accuracy.notes, "prediction.robust-peripheral-points-neighbours").params["count"] == 3
     assert np.abs(robust.accuracy.residuals[robust.core]).max() < 1e-9
     assert robust.accuracy.n == len(points)
     same = fit_horizon(truth.points, FitSettings(robust=True), boundary=boundary)
@@ -238,7 +239,7 @@ def test_robust_weights_find_the_truth_behind_blunders_and_leave_clean_data_alon
 
 
 def test_robust_is_true_or_false():
-    with pytest.raises(SettingsError, match="true or false"):
+    with refused(SettingsError, "settings.true-false-needed"):
         FitSettings(robust="yes")
 
 

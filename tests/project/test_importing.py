@@ -150,9 +150,9 @@ def test_a_drawing_is_placed_by_its_line(folder):
     assert list(found.site.horizons) == ["base of clay", "fault"]
     np.testing.assert_allclose(found.site.horizons["fault"].xyz, [[500006, 3100008, 80], [500024, 3100032, 82]])
     assert counts_of(found)["c1.dxf"] == (4, 0)
-    assert any(issue.file == "C7.dxf" and "no line in plan" in issue.reason for issue in found.issues)
+    assert any(issue.file == "C7.dxf" and "no line in plan" in str(issue.reason) for issue in found.issues)
     found = import_files([folder / name for name in (*names, "C1.csv")], folder / "s.toml")
-    assert any(issue.file == "c1.dxf" and "from C1.csv already" in issue.reason for issue in found.issues)
+    assert any(issue.file == "c1.dxf" and "from C1.csv already" in str(issue.reason) for issue in found.issues)
 
 
 def test_one_table_of_two_kinds_and_degrees(folder):
@@ -170,7 +170,7 @@ def test_one_table_of_two_kinds_and_degrees(folder):
 def test_bases_are_named_and_issues_told_in_the_language_asked_for(folder):
     from chinese import english_left
 
-    from geofit.report.language import ZH
+    from geofit.data.languages import ZH
 
     found = import_files([folder / name for name in ("collar.csv", "log.csv")], folder / "s.toml", language=ZH)
     assert [name for name in found.site.horizons if name.endswith("底界")] == list(found.site.horizons)
@@ -180,7 +180,7 @@ def test_bases_are_named_and_issues_told_in_the_language_asked_for(folder):
 
 
 def test_a_name_that_another_file_uses_is_kept_in_every_language(folder):
-    from geofit.report.language import ZH
+    from geofit.data.languages import ZH
 
     found = import_files([folder / name for name in FILES], folder / "s.toml", language=ZH)
     assert "base of clay" in found.site.horizons
@@ -223,12 +223,16 @@ def test_a_table_of_degrees_names_the_remedy(tmp_path):
 
 def test_warnings_are_shown_by_kind(capsys):
     from geofit.cli.console import print_issues
-    from geofit.data.messages import said
+    from geofit.data.messages import message
     from geofit.data.site import ImportIssue
 
-    many = [ImportIssue("a.csv", k, "", "", "warning", said("dull {k}", k=k)) for k in range(280)]
+    many = [ImportIssue("a.csv", k, "", "", "warning", message("test.text", "dull {k}", k=k)) for k in range(280)]
     print_issues(
-        [*many, ImportIssue("a.csv", 7, "", "", "warning", "grave"), ImportIssue("a.csv", 9, "", "", "error", "bad")]
+        [
+            *many,
+            ImportIssue("a.csv", 7, "", "", "warning", message("test.text", "grave")),
+            ImportIssue("a.csv", 9, "", "", "error", message("test.text", "bad")),
+        ]
     )
     lines = capsys.readouterr().err.splitlines()
     assert [line.split(":")[-1].strip() for line in lines[1:]] == ["bad.", "grave.", "dull 0. (279 more like it)"]

@@ -8,8 +8,8 @@ import pytest
 from results import horizon
 
 from geofit.data.errors import Cancelled, InputError
+from geofit.data.languages import ZH
 from geofit.project.run import write_reports
-from geofit.report.language import ZH
 
 
 def test_the_forms_that_were_asked_for_and_no_other_file(tmp_path):

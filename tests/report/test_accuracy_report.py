@@ -12,13 +12,14 @@ import pytest
 from results import examined, horizon
 
 from geofit.data.errors import MissingDependencyError
+from geofit.data.languages import EN, ZH
+from geofit.data.messages import message
 from geofit.report import fonts
-from geofit.report.accuracy_report import AccuracyReport, from_json, to_json, write_json
+from geofit.report.accuracy_report import AccuracyReport, to_json, write_json
 from geofit.report.chapters import document
 from geofit.report.digits import metres
 from geofit.report.gather import accuracy_report, today
 from geofit.report.html import write_html
-from geofit.report.language import EN, ZH
 from geofit.report.pdf import write_pdf
 from geofit.report.pictures import draw, draw_site
 from geofit.site.order import Order
@@ -120,7 +121,7 @@ def _pdf(path: Path) -> str:
 
 def _numbers(text: str) -> list[float]:
     """Every number of a text, as a person reads it: also with groups of three joined; the minus sign understood."""
-    text = text.replace("−", "-")
+    text = str(text).replace("−", "-")
     joined = re.sub(r"(?<=\d) (?=\d{3}(?!\d))", "", text)
     return [float(found) for one in (text, joined) for found in re.findall(r"-?\d+(?:\.\d+)?(?:e-?\d+)?", one)]
 
@@ -135,8 +136,8 @@ def _exponent(value: float) -> int:
     return int(f"{abs(value):e}".split("e")[1])
 
 
-def test_the_json_comes_back_as_the_same_report(report):
-    assert from_json(to_json(report)) == report
+def test_the_json_names_every_horizon_and_holds_no_nan(report):
+    assert [one["name"] for one in json.loads(to_json(report))["horizons"]] == [one.name for one in report.horizons]
     assert json.loads(to_json(report))["horizons"][0]["verdict"] == "PASS"
     assert "NaN" not in to_json(report)
 
@@ -171,7 +172,7 @@ def test_every_headline_figure_of_the_json_stands_in_html_and_pdf(written):
         for key in ("minimum", "mean", "crossing_area", "crossing_volume"):
             assert _holds(numbers, pair[key]), f"{form}: {key}"
         for inputs in data["inputs"]:
-            assert inputs["sha256"] in text.replace(" ", "")
+            assert inputs["sha256"] in str(text).replace(" ", "")
 
 
 def test_the_verdict_stands_in_words_behind_the_horizon(written):
@@ -180,10 +181,10 @@ def test_the_verdict_stands_in_words_behind_the_horizon(written):
     for text in (_Page((folder / "report.html").read_text(encoding="utf-8")).text, _pdf(folder / "report.pdf")):
         assert re.search(rf"T3/T2 ✓ {passed} 0\.\d+ 0\.5 ", text)
         assert re.search(rf"T2/T1 ✗ {failed} 0\.\d+ 0\.05 ", text)
-        assert "picks.csv" in text
-        assert "CGCS2000 / 3-degree 105E" in text
-        assert DATE in text
-        assert "T9" in text
+        assert "picks.csv" in str(text)
+        assert "CGCS2000 / 3-degree 105E" in str(text)
+        assert DATE in str(text)
+        assert "T9" in str(text)
 
 
 def test_the_report_is_told_in_its_language(written):
@@ -204,8 +205,10 @@ def test_the_report_is_told_in_its_language(written):
             "建议孔位",
         ],
     }[t.code]
-    assert [word for word in words if word not in text and word.replace(" ", "") not in text.replace(" ", "")] == []
-    assert ("holds" in text) == (t is EN)
+    assert [
+        word for word in words if word not in str(text) and word.replace(" ", "") not in str(text).replace(" ", "")
+    ] == []
+    assert ("holds" in str(text)) == (t is EN)
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert f'<html lang="{"en" if t is EN else "zh-CN"}">' in page
 
@@ -237,7 +240,7 @@ def test_pages_are_a4_numbered_and_end_with_the_last(written):
     texts = _pages(folder / "report.pdf")
     for i, (page, text) in enumerate(zip(pages, texts, strict=True), 1):
         assert [round(float(v) / 72 * 25.4) for v in page.mediabox[2:]] == [210, 297]
-        assert f"{i} / {len(pages)}" in text
+        assert f"{i} / {len(pages)}" in str(text)
 
 
 def test_same_report_same_date_same_bytes(report, images, tmp_path):
@@ -263,10 +266,10 @@ def test_what_was_not_examined_is_said(tmp_path):
     bare = accuracy_report([replace(horizon(), read_back=None)], date=DATE)
     write_html(document(bare, EN, missing_picture="no OpenGL here"), {}, tmp_path / "r.html")
     text = _Page((tmp_path / "r.html").read_text(encoding="utf-8")).text
-    assert "Not examined: whether horizons cross" in text
-    assert "Not examined: how far the surface may lie from the rock" in text
-    assert "Not examined: no STEP file was written" in text
-    assert "no OpenGL here" in text
+    assert "Not examined: whether horizons cross" in str(text)
+    assert "Not examined: how far the surface may lie from the rock" in str(text)
+    assert "Not examined: no STEP file was written" in str(text)
+    assert "no OpenGL here" in str(text)
     write_pdf(document(bare, EN), {}, tmp_path / "r.pdf")
     assert "Not examined: no STEP file was written" in _pdf(tmp_path / "r.pdf")
 
@@ -279,10 +282,10 @@ def test_a_pass_with_a_failed_check_says_so(tmp_path):
     assert not report.horizons[0].sound
     write_html(document(report, EN), {}, tmp_path / "r.html")
     text = _Page((tmp_path / "r.html").read_text(encoding="utf-8")).text
-    assert "✓ PASS" in text
-    assert "✗ 1 failed: normals" in text
-    assert "But a check does not hold" in text
-    assert "Worst at (500001.00, 3100002.00, 1503.00) m" in text
+    assert "✓ PASS" in str(text)
+    assert "✗ 1 failed: normals" in str(text)
+    assert "But a check does not hold" in str(text)
+    assert "Worst at (500001.00, 3100002.00, 1503.00) m" in str(text)
 
 
 def test_names_from_files_cannot_break_the_page(tmp_path):
@@ -295,10 +298,12 @@ def test_names_from_files_cannot_break_the_page(tmp_path):
 
 def test_long_names_and_many_rows_stay_on_the_page(tmp_path):
     result = horizon()
-    points = replace(result.surface.points, file="a" * 90 + "/" + "剖面" * 30 + ".csv")
+    points = result.surface.points.with_(file="a" * 90 + "/" + "剖面" * 30 + ".csv")
     report = accuracy_report([replace(result, surface=result.surface.with_(points=points))], date=DATE)
     row = report.horizons[0].conflicts[0]
-    report = replace(report, horizons=(replace(report.horizons[0], conflicts=(replace(row, text="x" * 3000),) * 60),))
+    report = replace(
+        report, horizons=(replace(report.horizons[0], conflicts=(replace(row, text=message("x", "x" * 3000)),) * 60),)
+    )
     write_pdf(document(report, EN), {}, tmp_path / "r.pdf")
     pdf = pdfium.PdfDocument(tmp_path / "r.pdf")
     wide, edge = 210 / 25.4 * 72, 15 / 25.4 * 72

@@ -6,43 +6,29 @@ import csv
 import errno
 import os
 import pickle
-import string
 from dataclasses import replace
 
 import pytest
-from chinese import english_left, literals
+from chinese import english_left
 
 from geofit.data.errors import InputError, SettingsError
-from geofit.data.messages import Verbatim, listed, said
-from geofit.report.language import EN, ZH, language, sentence, tell
-
-
-def _fields(template: str) -> set[str]:
-    return {name for _, name, _, _ in string.Formatter().parse(template) if name}
-
-
-def test_every_text_has_a_chinese_one():
-    # The document's own sentences are in the catalogue of the windows.
-    told = {text: where for text, where in literals(("geofit", "io")).items() if "/project/" not in where}
-    absent = {text: where for text, where in told.items() if text not in ZH.texts}
-    assert not absent, "say by said() what has values, and add to geofit/report/chinese_errors.py:\n" + "\n".join(
-        f"{where}: {text!r}" for text, where in absent.items()
-    )
-
-
-def test_every_translation_keeps_the_placeholders():
-    wrong = [english for english, chinese in ZH.texts.items() if _fields(english) != _fields(chinese)]
-    assert not wrong
+from geofit.data.languages import EN, ZH, language, sentence, translate
+from geofit.data.messages import Verbatim, message
 
 
 def test_a_sentence_of_the_core_is_told_with_its_values():
-    text = said("{count} of {total} places folded or degenerate", count=3, total=40)
-    assert tell(text, EN) == "3 of 40 places folded or degenerate"
-    assert tell(text, ZH) == "40 处中有 3 处折叠或退化"
-    inner = said(
-        "{reason}, but all points are approximated: {error}", reason=said("the dense points fill the area"), error="x"
+    text = message(
+        "check.places-folded-degenerate", "{count} of {total} places folded or degenerate", count=3, total=40
     )
-    assert tell(inner, ZH) == "密集点布满全区，但全部点采用逼近：x"
+    assert translate(text, EN) == "3 of 40 places folded or degenerate"
+    assert translate(text, ZH) == "40 处中有 3 处折叠或退化"
+    inner = message(
+        "fit.points-approximated",
+        "{reason}, but all points are approximated: {error}",
+        reason=message("fit.dense-points-fill-area", "the dense points fill the area"),
+        error="x",
+    )
+    assert translate(inner, ZH) == "密集点布满全区，但全部点采用逼近：x"
 
 
 def test_what_the_readers_list_is_told_in_chinese(tmp_path):
@@ -52,16 +38,16 @@ def test_what_the_readers_list_is_told_in_chinese(tmp_path):
         "x,y,z,surface,hole\n1,2,3,T1,B1\n1,2,4,T1,B2\n5,6,abc,T1,B3\n7,8,,T1,B4\n", encoding="utf-8"
     )
     found = {issue.row: issue for issue in read_points(tmp_path / "p.csv").issues if issue.severity != "note"}
-    assert found[4].reason == "The z is no finite number"
-    assert tell(found[4].reason, ZH) == "z不是有限数"
-    assert tell(found[5].reason, ZH) + tell(found[5].remedy, ZH) == "z为空请补全该单元格。"
-    assert tell(found[3].reason, ZH) == "层面 T1：同一位置有两个高程，与 点 B1，p.csv 第 2 行 相差 +1.000 m"
+    assert str(found[4].reason) == "The z is no finite number"
+    assert translate(found[4].reason, ZH) == "z不是有限数"
+    assert translate(found[5].reason, ZH) + translate(found[5].remedy, ZH) == "z为空请补全该单元格。"
+    assert translate(found[3].reason, ZH) == "层面 T1：同一位置有两个高程，与 点 B1，p.csv 第 2 行 相差 +1.000 m"
 
 
 def test_words_alone_are_told_and_names_are_left():
-    assert (tell("borehole", ZH), tell("ZK101", ZH)) == ("钻孔", "ZK101")
+    assert (translate("borehole", ZH), translate("ZK101", ZH)) == ("钻孔", "ZK101")
     assert sentence("largest angle at a seam", EN) == "Largest angle at a seam."
-    assert sentence(said("largest angle at a seam"), ZH) == "拼接缝处的最大夹角。"
+    assert sentence(message("check.largest-angle-seam", "largest angle at a seam"), ZH) == "拼接缝处的最大夹角。"
     assert sentence("Not told", ZH) == "Not told."
 
 
@@ -71,40 +57,44 @@ def test_an_unknown_language_names_the_known_ones():
         language("fr")
 
 
-def test_a_text_that_is_not_told_is_found(tmp_path, monkeypatch):
-    import chinese
-
-    monkeypatch.setattr(chinese, "ROOT", tmp_path)
-    (tmp_path / "geofit").mkdir()
-    (tmp_path / "geofit" / "new.py").write_text(
-        "def f(n):\n    what = 'not told'\n    raise InputError(what, f'{n} of them')\n", encoding="utf-8"
-    )
-    assert literals(["geofit"]) == dict.fromkeys(["not told", "f'{n} of them'"], "geofit/new.py:3")
-    assert english_left(said("{reason}.", reason="Nobody told this")) == ["Nobody told this"]
+def test_english_that_is_left_is_found():
+    assert english_left(message("error.reason", "{reason}.", reason="Nobody said this")) == ["Nobody said this"]
 
 
 def test_an_error_is_told_as_a_whole():
-    reason = said("The project cannot be written: {error}", error=os.strerror(errno.EACCES))
-    error = InputError(reason, "Make the folder, or name another.", file="site.toml", row=3, column="base", value="map")
+    reason = message(
+        "project.project-cannot-written", "The project cannot be written: {error}", error=os.strerror(errno.EACCES)
+    )
+    error = InputError(
+        reason,
+        message("project.folder-name", "Make the folder, or name another."),
+        file="site.toml",
+        row=3,
+        column="base",
+        value="map",
+    )
     assert str(error) == (
         "site.toml, row 3, column 'base', value 'map': The project cannot be written: Permission denied. "
         "Make the folder, or name another."
     )
     told = "site.toml，第 3 行，列“base”，值“map”：工程不能写出：没有访问权限。请建立该文件夹，或另行指定。"
-    assert tell(str(error), ZH) == tell(str(pickle.loads(pickle.dumps(error))), ZH) == told
+    assert translate(error.message, ZH) == translate(pickle.loads(pickle.dumps(error)).message, ZH) == told
 
 
 def test_a_reason_that_ends_with_a_full_stop_gets_no_second_one():
-    inner = said("There is no patch '{patch}'. The patches are: {names}.", patch="x", names="core")
-    assert str(InputError(inner, "Check the path.")).count("..") == 0
-    assert tell(str(InputError(inner, "Check the path.")), ZH).endswith("核心区。请检查路径。")
-    assert str(InputError(inner)) == inner
+    inner = message(
+        "edit.no-patch-patches", "There is no patch '{patch}'. The patches are: {names}.", patch="x", names="core"
+    )
+    error = InputError(inner, message("import.check-path", "Check the path."))
+    assert str(error).count("..") == 0
+    assert translate(error.message, ZH).endswith("核心区。请检查路径。")
+    assert str(InputError(inner)) == str(inner)
 
 
 def test_columns_keys_and_names_stay_as_they_are():
-    assert tell(Verbatim("north"), ZH) == "north" != tell("north", ZH)
-    assert tell(listed([Verbatim("core"), said("row {row}", row=2)]), ZH) == "core，第 2 行"
-    assert listed([]) == ""
+    assert translate(Verbatim("north"), ZH) == "north" != translate("north", ZH)
+    assert translate((Verbatim("core"), message("place.row", "row {row}", row=2)), ZH) == "core，第 2 行"
+    assert translate((), ZH) == "()"
 
 
 @pytest.mark.parametrize(
@@ -114,7 +104,7 @@ def test_columns_keys_and_names_stay_as_they_are():
 def test_what_the_system_says_of_files_is_told(code):
     if os.name != "posix":
         pytest.skip("the texts are those of POSIX systems")
-    assert tell(os.strerror(getattr(errno, code)), ZH) != os.strerror(getattr(errno, code))
+    assert translate(os.strerror(getattr(errno, code)), ZH) != os.strerror(getattr(errno, code))
 
 
 def test_what_is_wrong_in_a_site_file_is_told_with_its_line(tmp_path):
@@ -123,7 +113,7 @@ def test_what_is_wrong_in_a_site_file_is_told_with_its_line(tmp_path):
     (tmp_path / "site.toml").write_text("[site]\nname 'x'\n", encoding="utf-8")
     with pytest.raises(InputError) as caught:
         read_site(tmp_path / "site.toml")
-    assert tell(str(caught.value), ZH) == (
+    assert translate(caught.value.message, ZH) == (
         "site.toml，第 2 行：场地文件不是 TOML：键之后应为“=”。请见 docs/site_file.md。"
     )
 
@@ -135,7 +125,13 @@ def test_tables_of_a_chinese_report_have_chinese_reasons(tmp_path):
     from geofit.report.tables import write_issues, write_residuals
 
     issue = ImportIssue(
-        "p.csv", 4, "z", "abc", "error", said("The {role} is no finite number", role="z"), "Complete the cell."
+        "p.csv",
+        4,
+        "z",
+        "abc",
+        "error",
+        message("row.not-a-number", "The {role} is no finite number", role="z"),
+        message("row.complete-cell", "Complete the cell."),
     )
     write_issues([issue], tmp_path / "i.csv", ZH)
     with (tmp_path / "i.csv").open(encoding="utf-8-sig", newline="") as stream:
@@ -145,10 +141,15 @@ def test_tables_of_a_chinese_report_have_chinese_reasons(tmp_path):
     )  # fmt: skip
     result = horizon()
     (conflict,) = result.accuracy.conflicts
-    text = said("{dropped} repeats {kept}", dropped=result.surface.points.describe(conflict.dropped), kept="x")
+    text = message(
+        "conflict.repeated",
+        "{dropped} repeats {kept}",
+        dropped=result.surface.points.describe(conflict.dropped),
+        kept="x",
+    )
     accuracy = replace(result.accuracy, conflicts=(replace(conflict, text=text),))
     write_residuals(replace(result, surface=result.surface.with_(accuracy=accuracy)), tmp_path / "r.csv", ZH)
     with (tmp_path / "r.csv").open(encoding="utf-8-sig", newline="") as stream:
         (dropped,) = [row for row in csv.DictReader(stream) if row["used"] == "no"]
     assert dropped["reason"].endswith("与 x 重复")
-    assert dropped["reason"].startswith(tell(dropped["kind"], ZH))
+    assert dropped["reason"].startswith(translate(dropped["kind"], ZH))

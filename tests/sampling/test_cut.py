@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from refusals import refused
 from surfaces import ORIGIN, fold, height_field, horizon, lifted, nine
 
 from geofit.data.errors import SettingsError
@@ -124,11 +125,11 @@ def test_interval(span, expected):
 
 def test_refuses_what_makes_no_section_or_too_many_contours():
     surface = horizon([height_field()])
-    with pytest.raises(SettingsError, match="one place"):
+    with refused(SettingsError, "geometry.section-line-place-give"):
         cut_section(surface, [[0, 0], [0, 0]])
-    with pytest.raises(SettingsError, match=r"\(k, 2\)"):
+    with refused(SettingsError, "geometry.section-line-shape-finite"):
         cut_section(surface, [0, 0, 1, 1])
-    with pytest.raises(SettingsError, match="above 0"):
+    with refused(SettingsError, "geometry.contour-interval-give-metres"):
         contours(surface, -1)
-    with pytest.raises(SettingsError, match="makes"):
+    with refused(SettingsError, "geometry.interval-contours-give-above"):
         contours(surface, 1e-4)

@@ -19,13 +19,14 @@ from faulted import (
     throw,
     truth,
 )  # fmt: skip
+from refusals import refused, with_code
 from shapely import Polygon
 from truth import EASTING, NORTHING, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.cad.sewing import shell
 from geofit.data.errors import FitError, InputError, SettingsError
-from geofit.data.messages import Said
+from geofit.data.messages import Message
 from geofit.site.fault_blocks import fit_blocks, fit_faulted
 
 
@@ -56,8 +57,8 @@ def test_the_throw_along_an_inclined_fault_is_recovered(blocks):
     # A normal fault opens by throw / tan(dip).
     assert np.isfinite(cut.heave[2:-2]).all()
     assert np.nanmean(cut.heave) == pytest.approx(cut.throw.mean() / np.tan(DIP), rel=0.2)
-    assert isinstance(cut.text, Said)
-    assert "F1 throws T2 down by" in cut.text
+    assert isinstance(cut.text, Message)
+    assert (cut.text.code, cut.text.params["fault"], cut.text.params["horizon"]) == ("site.throw", "F1", "T2")
 
 
 def test_the_higher_block_is_named(blocks):
@@ -104,7 +105,7 @@ def test_a_block_is_checked_as_far_as_it_reaches(blocks):
         area = next(check for check in block.accuracy.checks if check.name == "area")
         assert area.passed
         size = Polygon(block.outline).area
-        assert f"{size:.0f} of the study area's" in area.text
+        assert area.text.params["covered"] == pytest.approx(size, abs=0.5)
         # Of the whole area it is the part on one side.
         assert size < 0.7 * Polygon(BOUNDARY).area
 
@@ -144,20 +145,23 @@ def test_a_fault_beside_the_points_does_not_cut_and_a_note_says_so(points):
     assert found.cuts == ()
     assert len(found.blocks) == 1
     assert found.blocks[0].name == "T2"
-    assert found.notes == ("all points of T2 lie on one side of fault 1",)
+    (note,) = found.notes
+    assert (note.code, note.severity) == ("site.points-lie-side", "warning")
+    assert note.params == {"horizon": "T2", "fault": "fault 1"}
 
 
 def test_a_block_of_too_few_points_is_refused_with_its_rows(points):
     x = np.sort(points.xyz[:, 0])
     line = np.array([[x[1] + 1e-3, NORTHING], [x[1] + 1e-3, NORTHING + 1000]])
-    with pytest.raises(FitError, match=r"of T2: 2 \(.*holes.csv row"):
+    with refused(FitError, "site.too-few-points-block", horizon="T2", count=2) as caught:
         fit_blocks(points, [line], None, BOUNDARY, name="T2")
+    assert all(point.params["row"] for point in caught.value.message.params["points"])
     line[:, 0] = (x[4] + x[5]) / 2
-    assert any("rests on" in note for note in fit_blocks(points, [line], None, BOUNDARY).notes)
+    assert with_code(fit_blocks(points, [line], None, BOUNDARY).notes, "site.rests-points").severity == "warning"
 
 
 def test_what_is_no_fault_is_refused(points):
-    with pytest.raises(SettingsError, match="Fault 1 has shape"):
+    with refused(SettingsError, "site.fault-shape-fitted-surface", number=1):
         fit_blocks(points, [[1.0, 2.0]], None, BOUNDARY)
 
 
@@ -165,7 +169,7 @@ def test_a_site_states_which_fault_cuts_which_horizon():
     site = faulted_site()
     found = fit_faulted(site, "T2")
     assert found.cuts[0].fault == "F1"
-    with pytest.raises(InputError, match="No fault of the site cuts 'F1'"):
+    with refused(InputError, "site.no-fault-site-cuts", name="F1"):
         fit_faulted(site, "F1")
-    with pytest.raises(InputError, match="no horizon 'X'"):
+    with refused(InputError, "run.no-horizon", name="X"):
         fit_faulted(replace(site, faults={}), "X")

@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from refusals import refused
 from surfaces import ORIGIN, fold, height_field, horizon
 
 import geofit.io
 from geofit import fit_horizon
 from geofit.data.errors import InputError, SettingsError
-from geofit.data.messages import Said
+from geofit.data.messages import Message
 from geofit.data.site import Ground
 from geofit.sample import write_site
 from geofit.site.height_field import Relief
@@ -159,7 +160,8 @@ def test_a_crossing_above_the_ground_is_told_from_one_in_the_rock():
         order = compare_horizons(upper, lower, Ground(x, y, np.full((8, 11), ORIGIN[2] + z)))
         assert order.crossings[0].in_air == share
         assert order.check().passed is passed
-    assert "above the ground only" in compare_horizons(upper, lower, Ground(x, y, np.zeros((8, 11)))).check().text
+    check = compare_horizons(upper, lower, Ground(x, y, np.zeros((8, 11)))).check()
+    assert check.text.code == "site.lies-below-above-ground"
     assert compare_horizons(upper, lower).check().passed is False
 
 
@@ -167,9 +169,12 @@ def test_the_check_says_where_how_deep_and_how_much():
     check = compare_horizons(surface(bowl(500.0, 350.0), "T3-T2"), flat(name="T2-T1")).check()
     assert (check.name, check.passed, check.unit) == ("order", False, "m")
     assert check.value == pytest.approx(3.6, abs=1e-6)
-    assert isinstance(check.text, Said)
-    assert "T3-T2 lies below T2-T1 (places: 1)" in check.text
-    assert "deepest 3.60 m at (500500.0, 3100350.0)" in check.text
+    assert isinstance(check.text, Message)
+    assert check.text.code == "site.lies-below-places-m2"
+    figures = check.text.params
+    assert (figures["upper"], figures["lower"], figures["count"]) == ("T3-T2", "T2-T1", 1)
+    assert figures["depth"] == pytest.approx(3.6, abs=1e-6)
+    assert (figures["x"], figures["y"]) == pytest.approx((500_500.0, 3_100_350.0), abs=0.05)
 
 
 def test_horizons_apart_in_plan_have_no_order():
@@ -186,11 +191,16 @@ def test_every_pair_of_a_sequence_is_compared():
 
 
 @pytest.mark.parametrize(
-    ("sequence", "words"), [(["A", "X"], "'X', which has no surface"), (["A", "A"], "twice"), (["A", "M"], "'M' is no")]
+    ("sequence", "code", "params"),
+    [
+        (["A", "X"], "site.order-names-no-surface", {"name": "X"}),
+        (["A", "A"], "site.order-names-horizon-twice", {}),
+        (["A", "M"], "site.no-height-field-map", {"name": "M"}),
+    ],
 )
-def test_a_sequence_that_cannot_be_is_refused(sequence, words):
+def test_a_sequence_that_cannot_be_is_refused(sequence, code, params):
     surfaces = {"A": flat(name="A"), "M": horizon([fold()], name="M")}
-    with pytest.raises(SettingsError, match=words):
+    with refused(SettingsError, code, **params):
         orders(surfaces, sequence)
 
 
@@ -235,17 +245,17 @@ def test_the_site_file_states_order_and_faults(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("order", "faults", "words"),
+    ("order", "faults", "code", "params"),
     [
-        ('["A", "b"]', "", r"order in \[site\] names 'b', which is no horizon"),
-        ('["A", "A"]', "", "names 'A' twice"),
-        ('"A"', "", "must be a list"),
-        ('["A", "F1"]', 'F1 = ["B"]', "'F1' stands in the order"),
-        ('["A"]', 'F1 = ["F1"]', "cut itself"),
-        ('["A"]', 'F2 = ["A"]', "names 'F2', which is no horizon"),
-        ('["A"]', 'F1 = ["C"]', "names 'C', which is no horizon"),
+        ('["A", "b"]', "", "import.names-unknown-horizon", {"key": "order", "where": "[site]", "name": "b"}),
+        ('["A", "A"]', "", "import.names-twice", {"name": "A"}),
+        ('"A"', "", "import.key-where-kind", {"key": "order", "where": "[site]"}),
+        ('["A", "F1"]', 'F1 = ["B"]', "import.fault-stands-order-strata", {"fault": "F1"}),
+        ('["A"]', 'F1 = ["F1"]', "import.fault-said-cut", {"fault": "F1"}),
+        ('["A"]', 'F2 = ["A"]', "import.names-unknown-horizon", {"key": "faults", "name": "F2"}),
+        ('["A"]', 'F1 = ["C"]', "import.names-unknown-horizon", {"key": "F1", "name": "C"}),
     ],
 )
-def test_an_order_or_fault_that_cannot_be_is_refused_by_name(tmp_path, order, faults, words):
-    with pytest.raises(InputError, match=words):
+def test_an_order_or_fault_that_cannot_be_is_refused_by_name(tmp_path, order, faults, code, params):
+    with refused(InputError, code, **params):
         read_small(tmp_path, order, faults)

@@ -1,0 +1,94 @@
+"""The languages of messages, reports and windows: one gettext catalogue each, ``geofit/locale/LANGUAGE``."""
+
+from __future__ import annotations
+
+import unicodedata
+from dataclasses import dataclass
+from functools import cache
+from gettext import NullTranslations, translation
+from pathlib import Path
+from typing import Any
+
+from geofit.data.errors import SettingsError
+from geofit.data.messages import ENGLISH, Message, Verbatim, message, render
+
+__all__ = ["EN", "ZH", "Language", "catalogue", "language", "sentence", "translate"]
+
+LOCALE = Path(__file__).resolve().parents[1] / "locale"
+
+
+@cache
+def catalogue(name: str) -> NullTranslations:
+    """Return the catalogue of a folder of ``geofit/locale`` ("zh_CN"); English is the source itself."""
+    return ENGLISH if name == "en" else translation("geofit", LOCALE, [name])
+
+
+@dataclass(frozen=True)
+class Language:
+    """A language: its code ("zh"), its code in HTML ("zh-CN") and the folder of its catalogue ("zh_CN").
+
+    Called with an English template it returns the text in this language with its values filled in. The template must
+    be a literal, so that Babel can extract it.
+
+    Examples
+    --------
+    >>> ZH("Horizon {name}", name="T1")
+    '层面 T1'
+    """
+
+    code: str
+    html: str
+    folder: str
+
+    @property
+    def catalogue(self) -> NullTranslations:
+        """The translations."""
+        return catalogue(self.folder)
+
+    def __call__(self, template: str, /, **values: Any) -> str:
+        """Return a label or sentence of the report."""
+        return translate(Message("", template, values), self)
+
+
+EN = Language("en", "en", "en")
+ZH = Language("zh", "zh-CN", "zh_CN")
+
+
+def language(code: str) -> Language:
+    """Return the language of a code.
+
+    Raises
+    ------
+    SettingsError
+        If there is none.
+    """
+    for known in (EN, ZH):
+        if known.code == code:
+            return known
+    raise SettingsError(
+        message("report.language-choose-en-zh", "The language is '{code}'; choose en or zh.", code=Verbatim(code))
+    )
+
+
+def translate(value: Message | str | BaseException, language: Language) -> str:
+    """Return a message, the message of an error or a term (a kind, a patch) in a language.
+
+    Parameters
+    ----------
+    value : Message, str or exception
+        A string that is no term of :data:`geofit.data.terms.TERMS` is returned as it is.
+    language : Language
+        What the language lacks stays English.
+    """
+    if isinstance(value, BaseException):
+        value = getattr(value, "message", None) or str(value)
+    return str(render(value, language.catalogue))
+
+
+def sentence(value: Message | str, language: Language) -> str:
+    """Return a message as a sentence in a language: a capital letter in front, a full stop behind."""
+    text = translate(value, language).strip()
+    if not text or text.endswith((".", "。", "!", "?")):
+        return text[:1].upper() + text[1:]
+    stop = "。" if unicodedata.east_asian_width(text[-1]) in "WF" else "."
+    return text[:1].upper() + text[1:] + stop
