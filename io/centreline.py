@@ -99,7 +99,7 @@ def read_centreline(
     walls = _walls(rows, level)
     shots, previous = ShotList(across=True), dict[str, tuple[str, int]]()
     for i in np.flatnonzero(rows.ok).tolist():
-        name = station[i] or message("place.row", "row {row}", row=int(rows.line[i]))
+        name = station[i] or f"row {int(rows.line[i])}"
         xyz = (float(x[i]), float(y[i]), float(z[i]))
         if name in shots.fixed and not np.allclose(shots.fixed[name], xyz, rtol=0, atol=1e-3):
             # Numbers that start anew on each line are other stations.

@@ -7,8 +7,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Literal
 
-from geofit.data.languages import folded
-from geofit.data.messages import EMPTY, Message, message
+from geofit.data.messages import EMPTY, Message, folded, message
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.source import Source
 

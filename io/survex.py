@@ -15,7 +15,7 @@ import numpy as np
 from geofit.caves.shots import ShotList, polar
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import EMPTY, Message, Verbatim, message
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.survex_settings import QUANTITIES, Settings, unit_of
@@ -40,7 +40,7 @@ class _Reader:
         self.read = self.used = self.anonymous = 0
         self.remarks: dict[str, int] = {}
 
-    def list_(self, severity: Severity, reason: str, remedy: str, file: str, row: int, value: str) -> None:
+    def list_(self, severity: Severity, reason: Message, remedy: Message, file: str, row: int, value: str) -> None:
         self.journal.add(severity, file, reason, remedy, row=row, value=value)
 
     def root(self, name: str) -> str:
@@ -121,7 +121,10 @@ class _Reader:
                                 "Data of this style are not read: {style}",
                                 style=Verbatim(" ".join(rest)),
                             ),
-                            "Write one line a shot with *data normal from to tape compass clino.",
+                            message(
+                                "import.write-data-normal",
+                                "Write one line a shot with *data normal from to tape compass clino.",
+                            ),
                             file,
                             row,
                             line,
@@ -157,7 +160,7 @@ class _Reader:
             self.list_(
                 "error",
                 message("import.command-cannot-read", "The command *{word} cannot be read", word=Verbatim(word)),
-                "Correct its arguments.",
+                message("import.correct-arguments", "Correct its arguments."),
                 file,
                 row,
                 line,
@@ -166,7 +169,7 @@ class _Reader:
         self.list_(
             "warning",
             message("import.command-not-read", "The command *{word} is not read", word=Verbatim(word)),
-            "Check that it does not change the shots.",
+            message("import.check-shots", "Check that it does not change the shots."),
             file,
             row,
             line,
@@ -177,7 +180,14 @@ class _Reader:
         """Read one line of data."""
         self.read += 1
         if settings.style == "ignore":
-            self.list_("note", "The line is in a block of data that is ignored", "", file, row, " ".join(cells))
+            self.list_(
+                "note",
+                message("import.data-ignored", "The line is in a block of data that is ignored"),
+                EMPTY,
+                file,
+                row,
+                " ".join(cells),
+            )
             return
         order = settings.order
         if settings.style in ("normal", "passage"):
@@ -201,7 +211,7 @@ class _Reader:
                 "The line is not data in the order {order}",
                 order=Verbatim(" ".join(order) or settings.style),
             ),
-            "Correct the line or the *data command.",
+            message("import.correct-line-or-data", "Correct the line or the *data command."),
             file,
             row,
             " ".join(cells),
@@ -249,7 +259,12 @@ class _Reader:
             a, b = self.root(start), self.root(end)
             if a == b:
                 self.list_(
-                    "error", "The shot joins two names of one station", "Check *equate.", self.source.name, row, a
+                    "error",
+                    message("import.shot-joins-station", "The shot joins two names of one station"),
+                    message("import.check-equate", "Check *equate."),
+                    self.source.name,
+                    row,
+                    a,
                 )
                 continue
             number = found.add(a, b, offset, row, counted=counted, passage=passage)
@@ -262,7 +277,12 @@ class _Reader:
                 found.fixed[self.root(name)] = xyz
             else:
                 self.list_(
-                    "warning", "The fixed station is not in any shot", "Check its name.", self.source.name, row, name
+                    "warning",
+                    message("import.fixed-station-without-shot", "The fixed station is not in any shot"),
+                    message("import.check-name", "Check its name."),
+                    self.source.name,
+                    row,
+                    name,
                 )
         return found.survey(self.source.name)
 
@@ -273,7 +293,14 @@ class _Reader:
         names = [self.root(name) for name, _ in tube]
         for i, (_, walls) in enumerate(tube):
             if names[i] not in found.stations:
-                self.list_("warning", "The walls are at a station without a shot", "", self.source.name, 0, names[i])
+                self.list_(
+                    "warning",
+                    message("import.walls-without-shot", "The walls are at a station without a shot"),
+                    EMPTY,
+                    self.source.name,
+                    0,
+                    names[i],
+                )
                 continue
             ways = [(names[j], names[j + 1]) for j in (i, i - 1) if 0 <= j < len(names) - 1]
             left, right, up, down = walls

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.languages import folded
-from geofit.data.messages import message
+from geofit.data.messages import Message, folded, message
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, quoted_cells, split_line
 from geofit.io.source import Source
@@ -280,7 +279,7 @@ def require_width(width: int, file: str) -> None:
         )
 
 
-def shown(names: Sequence[str]) -> str:
+def shown(names: Sequence[str]) -> Message | str:
     """Return the first names of columns with commas, and how many there are more."""
     text = ", ".join(folded(name, 60) for name in names[:_SHOWN])
     return (

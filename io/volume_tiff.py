@@ -48,11 +48,16 @@ def read_tiff(source: Any, name: str) -> NDArray[Any]:
                 slice_ = _page(image, name)
                 if slice_.shape != first.shape:
                     raise InputError(
-                        message("import.page-pixels-first", "page {page} has {size} pixels, the first has {first}", page=page + 1,
-                             size=" x ".join(map(str, slice_.shape)), first=" x ".join(map(str, first.shape))),
+                        message(
+                            "import.page-pixels-first",
+                            "page {page} has {size} pixels, the first has {first}",
+                            page=page + 1,
+                            size=" x ".join(map(str, slice_.shape)),
+                            first=" x ".join(map(str, first.shape)),
+                        ),
                         message("import.export-slices-same", "Export all slices with the same size."),
                         file=name,
-                    )  # fmt: skip
+                    )
                 out[page] = slice_
             return out
     finally:

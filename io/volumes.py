@@ -82,7 +82,7 @@ def read_volume(
         return RockVolume(values, pore=pore, voxel=stated if voxel is None else voxel)
     except VolumeError as error:
         raise VolumeError(
-            message("import.file-reason", "{file}: {reason}", file=Path(path).name, reason=error.args[0])
+            message("import.file-reason", "{file}: {reason}", file=Path(path).name, reason=error.message)
         ) from None
 
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.accuracy import Accuracy, Check, Conflict, Group
-from geofit.data.messages import message
+from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group
+from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
     from geofit.bodies.body import ImplicitBody
@@ -21,9 +21,13 @@ Floats = NDArray[np.float64]
 WORST = 20
 #: Sides of the box, and how a sentence calls them.
 SIDE_WORDS = {
-    "west": message("side.west", "west"), "east": message("side.east", "east"), "south": message("side.south", "south"), "north": message("side.north", "north"),
-    "bottom": message("side.bottom", "bottom"), "top": message("side.top", "top"),
-}  # fmt: skip
+    "west": message("side.west", "west"),
+    "east": message("side.east", "east"),
+    "south": message("side.south", "south"),
+    "north": message("side.north", "north"),
+    "bottom": message("side.bottom", "bottom"),
+    "top": message("side.top", "top"),
+}
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,36 +73,86 @@ def examine(body: ImplicitBody) -> BodyAccuracy:
     unsupported, cut = body.fitted.unsupported, body.field.cut
     checks = (
         Check(
-            "sides", wrong == 0, float(wrong), 0.0, "1",
-            message("bodies.samples-wrong-side", "{wrong} of {count} samples lie on the wrong side of the surface", wrong=wrong,
-                 count=len(data.inside) + len(data.outside)),
+            "sides",
+            wrong == 0,
+            float(wrong),
+            0.0,
+            "1",
+            message(
+                "bodies.samples-wrong-side",
+                "{wrong} of {count} samples lie on the wrong side of the surface",
+                wrong=wrong,
+                count=len(data.inside) + len(data.outside),
+            ),
             tuple((float(x), float(y), float(z)) for x, y, z in places),
         ),
         Check(
-            "logged lengths", missed + excess <= 0.0 if logged else None, missed + excess, 0.0, "m",
-            message("bodies.logged-inside-outside", "{missed:.2f} m are logged inside but lie outside the body, {excess:.2f} m the reverse, of "
-                 "{logged:.1f} m", missed=missed, excess=excess, logged=logged),
+            "logged lengths",
+            missed + excess <= 0.0 if logged else None,
+            missed + excess,
+            0.0,
+            "m",
+            message(
+                "bodies.logged-inside-outside",
+                "{missed:.2f} m are logged inside but lie outside the body, {excess:.2f} m the reverse, of "
+                "{logged:.1f} m",
+                missed=missed,
+                excess=excess,
+                logged=logged,
+            ),
         ),
         Check(
-            "crossings", extra_in + extra_out == 0, float(extra_in + extra_out), 0.0, "1",
-            message("bodies.places-where-hole", "{count} places where a hole crosses the surface between two samples of one side",
-                 count=extra_in + extra_out),
+            "crossings",
+            extra_in + extra_out == 0,
+            float(extra_in + extra_out),
+            0.0,
+            "1",
+            message(
+                "bodies.places-where-hole",
+                "{count} places where a hole crosses the surface between two samples of one side",
+                count=extra_in + extra_out,
+            ),
         ),
         Check(
-            "components", unsupported == 0, float(unsupported), 0.0, "1",
-            message("bodies.parts-body-hold", "{count} parts of the body hold no contact and no inside sample", count=unsupported),
+            "components",
+            unsupported == 0,
+            float(unsupported),
+            0.0,
+            "1",
+            message(
+                "bodies.parts-body-hold",
+                "{count} parts of the body hold no contact and no inside sample",
+                count=unsupported,
+            ),
         ),
         Check(
-            "closed", not cut, float(len(cut)), 0.0, "1",
-            message("bodies.closed-in-box", "The body is closed in its box") if not cut else
-            message("bodies.cut-at-box", "The body is cut at the box: {sides}", sides=", ".join(SIDE_WORDS[side] for side in cut)),
+            "closed",
+            not cut,
+            float(len(cut)),
+            0.0,
+            "1",
+            message("bodies.closed-in-box", "The body is closed in its box")
+            if not cut
+            else message(
+                "bodies.cut-at-box",
+                "The body is cut at the box: {sides}",
+                sides=tuple(SIDE_WORDS[side] for side in cut),
+            ),
         ),
         Check(
-            "far from data", None, far_share, 1.0, "1",
-            message("bodies.surface-farther-data", "{share:.1%} of the surface is farther than {distance:.1f} m from all data", share=far_share,
-                 distance=far),
+            "far from data",
+            None,
+            far_share,
+            1.0,
+            "1",
+            message(
+                "bodies.surface-farther-data",
+                "{share:.1%} of the surface is farther than {distance:.1f} m from all data",
+                share=far_share,
+                distance=far,
+            ),
         ),
-    )  # fmt: skip
+    )
     conflicts = tuple(Conflict(-1, -1, 0.0, issue.text) for issue in body.issues if not issue.used)
     order = np.argsort(-np.abs(residuals), kind="stable")
     return BodyAccuracy(
@@ -114,7 +168,7 @@ def examine(body: ImplicitBody) -> BodyAccuracy:
         by_kind={},
         by_hole=_groups(residuals, data.hole),
         by_section={},
-        over={"epsilon": int((np.abs(residuals) > settings.epsilon).sum())},
+        over={"epsilon": Exceedance(settings.epsilon, int((np.abs(residuals) > settings.epsilon).sum()))},
         worst=tuple(order[:WORST].tolist()),
         checks=checks,
         conflicts=conflicts,
@@ -155,7 +209,7 @@ def _far_share(body: ImplicitBody, distance: float) -> float:
     if not len(places):
         return 0.0
     data = np.concatenate([body.data.contacts, body.data.inside, body.data.outside]) - body.origin
-    return float((cKDTree(data).query(places)[0] > distance).mean())
+    return float((np.asarray(cKDTree(data).query(places)[0]) > distance).mean())
 
 
 def _groups(residuals: Floats, names: NDArray[np.str_]) -> Mapping[str, Group]:
@@ -167,19 +221,26 @@ def _groups(residuals: Floats, names: NDArray[np.str_]) -> Mapping[str, Group]:
     return groups
 
 
-def _notes(body: ImplicitBody) -> tuple[str, ...]:
+def _notes(body: ImplicitBody) -> tuple[Message, ...]:
     fitted, region = body.fitted, body.region
     samples = len(fitted.prepared.inside) + len(fitted.prepared.outside)
-    notes: list[str] = [
+    notes: list[Message] = [
         message(
-            "bodies.samples-active-field", "{active} of {samples} samples are active; the field satisfies {conditions} conditions",
-            active=fitted.active, samples=samples + len(region.closing), conditions=fitted.conditions,
+            "bodies.samples-active-field",
+            "{active} of {samples} samples are active; the field satisfies {conditions} conditions",
+            active=fitted.active,
+            samples=samples + len(region.closing),
+            conditions=fitted.conditions,
         )
-    ]  # fmt: skip
+    ]
     if len(region.closing):
         notes.append(
-            message("bodies.ground-farther-contacts", "Ground farther than {reach:.1f} m from contacts and inside samples counts as outside "
-                 "({count} places)", reach=region.reach, count=len(region.closing))
-        )  # fmt: skip
+            message(
+                "bodies.ground-farther-contacts",
+                "Ground farther than {reach:.1f} m from contacts and inside samples counts as outside ({count} places)",
+                reach=region.reach,
+                count=len(region.closing),
+            )
+        )
     notes += [issue.text for issue in body.issues]
     return tuple(notes)

@@ -185,14 +185,14 @@ def complementarity(matrix: Floats, wanted: Floats, start: Floats, forced: NDArr
             wrong = np.where(free, x < 0, whole @ x - right < -tiny) & ~forced
             count = int(wrong.sum())
             if not count:
-                return np.where(forced, np.abs(x) + 1e-300, x) / scale
+                return np.asarray(np.where(forced, np.abs(x) + 1e-300, x) / scale)
             chances = CHANCES if count < fewest else chances - 1
             fewest = min(fewest, count)
             free = free ^ wrong
         sweep(whole, right, forced, x, SWEEPS)
         free, fewest, chances = (x > 0) | forced, len(right) + 1, CHANCES
     # Not settled: what the sweeps left above zero is held, what is then still violated will be forced.
-    return np.where(forced, np.abs(x) + 1e-300, np.maximum(x, 0.0)) / scale
+    return np.asarray(np.where(forced, np.abs(x) + 1e-300, np.maximum(x, 0.0)) / scale)
 
 
 def fixes_trend(points: Floats, oriented: Floats) -> bool:

@@ -60,13 +60,15 @@ class Blend:
     def value(self, x: Floats) -> Floats:
         """Return the values (n,) at (n, 3) places."""
         out = self.coarse.value(x)
-        blend(np.ascontiguousarray(x), *self._packed, False, out, np.zeros((0, 3)))
+        given: Any = (np.ascontiguousarray(x), *self._packed, False, out, np.zeros((0, 3)))
+        blend(*given)
         return out
 
     def gradient(self, x: Floats) -> Floats:
         """Return the gradients (n, 3) at (n, 3) places."""
         out = np.ascontiguousarray(self.coarse.gradient(x))
-        blend(np.ascontiguousarray(x), *self._packed, True, np.zeros(len(x)), out)
+        given: Any = (np.ascontiguousarray(x), *self._packed, True, np.zeros(len(x)), out)
+        blend(*given)
         return out
 
     @cached_property

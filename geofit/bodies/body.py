@@ -121,10 +121,14 @@ class ImplicitBody:
         longest = float((upper - lower).max())
         if not np.isfinite(spacing) or spacing <= 0 or longest / spacing > MOST:
             raise SettingsError(
-                message("bodies.spacing-cannot-used", "A spacing of {spacing} m cannot be used for a body {size:.1f} m long: give {least:.3g} m or "
-                     "more.",
-                     spacing=spacing, size=longest, least=longest / MOST)
-            )  # fmt: skip
+                message(
+                    "bodies.spacing-cannot-used",
+                    "A spacing of {spacing} m cannot be used for a body {size:.1f} m long: give {least:.3g} m or more.",
+                    spacing=spacing,
+                    size=longest,
+                    least=longest / MOST,
+                )
+            )
         counts = np.maximum(np.ceil((upper - lower) / spacing).astype(int), 1) + 4
         start = (lower + upper) / 2 - counts * spacing / 2
         shape = (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1)

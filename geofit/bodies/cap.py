@@ -53,7 +53,8 @@ def cap_triangles(
         If a line crosses itself in plan.
     """
     loops = _loops(segments)
-    plain, flat = [], []
+    plain: list[list[int]] = []
+    flat: list[list[int]] = []
     for loop in loops:
         twice = _twice_area(vertices[loop, :2])
         # What is smaller than any triangle is closed by a fan: no library need look at it.
@@ -96,9 +97,13 @@ def _delaunay(vertices: Floats, loops: Sequence[list[int]], name: str) -> Ints:
     number = {tuple(vertices[k, :2].tolist()): k for loop in loops for k in loop}
     if not all(ring.is_valid for ring in rings) or len(number) < sum(map(len, loops)):
         raise FitError(
-            message("bodies.cut-along-crosses", "The cut along '{name}' crosses itself: the body's triangles are too coarse for it. Give cut() a "
-                 "smaller spacing.", name=name)
-        )  # fmt: skip
+            message(
+                "bodies.cut-along-crosses",
+                "The cut along '{name}' crosses itself: the body's triangles are too coarse for it. Give cut() a "
+                "smaller spacing.",
+                name=name,
+            )
+        )
     order = sorted(range(len(rings)), key=lambda k: -rings[k].area)
     parent: dict[int, int | None] = {}
     for at, k in enumerate(order):
@@ -113,7 +118,8 @@ def _delaunay(vertices: Floats, loops: Sequence[list[int]], name: str) -> Ints:
         if depth(k) % 2 == 1:
             holes = [vertices[loops[j], :2] for j in order if parent[j] == k]
             region = shapely.Polygon(vertices[loops[k], :2], holes)
-            for triangle in shapely.constrained_delaunay_triangles(region).geoms:
+            parts: Any = shapely.constrained_delaunay_triangles(region)
+            for triangle in parts.geoms:
                 corners = [number[(x, y)] for x, y in triangle.exterior.coords[:3]]
                 found.append(corners if triangle.exterior.is_ccw else corners[::-1])
     return np.array(found, np.int64).reshape(-1, 3)

@@ -86,7 +86,8 @@ def cut_body(
     for name, surface in _named(surfaces):
 
         def height(x: Floats, y: Floats, surface: Any = surface) -> Floats:
-            return np.asarray(surface.elevation(x + origin[0], y + origin[1]), float) - origin[2]
+            heights: Floats = np.asarray(surface.elevation(x + origin[0], y + origin[1]), float) - origin[2]
+            return heights
 
         parts: list[tuple[dict[str, Side], TriangleMesh]] = []
         for sides, piece in pieces:
@@ -110,16 +111,23 @@ def _named(surfaces: Any) -> list[tuple[str, CuttingSurface]]:
     for name, surface in named:
         if names.count(name) > 1 or not hasattr(surface, "elevation"):
             raise SettingsError(
-                message("bodies.surface-cannot-cut", "Surface '{name}' cannot cut the body: each needs a name of its own and elevation(x, y).",
-                     name=name)
-            )  # fmt: skip
+                message(
+                    "bodies.surface-cannot-cut",
+                    "Surface '{name}' cannot cut the body: each needs a name of its own and elevation(x, y).",
+                    name=name,
+                )
+            )
     return named
 
 
 def _label(body: str, sides: Mapping[str, Side]) -> str:
-    words = [message("bodies.above", "above {surface}", surface=k) if v == "above" else message("bodies.below", "below {surface}", surface=k)
-             for k, v in sides.items()]  # fmt: skip
-    return f"{body}: {', '.join(words)}" if words else body
+    words = [
+        message("bodies.above", "above {surface}", surface=k)
+        if v == "above"
+        else message("bodies.below", "below {surface}", surface=k)
+        for k, v in sides.items()
+    ]
+    return f"{body}: {', '.join(map(str, words))}" if words else body
 
 
 def split_mesh(mesh: TriangleMesh, height: Height, name: str = "") -> tuple[TriangleMesh, TriangleMesh]:
@@ -143,9 +151,13 @@ def split_mesh(mesh: TriangleMesh, height: Height, name: str = "") -> tuple[Tria
     level = vertices[:, 2] - height(vertices[:, 0], vertices[:, 1])
     if not np.isfinite(level).all():
         raise FitError(
-            message("bodies.surface-not-reach", "Surface '{name}' does not reach {share:.1%} of the body. Enlarge the surface, or leave it out.",
-                 name=name, share=float((~np.isfinite(level)).mean()))
-        )  # fmt: skip
+            message(
+                "bodies.surface-not-reach",
+                "Surface '{name}' does not reach {share:.1%} of the body. Enlarge the surface, or leave it out.",
+                name=name,
+                share=float((~np.isfinite(level)).mean()),
+            )
+        )
     up = level >= 0
     nothing = mesh.only(np.zeros(len(triangles), bool))
     if up.all() or not up.any():

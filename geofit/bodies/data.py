@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import FitError, PointsError
-from geofit.data.messages import message
+from geofit.data.messages import Message, Verbatim, message
 
 __all__ = ["BodyData", "BodyIssue", "Prepared", "prepare"]
 
@@ -27,7 +27,7 @@ class BodyIssue:
     """
 
     kind: Literal["coincident", "contradiction", "normal", "interval", "gap"]
-    text: str
+    text: Message
     place: tuple[float, float, float] | None = None
     used: bool = True
 
@@ -95,9 +95,13 @@ class BodyData:
             known = known.reshape(0, 3)
         if known.shape != (n, 3):
             raise PointsError(
-                message("bodies.normals-shape-contacts", "normals has shape {shape}; {n} contacts need shape ({n}, 3), NaN where no normal is known.",
-                     shape=known.shape, n=n)
-            )  # fmt: skip
+                message(
+                    "bodies.normals-shape-contacts",
+                    "normals has shape {shape}; {n} contacts need shape ({n}, 3), NaN where no normal is known.",
+                    shape=known.shape,
+                    n=n,
+                )
+            )
         self._set("normals", known)
         for name, values, count in (
             ("hole", hole, n),
@@ -140,7 +144,7 @@ def _places(name: str, given: ArrayLike) -> Floats:
             message(
                 "bodies.hold-array",
                 "{name} must hold numbers: {error}. Give an (n, 3) array of metres.",
-                name=name,
+                name=Verbatim(name),
                 error=error,
             )
         ) from None
@@ -148,27 +152,42 @@ def _places(name: str, given: ArrayLike) -> Floats:
         xyz = xyz.reshape(0, 3)
     if xyz.ndim != 2 or xyz.shape[1] != 3:
         raise PointsError(
-            message("bodies.shape-array-easting", "{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.", name=name,
-                 shape=xyz.shape)
-        )  # fmt: skip
+            message(
+                "bodies.shape-array-easting",
+                "{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.",
+                name=Verbatim(name),
+                shape=xyz.shape,
+            )
+        )
     bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
     if bad.size:
         raise PointsError(
-            message("bodies.not-first-index", "{count} of {total} {name} are not finite, the first at index {index}. Remove or complete them.",
-                 count=bad.size, total=len(xyz), name=name, index=bad[0])
-        )  # fmt: skip
+            message(
+                "bodies.not-first-index",
+                "{count} of {total} {name} are not finite, the first at index {index}. Remove or complete them.",
+                count=bad.size,
+                total=len(xyz),
+                name=Verbatim(name),
+                index=bad[0],
+            )
+        )
     return xyz
 
 
 def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
-    array = np.asarray(values, dtype=dtype)
+    array: NDArray[Any] = np.asarray(values, dtype=dtype)
     if array.ndim == 0:
         return np.full(n, array, dtype=array.dtype)
     if array.shape != (n,):
         raise PointsError(
-            message("points.shape-points-need-shape", "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.", name=name,
-                 shape=array.shape, n=n)
-        )  # fmt: skip
+            message(
+                "points.shape-points-need-shape",
+                "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
+                name=name,
+                shape=array.shape,
+                n=n,
+            )
+        )
     return array.copy()
 
 
@@ -210,8 +229,12 @@ def prepare(data: BodyData, coincidence_distance: float) -> Prepared:
     contacts, member = _merge(data.contacts, coincidence_distance)
     count = np.bincount(member, minlength=len(contacts))
     for k in np.flatnonzero(count > 1).tolist():
-        text = message("bodies.contacts-coincide-within", "{count} contacts coincide within {distance:g} m: they count as one", count=int(count[k]),
-                    distance=coincidence_distance)  # fmt: skip
+        text = message(
+            "bodies.contacts-coincide-within",
+            "{count} contacts coincide within {distance:g} m: they count as one",
+            count=int(count[k]),
+            distance=coincidence_distance,
+        )
         issues.append(BodyIssue("coincident", text, _place(contacts[k])))
     normals = _normals(data, contacts, member, issues)
     inside_used, outside_used = _sides(data, contacts, coincidence_distance, issues)
@@ -257,9 +280,13 @@ def _normals(data: BodyData, contacts: Floats, member: Ints, issues: list[BodyIs
     length = np.linalg.norm(data.normals, axis=1)
     for i in np.flatnonzero(length == 0).tolist():
         issues.append(
-            BodyIssue("normal", message("bodies.normal-contact-zero", "The normal of contact {index} is zero: it is not used", index=i),
-                      _place(data.contacts[i]), used=False)
-        )  # fmt: skip
+            BodyIssue(
+                "normal",
+                message("bodies.normal-contact-zero", "The normal of contact {index} is zero: it is not used", index=i),
+                _place(data.contacts[i]),
+                used=False,
+            )
+        )
     known = np.isfinite(length) & (length > 0)
     unit = np.zeros_like(data.normals)
     unit[known] = data.normals[known] / length[known, None]
@@ -270,8 +297,11 @@ def _normals(data: BodyData, contacts: Floats, member: Ints, issues: list[BodyIs
     # Mean of unit vectors below cos(60 degrees): they do not mean the same side.
     opposite = (count > 1) & (size < 0.5 * count)
     for k in np.flatnonzero(opposite).tolist():
-        text = message("bodies.coincident-contacts-opposite", "{count} coincident contacts have opposite normals: none of these normals is used",
-                    count=int(count[k]))  # fmt: skip
+        text = message(
+            "bodies.coincident-contacts-opposite",
+            "{count} coincident contacts have opposite normals: none of these normals is used",
+            count=int(count[k]),
+        )
         issues.append(BodyIssue("normal", text, _place(contacts[k]), used=False))
     use = (count > 0) & ~opposite
     result = np.full_like(contacts, np.nan)
@@ -290,7 +320,7 @@ def _sides(
     for name, samples in (("inside", data.inside), ("outside", data.outside)):
         mask = np.ones(len(samples), bool)
         if len(contacts) and len(samples):
-            mask = cKDTree(contacts - origin).query(samples - origin)[0] > distance
+            mask = np.asarray(cKDTree(contacts - origin).query(samples - origin)[0]) > distance
         for i in np.flatnonzero(~mask).tolist():
             text = message(
                 "bodies.sample-contact-side",
@@ -301,16 +331,20 @@ def _sides(
             issues.append(BodyIssue("coincident", text, _place(samples[i]), used=False))
         used.append(mask)
     if len(data.inside) and len(data.outside):
-        far, near = cKDTree(data.outside - origin).query(data.inside - origin)
+        far, near = map(np.asarray, cKDTree(data.outside - origin).query(data.inside - origin))
         for i in np.flatnonzero(far <= distance).tolist():
             holes = data.inside_hole[i], data.outside_hole[near[i]]
             text = message(
-                "bodies.inside-sample-hole", "Inside sample {inside} (hole '{first}') and outside sample {outside} (hole '{second}') are one place: "
+                "bodies.inside-sample-hole",
+                "Inside sample {inside} (hole '{first}') and outside sample {outside} (hole '{second}') are one place: "
                 "intervals contradict each other, neither side is used",
-                inside=i, outside=int(near[i]), first=holes[0], second=holes[1],
-            )  # fmt: skip
+                inside=i,
+                outside=int(near[i]),
+                first=holes[0],
+                second=holes[1],
+            )
             issues.append(BodyIssue("contradiction", text, _place(data.inside[i]), used=False))
-        clash = cKDTree(data.inside - origin).query(data.outside - origin)[0] <= distance
+        clash = np.asarray(cKDTree(data.inside - origin).query(data.outside - origin)[0]) <= distance
         used[0] &= far > distance
         used[1] &= ~clash
     return used[0], used[1]
@@ -321,31 +355,50 @@ def _require_body(data: BodyData, found: Prepared) -> None:
     given = {"contacts": len(found.contacts), "inside": len(found.inside), "outside": len(found.outside)}
     if not len(found.inside) and not oriented:
         raise FitError(
-            message("bodies.nothing-inside-body", "Nothing lies inside the body ({contacts} contacts, {inside} inside and {outside} outside samples, no "
-                 "normals). Give intervals in the body, inside samples, or contacts with normals.", **given)
-        )  # fmt: skip
+            message(
+                "bodies.nothing-inside-body",
+                "Nothing lies inside the body ({contacts} contacts, {inside} inside and {outside} outside samples, no "
+                "normals). Give intervals in the body, inside samples, or contacts with normals.",
+                **given,
+            )
+        )
     if not len(found.contacts) and not len(found.outside):
         raise FitError(
-            message("bodies.nothing-bounds-body", "Nothing bounds the body: all {inside} samples are inside. Give contacts, or intervals outside it.",
-                 **given)
-        )  # fmt: skip
+            message(
+                "bodies.nothing-bounds-body",
+                "Nothing bounds the body: all {inside} samples are inside. Give contacts, or intervals outside it.",
+                **given,
+            )
+        )
     if not len(found.contacts):
         raise FitError(
-            message("bodies.contact-samples-inside", "There is no contact: {inside} samples are inside, {outside} outside, and none of the data lies on "
-                 "the surface. Give contacts, such as the ends of the intervals in the body.", **given)
-        )  # fmt: skip
+            message(
+                "bodies.contact-samples-inside",
+                "There is no contact: {inside} samples are inside, {outside} outside, and none of the data lies on "
+                "the surface. Give contacts, such as the ends of the intervals in the body.",
+                **given,
+            )
+        )
     if len(data.holes) == 1 and (data.hole == data.holes[0]).all():
         raise FitError(
-            message("bodies.contacts-come-hole", "All contacts come from one hole, '{hole}': they do not show how wide the body is. Give at least two "
-                 "holes, or outlines or points elsewhere.", hole=data.holes[0])
-        )  # fmt: skip
+            message(
+                "bodies.contacts-come-hole",
+                "All contacts come from one hole, '{hole}': they do not show how wide the body is. Give at least two "
+                "holes, or outlines or points elsewhere.",
+                hole=data.holes[0],
+            )
+        )
     everything = np.concatenate([found.contacts, found.inside, found.outside])
     extent = np.linalg.svd(everything - everything.mean(axis=0), compute_uv=False)
     if len(everything) < 2 or extent[1] < 1e-3 * extent[0]:
         raise FitError(
-            message("bodies.data-line-hole", "All {count} data lie on one line, like those of one hole: they do not show how wide the body is. "
-                 "Give at least two holes.", count=len(everything))
-        )  # fmt: skip
+            message(
+                "bodies.data-line-hole",
+                "All {count} data lie on one line, like those of one hole: they do not show how wide the body is. "
+                "Give at least two holes.",
+                count=len(everything),
+            )
+        )
 
 
 def _place(xyz: Floats) -> tuple[float, float, float]:

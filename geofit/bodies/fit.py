@@ -98,9 +98,13 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
         own = np.concatenate([prepared.contacts, prepared.inside])
         if not ((own >= region.lower) & (own <= region.upper)).all(axis=1).any():
             raise FitError(
-                message("bodies.contact-inside-sample", "No contact and no inside sample lies in the box {lower} to {upper}. Give a box around the body.",
-                     lower=region.lower.tolist(), upper=region.upper.tolist())
-            )  # fmt: skip
+                message(
+                    "bodies.contact-inside-sample",
+                    "No contact and no inside sample lies in the box {lower} to {upper}. Give a box around the body.",
+                    lower=region.lower.tolist(),
+                    upper=region.upper.tolist(),
+                )
+            )
     frame = BodyFrame.around(region.lower, region.upper, settings)
     outside = np.concatenate([prepared.outside, region.closing])
     lower, upper = region.lower - frame.origin, region.upper - frame.origin
@@ -127,7 +131,7 @@ def _solve(
     from scipy.spatial import cKDTree
 
     contacts = frame.to_fit(prepared.contacts)
-    oriented = np.isfinite(prepared.normals).all(axis=1)
+    oriented = np.asarray(np.isfinite(prepared.normals).all(axis=1))
     slopes = frame.gradient_to_fit(prepared.normals[oriented])
     xyz = frame.to_fit(np.concatenate([prepared.inside, outside]))
     side = np.concatenate([-np.ones(len(prepared.inside)), np.ones(len(outside))])

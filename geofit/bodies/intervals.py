@@ -87,9 +87,12 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
     holes = source if hasattr(source, "logs") else getattr(source, "boreholes", None)
     if holes is None or not hasattr(holes, "paths"):
         raise SettingsError(
-            message("bodies.holds-logged-intervals", "A {kind} holds no logged intervals. Give BodyData, or the boreholes with their interval tables.",
-                 kind=type(source).__name__)
-        )  # fmt: skip
+            message(
+                "bodies.holds-logged-intervals",
+                "A {kind} holds no logged intervals. Give BodyData, or the boreholes with their interval tables.",
+                kind=type(source).__name__,
+            )
+        )
     if codes is None:
         raise SettingsError(
             message(
@@ -128,9 +131,13 @@ def from_intervals(holes: IntervalSource, codes: str | Sequence[str], step: floa
     if missing or not wanted:
         frequent = ", ".join(f"{code} ({count})" for code, count in counts.most_common(12))
         raise SettingsError(
-            message("bodies.code-not-occur", "Code {codes} does not occur in the logs. The most frequent codes are: {frequent}.",
-                 codes=", ".join(missing) or "''", frequent=frequent)
-        )  # fmt: skip
+            message(
+                "bodies.code-not-occur",
+                "Code {codes} does not occur in the logs. The most frequent codes are: {frequent}.",
+                codes=", ".join(missing) or "''",
+                frequent=frequent,
+            )
+        )
     issues: list[BodyIssue] = []
     rows: dict[str, list[tuple[float, float, bool]]] = {}
     for log in holes.logs:
@@ -176,15 +183,23 @@ def stretches(intervals: Sequence[tuple[float, float, bool]], hole: str, issues:
         elif base - top > TOLERANCE:
             if sides:
                 text = message(
-                    "bodies.hole-intervals-inside", "Hole '{hole}', {top:.2f} to {base:.2f} m: intervals inside and outside the body contradict each "
-                    "other; the stretch counts as unknown", hole=hole, top=top, base=base,
-                )  # fmt: skip
+                    "bodies.hole-intervals-inside",
+                    "Hole '{hole}', {top:.2f} to {base:.2f} m: intervals inside and outside the body contradict each "
+                    "other; the stretch counts as unknown",
+                    hole=hole,
+                    top=top,
+                    base=base,
+                )
                 issues.append(BodyIssue("contradiction", text, used=False))
             else:
                 unlogged += base - top
     if unlogged:
-        text = message("bodies.hole-logged-intervals", "Hole '{hole}': {length:.2f} m between logged intervals are not logged; they count as unknown",
-                    hole=hole, length=unlogged)  # fmt: skip
+        text = message(
+            "bodies.hole-logged-intervals",
+            "Hole '{hole}': {length:.2f} m between logged intervals are not logged; they count as unknown",
+            hole=hole,
+            length=unlogged,
+        )
         issues.append(BodyIssue("gap", text))
     return merged
 

@@ -27,10 +27,8 @@ __all__ = ["blend", "gradients", "gram", "sweep", "values"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-_compiled: Any = njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 
-
-@_compiled
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def _radial(square: float, reach: float) -> tuple[float, float, float]:
     """Return k, first and second of the module's docstring; ``reach`` is R, or 0 for r^3."""
     r = math.sqrt(square)
@@ -46,7 +44,7 @@ def _radial(square: float, reach: float) -> tuple[float, float, float]:
     return p * p * (4.0 * q + 1.0), -20.0 * over * p * (1.0 - q), second
 
 
-@_compiled
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def _cubes(x: Floats, c: Floats, w: Floats, out: Floats) -> None:
     # The loop that takes nearly all of the time, kept free of branches so that it runs on vectors.
     for i in range(x.shape[0]):
@@ -59,7 +57,7 @@ def _cubes(x: Floats, c: Floats, w: Floats, out: Floats) -> None:
         out[i] += total
 
 
-@_compiled
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def _values(x: Floats, c: Floats, w: Floats, g: Floats, v: Floats, reach: float, out: Floats) -> None:
     for i in range(x.shape[0]):
         px, py, pz = x[i, 0], x[i, 1], x[i, 2]
@@ -74,7 +72,7 @@ def _values(x: Floats, c: Floats, w: Floats, g: Floats, v: Floats, reach: float,
         out[i] += total
 
 
-@_compiled
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def _gradients(x: Floats, c: Floats, w: Floats, g: Floats, v: Floats, reach: float, out: Floats) -> None:
     for i in range(x.shape[0]):
         px, py, pz = x[i, 0], x[i, 1], x[i, 2]
@@ -97,7 +95,7 @@ def _gradients(x: Floats, c: Floats, w: Floats, g: Floats, v: Floats, reach: flo
         out[i, 2] += sz
 
 
-@_compiled
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def blend(
     x: Floats, centre: Floats, half: Floats, reach: Floats, first: Ints, c: Floats, w: Floats, turned: Ints, g: Floats,
     v: Floats, slopes: bool, out: Floats, out_slopes: Floats,
@@ -175,9 +173,11 @@ def values(x: Floats, centres: Floats, weights: Floats, dipoles: Floats, moments
     out = np.zeros(len(x))
     x = np.ascontiguousarray(x)
     if reach == 0.0 and not len(dipoles):
-        _cubes(x, *_columns(centres), weights, out)
+        given: Any = (x, *_columns(centres), weights, out)
+        _cubes(*given)
     else:
-        _values(x, *_columns(centres), weights, *_columns(dipoles, moments), reach, out)
+        given = (x, *_columns(centres), weights, *_columns(dipoles, moments), reach, out)
+        _values(*given)
     return out
 
 
@@ -186,7 +186,8 @@ def gradients(
 ) -> Floats:
     """Return the gradient (n, 3) of the sum of kernels; arguments as :func:`values`."""
     out = np.zeros((len(x), 3))
-    _gradients(np.ascontiguousarray(x), *_columns(centres), weights, *_columns(dipoles, moments), reach, out)
+    given: Any = (np.ascontiguousarray(x), *_columns(centres), weights, *_columns(dipoles, moments), reach, out)
+    _gradients(*given)
     return out
 
 
@@ -194,7 +195,7 @@ def _columns(*arrays: Floats) -> list[Floats]:
     return [np.ascontiguousarray(a.T) for a in arrays]
 
 
-@_compiled
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def _gram(a: Floats, p: Floats, b: Floats, q: Floats, reach: float, out: Floats) -> None:
     n, m = a.shape[0], b.shape[0]
     for i in range(n):
@@ -236,12 +237,12 @@ def gram(a: Floats, a_gradients: Floats, b: Floats, b_gradients: Floats, reach: 
     (n + 3k, m + 3l) array
     """
     out = np.empty((len(a) + 3 * len(a_gradients), len(b) + 3 * len(b_gradients)))
-    whole = [np.ascontiguousarray(part) for part in (a, a_gradients, b, b_gradients)]
-    _gram(*whole, reach, out)
+    given: Any = (*(np.ascontiguousarray(part) for part in (a, a_gradients, b, b_gradients)), reach, out)
+    _gram(*given)
     return out
 
 
-@_compiled
+@njit(cache=True, fastmath=True, nogil=True, error_model="numpy")
 def sweep(matrix: Floats, right: Floats, forced: Any, x: Floats, count: int) -> None:
     """Take ``count`` Gauss-Seidel sweeps of matrix @ x = right in place, with x >= 0 wherever not forced."""
     for _ in range(count):

@@ -95,9 +95,13 @@ def patched_surface(body: ImplicitBody, tolerance: float | None = None) -> Patch
     """
     if body.field.cut:
         raise FitError(
-            message("bodies.body-cut-box", "The body is cut at its box ({sides}): it has sharp edges, which smooth patches cannot follow. "
-                 "Enlarge the box, or write triangles.", sides=", ".join(body.field.cut))
-        )  # fmt: skip
+            message(
+                "bodies.body-cut-box",
+                "The body is cut at its box ({sides}): it has sharp edges, which smooth patches cannot follow. "
+                "Enlarge the box, or write triangles.",
+                sides=", ".join(body.field.cut),
+            )
+        )
     mesh = body.overview
     lower, upper = body.extent
     if tolerance is None:
@@ -138,10 +142,17 @@ def _fitted(
                 return fit, deviation, angle
             best = min(best, (deviation, angle))
     raise FitError(
-        message("bodies.patches-not-follow", "{most} patches do not follow the body within {tolerance:.3g} m and {angle:g} degrees at the seams (best: "
-             "{deviation:.3g} m, {turn:.3g} degrees). Allow a larger epsilon, or write triangles.", most=most,
-             tolerance=tolerance, angle=ANGLE, deviation=best[0], turn=best[1])
-    )  # fmt: skip
+        message(
+            "bodies.patches-not-follow",
+            "{most} patches do not follow the body within {tolerance:.3g} m and {angle:g} degrees at the seams (best: "
+            "{deviation:.3g} m, {turn:.3g} degrees). Allow a larger epsilon, or write triangles.",
+            most=most,
+            tolerance=tolerance,
+            angle=ANGLE,
+            deviation=best[0],
+            turn=best[1],
+        )
+    )
 
 
 def _sides(quads: Ints) -> tuple[Ints, Ints, NDArray[np.bool_]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -89,7 +90,8 @@ class Saddle:
         matrix[size:, :size] = side.T
         if not len(matrix):
             return
-        sytrf, self._sytrs, work = get_lapack_funcs(("sytrf", "sytrs", "sytrf_lwork"), (matrix,))
+        routines: Any = get_lapack_funcs(("sytrf", "sytrs", "sytrf_lwork"), (matrix,))
+        sytrf, self._sytrs, work = routines
         length = int(work(len(matrix), lower=1)[0])
         self._factor, self._pivots, info = sytrf(matrix, lower=1, lwork=length, overwrite_a=1)
         if info:
@@ -143,7 +145,7 @@ class Saddle:
             rows = self.rows(block)
             own = 1.0 if self.reach else 0.0
             parts.append(own - np.einsum("ij,ji->i", rows, self.solve_rows(rows)))
-        return np.maximum(np.concatenate(parts), 0.0)
+        return np.asarray(np.maximum(np.concatenate(parts), 0.0))
 
     def weights_at(self, x: Floats) -> Floats:
         """Return the (m, n + 3k) kriging weights: values at x per unit of each given value."""

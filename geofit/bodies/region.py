@@ -58,7 +58,7 @@ def hole_spacing(data: BodyData) -> float | None:
         return None
     xyz = np.concatenate([data.contacts, data.inside, data.outside]) - data.contacts[0]
     some = np.arange(0, len(data.contacts), -(-len(data.contacts) // 1000))
-    far, near = cKDTree(xyz).query(xyz[some], k=min(NEIGHBOURS, len(xyz)))
+    far, near = map(np.asarray, cKDTree(xyz).query(xyz[some], k=min(NEIGHBOURS, len(xyz))))
     other = names[near] != data.hole[some, None]
     # Where all neighbours are of the own hole, the farthest of them is nearer than the next hole.
     gap = np.where(other, far, np.inf).min(axis=1)
@@ -81,7 +81,7 @@ def region_of(
     # Half of each side more: a body that few holes hit is still among the holes that miss it.
     size = upper - lower
     places = lower - size / 4 + _halton(2000) * size * 1.5
-    gap = tree.query(places - origin)[0]
+    gap = np.asarray(tree.query(places - origin)[0])
     spacing = float(gap.mean()) / MEAN_GAP if known is None else known
     reach = REACH * spacing if settings.reach is None else settings.reach
     margin = max(MARGIN * reach, 0.05 * float(size.max()))

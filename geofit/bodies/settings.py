@@ -82,22 +82,35 @@ class BodySettings:
                 continue
             if not _number(value) or value <= 0:
                 raise SettingsError(
-                    message("bodies.is-a-finite", "{setting} is {value}; a finite number of metres above 0 is needed.", setting=name,
-                         value=repr(value))
-                )  # fmt: skip
+                    message(
+                        "bodies.is-a-finite",
+                        "{setting} is {value}; a finite number of metres above 0 is needed.",
+                        setting=name,
+                        value=repr(value),
+                    )
+                )
         for name in ("azimuth", "dip", "rake"):
             if not _number(getattr(self, name)):
                 raise SettingsError(
-                    message("bodies.angle-degrees", "{setting} is {value}; a finite angle in degrees is needed.", setting=name,
-                         value=repr(getattr(self, name)))
-                )  # fmt: skip
+                    message(
+                        "bodies.angle-degrees",
+                        "{setting} is {value}; a finite angle in degrees is needed.",
+                        setting=name,
+                        value=repr(getattr(self, name)),
+                    )
+                )
         for name, least in (("dense", 50), ("realizations", 10), ("seed", 0)):
             value = getattr(self, name)
             if not isinstance(value, int) or isinstance(value, bool) or value < least:
                 raise SettingsError(
-                    message("bodies.whole", "{setting} is {value}; a whole number of at least {least} is needed.", setting=name,
-                         value=repr(value), least=least)
-                )  # fmt: skip
+                    message(
+                        "bodies.whole",
+                        "{setting} is {value}; a whole number of at least {least} is needed.",
+                        setting=name,
+                        value=repr(value),
+                        least=least,
+                    )
+                )
         if not isinstance(self.closed, bool):
             raise SettingsError(
                 message(
@@ -121,9 +134,12 @@ class BodySettings:
             box = np.asarray(self.box, float)
             if box.shape != (2, 3) or not np.isfinite(box).all() or not (box[0] < box[1]).all():
                 raise SettingsError(
-                    message("bodies.box-lower-upper", "box is {value}; a lower and an upper corner in map coordinates are needed.",
-                         value=repr(self.box))
-                )  # fmt: skip
+                    message(
+                        "bodies.box-lower-upper",
+                        "box is {value}; a lower and an upper corner in map coordinates are needed.",
+                        value=repr(self.box),
+                    )
+                )
             object.__setattr__(self, "box", tuple(tuple(corner) for corner in box.tolist()))
 
 

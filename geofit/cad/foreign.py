@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import GeofitError, InputError, MissingDependencyError
 from geofit.data.files import is_file, legible
-from geofit.data.messages import message
+from geofit.data.messages import Message, Verbatim, message
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.trimmed import TrimmedSurface
@@ -109,7 +109,7 @@ def read_apart(path: str | PathLike[str], reader: str) -> dict[str, PatchSurface
         return _load(result, source)
 
 
-def _refused(source: Path, reason: str) -> InputError:
+def _refused(source: Path, reason: Message) -> InputError:
     return InputError(
         reason,
         message("cad.open-cad-program", "Open it in a CAD program and export the surface as STEP again."),
@@ -126,13 +126,16 @@ def child(arguments: Sequence[str]) -> int:
         source = _readable(Path(path), Path(result).parent)
         _save(Path(result), getattr(importlib.import_module(module), function)(source))
     except InputError as error:
-        _write(Path(result), {"reason": str(error.reason), "remedy": str(error.remedy)}, [])
+        _write(Path(result), {"reason": _stored(error.reason), "remedy": _stored(error.remedy)}, [])
     except GeofitError as error:
-        _write(Path(result), {"missing" if isinstance(error, MissingDependencyError) else "reason": str(error)}, [])
+        key = "missing" if isinstance(error, MissingDependencyError) else "reason"
+        _write(Path(result), {key: _stored(error.message)}, [])
     except MemoryError:
-        _write(Path(result), {"reason": "Reading the file needs too much memory"}, [])
+        reason = message("cad.too-much-memory", "Reading the file needs too much memory")
+        _write(Path(result), {"reason": _stored(reason)}, [])
     except Exception as error:  # whatever OpenCASCADE raises about damaged geometry
-        _write(Path(result), {"reason": f"The file is damaged ({type(error).__name__})"}, [])
+        reason = message("cad.damaged", "The file is damaged ({kind})", kind=type(error).__name__)
+        _write(Path(result), {"reason": _stored(reason)}, [])
     return 0
 
 
@@ -183,9 +186,34 @@ def _save(target: Path, surfaces: Mapping[str, PatchSurface]) -> None:
             | {"loops": loops}
         )
     if not all(np.isfinite(array).all() for array in arrays):
-        _write(target, {"reason": "The file holds coordinates that are no finite numbers"}, [])
+        reason = message("cad.not-finite", "The file has coordinates that are not finite numbers")
+        _write(target, {"reason": _stored(reason)}, [])
         return
     _write(target, {"surfaces": found}, arrays)
+
+
+def _stored(value: Any) -> Any:
+    """Return what JSON can hold of a message and its parameters."""
+    if isinstance(value, Message):
+        params = {name: _stored(param) for name, param in value.params.items()}
+        return {"code": value.code, "template": value.template, "params": params, "plural": value.plural}
+    if isinstance(value, tuple):
+        return [_stored(item) for item in value]
+    if isinstance(value, Verbatim):
+        return {"verbatim": str(value)}
+    return value if isinstance(value, (str, int, float)) else str(value)
+
+
+def _restored(value: Any) -> Any:
+    """Return what :func:`_stored` made JSON of."""
+    if isinstance(value, list):
+        return tuple(_restored(item) for item in value)
+    if isinstance(value, dict):
+        if "verbatim" in value:
+            return Verbatim(value["verbatim"])
+        params = {name: _restored(param) for name, param in value["params"].items()}
+        return Message(value["code"], value["template"], params, value["plural"])
+    return value
 
 
 def _write(target: Path, meta: Mapping[str, Any], arrays: Sequence[NDArray[Any]]) -> None:
@@ -199,11 +227,11 @@ def _load(result: Path, source: Path) -> dict[str, PatchSurface]:
         meta = json.loads(file["meta"].tobytes())
         arrays = {name: file[name] for name in file.files if name != "meta"}
     if "missing" in meta:
-        raise MissingDependencyError(meta["missing"])
+        raise MissingDependencyError(_restored(meta["missing"]))
     if "reason" in meta:
         if "remedy" in meta:
-            raise InputError(meta["reason"], meta["remedy"], file=str(source))
-        raise _refused(source, meta["reason"])
+            raise InputError(_restored(meta["reason"]), _restored(meta["remedy"]), file=str(source))
+        raise _refused(source, _restored(meta["reason"]))
 
     def array(number: int | None) -> Any:
         return None if number is None else arrays[f"a{number}"]

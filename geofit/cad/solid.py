@@ -140,9 +140,12 @@ def patch_solid(components: Sequence[Sequence[Patch]]) -> Any:
         found = [TopoDS.Shell_s(part) for part in explore(sewn, TopAbs_SHELL)]
         if len(found) != 1 or free_edges(found[0]):
             raise StitchError(
-                message("cad.patches-body-not", "{count} patches of a body do not make one closed shell. Write triangles instead.",
-                     count=len(patches))
-            )  # fmt: skip
+                message(
+                    "cad.patches-body-not",
+                    "{count} patches of a body do not make one closed shell. Write triangles instead.",
+                    count=len(patches),
+                )
+            )
         shells.append(found[0])
     return _solids(shells)
 
@@ -368,19 +371,71 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBac
     best = _reference_volume(body) if nurbs else body.overview.volume
     epsilon = body.settings.epsilon
     checks = (
-        Check("solids", len(solids) > 0, float(len(solids)), 1.0, "1",
-              message("cad.solids-file", "{count} solids in the file", count=len(solids))),
+        Check(
+            "solids",
+            len(solids) > 0,
+            float(len(solids)),
+            1.0,
+            "1",
+            message("cad.solids-file", "{count} solids in the file", count=len(solids)),
+        ),
         # A tessellated face has no surface, which the check of a B-rep would miss.
-        Check("valid", valid if nurbs else None, float(valid), 1.0, "1",
-              message("cad.opencascade-finds-solids", "OpenCASCADE finds the solids valid") if valid else message("cad.opencascade-finds-solids-invalid", "OpenCASCADE finds the solids invalid")),
-        Check("closed", free == 0, float(free), 0.0, "1", message("cad.free-edges-file", "{count} free edges in the file", count=free)),
-        Check("deviation", deviation <= epsilon, deviation, epsilon, "m",
-              message("cad.faces-file-within", "The faces of the file lie within {deviation:.3g} m of the body", deviation=deviation)),
-        Check("sigma", sigma < epsilon if nurbs else None, sigma, epsilon, "m",
-              message("cad.contacts-faces-file", "The contacts lie on the faces of the file with sigma {sigma:.3g} m", sigma=sigma)),
-        Check("volume", abs(volume / best - 1) <= VOLUME[grade], volume, best, "m3",
-              message("cad.file-solids-body", "The file's solids have {volume:.6g} m3, the body {best:.6g} m3", volume=volume, best=best)),
-    )  # fmt: skip
+        Check(
+            "valid",
+            valid if nurbs else None,
+            float(valid),
+            1.0,
+            "1",
+            message("cad.opencascade-finds-solids", "OpenCASCADE finds the solids valid")
+            if valid
+            else message("cad.opencascade-finds-solids-invalid", "OpenCASCADE finds the solids invalid"),
+        ),
+        Check(
+            "closed",
+            free == 0,
+            float(free),
+            0.0,
+            "1",
+            message("cad.free-edges-file", "{count} free edges in the file", count=free),
+        ),
+        Check(
+            "deviation",
+            deviation <= epsilon,
+            deviation,
+            epsilon,
+            "m",
+            message(
+                "cad.faces-file-within",
+                "The faces of the file lie within {deviation:.3g} m of the body",
+                deviation=deviation,
+            ),
+        ),
+        Check(
+            "sigma",
+            sigma < epsilon if nurbs else None,
+            sigma,
+            epsilon,
+            "m",
+            message(
+                "cad.contacts-faces-file",
+                "The contacts lie on the faces of the file with sigma {sigma:.3g} m",
+                sigma=sigma,
+            ),
+        ),
+        Check(
+            "volume",
+            abs(volume / best - 1) <= VOLUME[grade],
+            volume,
+            best,
+            "m3",
+            message(
+                "cad.file-solids-body",
+                "The file's solids have {volume:.6g} m3, the body {best:.6g} m3",
+                volume=volume,
+                best=best,
+            ),
+        ),
+    )
     return SolidReadBack(
         file=str(target),
         sha256=hashlib.sha256(target.read_bytes()).hexdigest(),

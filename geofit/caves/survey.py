@@ -177,7 +177,7 @@ class Survey:
         )
 
 
-def named(stations: list[str]) -> str:
+def named(stations: list[str]) -> tuple[Verbatim, ...]:
     """Return station names for a message, the first few where there are many."""
     shown = [Verbatim(name) for name in stations[:_SHOWN]]
     if len(stations) > _SHOWN:

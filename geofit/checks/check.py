@@ -88,7 +88,7 @@ def check(
         *_surface_checks(surface, projection, honoured),
     )
     checks: list[Check] = []
-    missing: list[str] = []
+    missing: list[Message] = []
     # The systems of a few points each are small: starting threads for them costs more than the work.
     with threadpool_limits(limits=1):
         for examine in examinations:

@@ -16,8 +16,7 @@ import typer
 
 from geofit.data.errors import Cancelled, GeofitError, InputError
 from geofit.data.files import cannot_write
-from geofit.data.languages import gravest_first
-from geofit.data.messages import Message
+from geofit.data.messages import Message, gravest_first
 from geofit.data.progress import Progress
 from geofit.data.site import ImportIssue, TableCount
 
@@ -251,9 +250,7 @@ def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
     grave = [issue for issue in issues if issue.severity != "note"]
     kinds: dict[tuple[str, str, str], list[ImportIssue]] = {}
     for issue in grave:
-        kinds.setdefault((issue.severity, issue.file, getattr(issue.reason, "template", issue.reason)), []).append(
-            issue
-        )
+        kinds.setdefault((issue.severity, issue.file, issue.reason.code), []).append(issue)
     ordered = sorted(kinds.values(), key=lambda alike: (alike[0].severity != "error", len(alike)))
     for alike in ordered[:FIRST_ISSUES]:
         say("  " + _sentence(alike[0]) + (f" ({len(alike) - 1} more like it)" if len(alike) > 1 else ""))

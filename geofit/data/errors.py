@@ -21,8 +21,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from geofit.data.languages import folded
-from geofit.data.messages import EMPTY, Message, Verbatim, message
+from geofit.data.messages import EMPTY, Message, Verbatim, folded, message
 
 __all__ = [
     "Cancelled",

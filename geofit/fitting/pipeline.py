@@ -125,7 +125,7 @@ def _fit_horizon(
             "fit.points-approximated",
             "{reason}, but all points are approximated: {error}",
             reason=split.reason,
-            error=error.args[0],
+            error=error.message,
         )
         model = replace(problem, split=Split(None, inside, reason.with_severity("warning"))).fit(
             kept & chart.placed, clock.stage

@@ -58,9 +58,14 @@ class Metaballs:
         n = len(centres)
         if shapes.shape != (n, 3, 3) or densities.shape != (n,):
             raise SettingsError(
-                message("implicit.centres-many-matrices", "{centres} centres need as many matrices and densities, not {shapes} and {densities}",
-                     centres=n, shapes=len(shapes), densities=len(densities))
-            )  # fmt: skip
+                message(
+                    "implicit.centres-many-matrices",
+                    "{centres} centres need as many matrices and densities, not {shapes} and {densities}",
+                    centres=n,
+                    shapes=len(shapes),
+                    densities=len(densities),
+                )
+            )
         if not (np.isfinite(centres).all() and np.isfinite(shapes).all() and np.isfinite(densities).all()):
             raise SettingsError(
                 message(

@@ -307,8 +307,12 @@ def _centre_line(points: Floats) -> Floats:
     same = np.nonzero((np.diff(line, axis=0) == 0).all(axis=1))[0]
     if len(same):
         raise SettingsError(
-            message("implicit.points-centre-line", "points {first} and {second} of the centre line coincide: leave one out",
-                 first=int(same[0]), second=int(same[0]) + 1)
-        )  # fmt: skip
+            message(
+                "implicit.points-centre-line",
+                "points {first} and {second} of the centre line coincide: leave one out",
+                first=int(same[0]),
+                second=int(same[0]) + 1,
+            )
+        )
     line.flags.writeable = False
     return line

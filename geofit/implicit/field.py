@@ -127,9 +127,13 @@ def box_of(lower: ArrayLike, upper: ArrayLike) -> Box:
     low, high = (np.array(corner, float) for corner in (lower, upper))
     if low.shape != (3,) or high.shape != (3,) or not (low <= high).all():
         raise SettingsError(
-            message("implicit.box-corners-lower", "no box lies between the corners {lower} and {upper}: give lower <= upper, three coordinates each",
-                 lower=low.tolist(), upper=high.tolist())
-        )  # fmt: skip
+            message(
+                "implicit.box-corners-lower",
+                "no box lies between the corners {lower} and {upper}: give lower <= upper, three coordinates each",
+                lower=low.tolist(),
+                upper=high.tolist(),
+            )
+        )
     low.flags.writeable = high.flags.writeable = False
     return low, high
 
@@ -210,7 +214,10 @@ def moved(field: Field, rotation: ArrayLike = ((1, 0, 0), (0, 1, 0), (0, 0, 1)),
     matrix, offset = np.array(rotation, float), np.array(shift, float)
     if matrix.shape != (3, 3) or not np.allclose(matrix.T @ matrix, np.eye(3), atol=1e-9):
         raise SettingsError(
-            message("implicit.matrix-not-rotation", "the matrix {matrix} is not a rotation: its columns must be orthogonal unit vectors",
-                 matrix=matrix.tolist())
-        )  # fmt: skip
+            message(
+                "implicit.matrix-not-rotation",
+                "the matrix {matrix} is not a rotation: its columns must be orthogonal unit vectors",
+                matrix=matrix.tolist(),
+            )
+        )
     return _Moved(field, matrix, offset)

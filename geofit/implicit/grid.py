@@ -138,9 +138,13 @@ def spline_grid(values: ArrayLike, lattice: Lattice) -> SplineGrid:
     samples = np.asarray(values, float)
     if samples.shape != lattice.shape:
         raise SettingsError(
-            message("implicit.samples-shape-lattice", "the samples have shape {given}, the lattice {needed}: give one value a node",
-                 given=samples.shape, needed=lattice.shape)
-        )  # fmt: skip
+            message(
+                "implicit.samples-shape-lattice",
+                "the samples have shape {given}, the lattice {needed}: give one value a node",
+                given=samples.shape,
+                needed=lattice.shape,
+            )
+        )
     if not np.isfinite(samples).all():
         raise SettingsError(
             message(

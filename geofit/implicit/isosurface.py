@@ -99,9 +99,13 @@ def isosurface_of_samples(values: NDArray[np.floating], lattice: Lattice, *, cap
     samples = np.asarray(values)
     if samples.shape != lattice.shape:
         raise SettingsError(
-            message("implicit.samples-shape-lattice", "the samples have shape {given}, the lattice {needed}: give one value a node",
-                 given=samples.shape, needed=lattice.shape)
-        )  # fmt: skip
+            message(
+                "implicit.samples-shape-lattice",
+                "the samples have shape {given}, the lattice {needed}: give one value a node",
+                given=samples.shape,
+                needed=lattice.shape,
+            )
+        )
     if capped:
         samples = np.pad(samples, 1, constant_values=np.inf)
     crossed = _crossings(samples[None].transpose(0, 3, 2, 1), np.full((1, 3), -int(capped)), None)
@@ -170,8 +174,13 @@ def _crossings(values: NDArray[np.floating], blocks: Ints, end: Ints | None) -> 
         Cells from this one on are left out; None if the blocks have none to leave out.
     """
     if np.isnan(values).any():
-        raise FitError(message("implicit.field-not-nodes", "the field is not a number at {count} nodes: check its data and its box",
-                            count=int(np.isnan(values).sum())))  # fmt: skip
+        raise FitError(
+            message(
+                "implicit.field-not-nodes",
+                "the field is not a number at {count} nodes: check its data and its box",
+                count=int(np.isnan(values).sum()),
+            )
+        )
     _, nz, ny, nx = values.shape
     points, triangles = _flying_edges(values)
     # Blocks lie above each other in one image; the layer of cells between two of them means nothing.

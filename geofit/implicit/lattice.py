@@ -81,9 +81,14 @@ class Lattice:
         size = high - low
         if not np.isfinite(size).all() or size.max() <= 0 or cells < 1:
             raise SettingsError(
-                message("implicit.cells-cannot-cover", "{cells} cells cannot cover the box {lower} to {upper}: give a finite box and at least 1 cell",
-                     cells=cells, lower=low.tolist(), upper=high.tolist())
-            )  # fmt: skip
+                message(
+                    "implicit.cells-cannot-cover",
+                    "{cells} cells cannot cover the box {lower} to {upper}: give a finite box and at least 1 cell",
+                    cells=cells,
+                    lower=low.tolist(),
+                    upper=high.tolist(),
+                )
+            )
         spacing = float(size.max()) / cells
         # A side that is a whole number of cells but for rounding must not get one more.
         counts = np.maximum(1, np.ceil(size / spacing - 1e-9)).astype(int)
@@ -115,9 +120,12 @@ class Lattice:
         """
         if any(n % 2 == 0 for n in self.shape):
             raise SettingsError(
-                message("implicit.every-second-node", "every second node of a lattice of shape {shape} misses its end: give odd numbers of nodes",
-                     shape=self.shape)
-            )  # fmt: skip
+                message(
+                    "implicit.every-second-node",
+                    "every second node of a lattice of shape {shape} misses its end: give odd numbers of nodes",
+                    shape=self.shape,
+                )
+            )
         nx, ny, nz = self.shape
         return Lattice(self.origin, 2 * self.spacing, ((nx + 1) // 2, (ny + 1) // 2, (nz + 1) // 2))
 

@@ -46,9 +46,13 @@ class TriangleMesh:
         triangles = np.array(self.triangles, np.int64).reshape(-1, 3)
         if triangles.size and (triangles.min() < 0 or triangles.max() >= len(vertices)):
             raise SettingsError(
-                message("implicit.triangle-vertex", "a triangle names vertex {vertex}, but there are {count}: number them from 0",
-                     vertex=int(triangles.max() if triangles.min() >= 0 else triangles.min()), count=len(vertices))
-            )  # fmt: skip
+                message(
+                    "implicit.triangle-vertex",
+                    "a triangle names vertex {vertex}, but there are {count}: number them from 0",
+                    vertex=int(triangles.max() if triangles.min() >= 0 else triangles.min()),
+                    count=len(vertices),
+                )
+            )
         vertices.flags.writeable = triangles.flags.writeable = False
         object.__setattr__(self, "vertices", vertices)
         object.__setattr__(self, "triangles", triangles)

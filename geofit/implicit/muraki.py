@@ -239,9 +239,15 @@ def fit_metaballs(
     points, directions = points_of(xyz), points_of(normals)
     if len(points) != len(directions) or not epsilon > 0 or most < 1:
         raise SettingsError(
-            message("implicit.samples-many-normals", "{points} samples need as many normals, not {normals}; epsilon {epsilon} and most {most} positive",
-                 points=len(points), normals=len(directions), epsilon=epsilon, most=most)
-        )  # fmt: skip
+            message(
+                "implicit.samples-many-normals",
+                "{points} samples need as many normals, not {normals}; epsilon {epsilon} and most {most} positive",
+                points=len(points),
+                normals=len(directions),
+                epsilon=epsilon,
+                most=most,
+            )
+        )
     if len(points) < 10:
         raise FitError(
             message("implicit.samples-not-fix", "{count} samples do not fix a body: give 10 or more", count=len(points))

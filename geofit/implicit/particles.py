@@ -54,9 +54,13 @@ def even_samples(field: Field, mesh: TriangleMesh, count: int, *, seed: int = 0)
 
     if count < 1 or not len(mesh.triangles):
         raise SettingsError(
-            message("implicit.points-cannot-spread", "{count} points cannot be spread over {triangles} triangles: give at least one of each",
-                 count=count, triangles=len(mesh.triangles))
-        )  # fmt: skip
+            message(
+                "implicit.points-cannot-spread",
+                "{count} points cannot be spread over {triangles} triangles: give at least one of each",
+                count=count,
+                triangles=len(mesh.triangles),
+            )
+        )
     rng = np.random.default_rng(seed)
     areas = np.cumsum(mesh.areas)
     # One draw in every equal share of the area: more even than independent ones.

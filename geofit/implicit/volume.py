@@ -73,9 +73,13 @@ def extent_of_samples(values: NDArray[np.floating], lattice: Lattice) -> Extent:
     f = np.asarray(values)
     if f.shape != lattice.shape:
         raise SettingsError(
-            message("implicit.samples-shape-lattice", "the samples have shape {given}, the lattice {needed}: give one value a node",
-                 given=f.shape, needed=lattice.shape)
-        )  # fmt: skip
+            message(
+                "implicit.samples-shape-lattice",
+                "the samples have shape {given}, the lattice {needed}: give one value a node",
+                given=f.shape,
+                needed=lattice.shape,
+            )
+        )
     cells = [slice(None, -1), slice(1, None)]
     corner = {(i, j, k): f[cells[i], cells[j], cells[k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)}
     count = np.sum([c < 0 for c in corner.values()], axis=0, dtype=np.int8)

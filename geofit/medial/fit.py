@@ -177,7 +177,8 @@ def metaballs(
         raise SettingsError(
             message(
                 "medial.ball-covers-voxel",
-                "No ball covers a voxel more than it costs: the body is thinner than a voxel. Scan it with smaller voxels.",
+                "No ball covers a voxel more than it costs: the body is thinner than a voxel. Scan it with smaller "
+                "voxels.",
             )
         )
     picked = np.array([choice.candidate for choice in chosen])

@@ -20,7 +20,7 @@ def exact(reach2: NDArray[Any]) -> NDArray[np.int64]:
     # A ball up to F² can be included in a ball with a larger one, so the directions go by the largest ball present.
     needed = [entry[:3] for entry in DIRECTIONS if entry[3] <= largest]
     generators = np.array(needed or [(1, 0, 0)], dtype=np.int64)
-    tables = np.array([inclusion_table(*generator, limit=largest) for generator in generators], dtype=np.int32)
+    tables = np.array([inclusion_table(g0, g1, g2, largest) for g0, g1, g2 in generators], dtype=np.int32)
     directions, source = signed_directions(generators)
     # The nearest directions include a ball most often; asking them first ends most searches early.
     order = np.argsort((directions**2).sum(axis=1), kind="stable")

@@ -215,7 +215,7 @@ def _flood(
 def _middle(levels: NDArray[np.int32], members: NDArray[np.int64], size: int) -> int:
     """Return the voxel of a plateau that is nearest to its centroid; of several, by their surroundings."""
     if size == 1:
-        return members[0]
+        return int(members[0])
     _, n1, n2 = levels.shape
     si, sj, sk = 0, 0, 0
     for index in range(size):
@@ -232,7 +232,7 @@ def _middle(levels: NDArray[np.int32], members: NDArray[np.int64], size: int) ->
             other = _surroundings(levels, here, 2)
             if other < key:
                 best, key = here, other
-    return best
+    return int(best)
 
 
 @njit(cache=True)

@@ -104,7 +104,9 @@ def contact_points(balls: MaximalBalls, pore: NDArray[np.bool_]) -> tuple[NDArra
     edges = np.array(balls.edges)
     flat, vectors = _contacts(balls.centre, balls.reach2.astype(np.float64), pore, edges)
     voxel, row = np.unique(flat, return_inverse=True)
-    normals = np.stack([np.bincount(row, weights=vectors[:, axis], minlength=len(voxel)) for axis in range(3)], axis=1)
+    normals: NDArray[np.float64] = np.stack(
+        [np.bincount(row, weights=vectors[:, axis], minlength=len(voxel)) for axis in range(3)], axis=1
+    )
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
     middle = np.stack(np.unravel_index(voxel, pore.shape), axis=1).astype(np.float64)
     return middle - 0.5 * normals / edges, normals

@@ -121,7 +121,7 @@ def _may_be_round(cell: NDArray[np.uint8], count: int) -> bool:
                 return False
             if cell[i, j] == PORE:
                 low0, high0, low1, high1 = min(low0, i), max(high0, i), min(low1, j), max(high1, j)
-    return (high0 - low0 + 1) * (high1 - low1 + 1) > count
+    return bool((high0 - low0 + 1) * (high1 - low1 + 1) > count)
 
 
 @njit(cache=True)

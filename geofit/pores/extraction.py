@@ -153,7 +153,7 @@ def _assembled(
     for face in range(6):
         part_faces[part[faces[:, face]], face] = True
     percolates = tuple(bool((part_faces[:, 2 * a] & part_faces[:, 2 * a + 1]).any()) for a in range(3))
-    kept = part_faces.any(axis=1)[part]
+    kept = np.asarray(part_faces.any(axis=1))[part]
     if not kept.any():
         kept[:] = True
 
@@ -173,7 +173,10 @@ def _assembled(
     )
     throats = Throats(
         np.stack([number[inner.first], number[inner.second]], axis=1)[use].astype(np.int32),
-        *(column[use] for column in (sections.radius, sections.inscribed, sections.area, sections.perimeter)),
+        sections.radius[use],
+        sections.inscribed[use],
+        sections.area[use],
+        sections.perimeter[use],
         to_centre[use],
         sections.middle[use],
         sections.conductance[use],
@@ -184,7 +187,10 @@ def _assembled(
     face_throats = FaceThroats(
         number[outer.first][use].astype(np.int32),
         outer.second[use].astype(np.int32),
-        *(column[use] for column in (sections.radius, sections.inscribed, sections.area, sections.perimeter)),
+        sections.radius[use],
+        sections.inscribed[use],
+        sections.area[use],
+        sections.perimeter[use],
         to_face[use],
         sections.middle[use],
         sections.conductance[use],

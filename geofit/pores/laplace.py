@@ -9,11 +9,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
 from geofit.pores.balls import balls_of_distance
 from geofit.pores.components import connectivity
-from geofit.pores.distance import squared_distance
+from geofit.pores.distance import Border, squared_distance
 from geofit.pores.network import AXES
 from geofit.pores.permeability import Permeability
 from geofit.pores.volume import RockVolume, VolumeError
@@ -37,7 +37,7 @@ def mobility(volume: RockVolume) -> NDArray[np.float64]:
     from geofit.pores.ball_painting import paint_widest
     from geofit.pores.contacts import passages
 
-    border = "closed" if volume.pore.all() else "open"
+    border: Border = "closed" if volume.pore.all() else "open"
     reach2 = squared_distance(volume.pore, border, volume.edges)
     balls = balls_of_distance(reach2, "exact" if volume.cubic else "cover", volume.edges)
     widest = np.full(volume.shape, -1, np.int32)
@@ -80,11 +80,12 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
     from geofit.pores.laplace_loops import assemble, conjugate_gradients
 
     paths = connectivity(volume).percolates
-    label, _ = ndimage.label(volume.pore)
+    label: NDArray[np.int32] = np.asarray(ndimage.label(volume.pore)[0])
     weights = mobility(volume)
     edges = np.array(volume.edges)
     lengths = np.array(volume.shape) * edges
-    values, messages = [], []
+    values: list[float] = []
+    messages: list[Message] = []
     for axis in range(3):
         tell(progress, "permeability", axis / 3)
         if not paths[axis]:
@@ -99,7 +100,7 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
                 )
             )
             continue
-        low, high = label.take(0, axis=axis), label.take(-1, axis=axis)
+        low, high = np.asarray(label.take(0, axis=axis)), np.asarray(label.take(-1, axis=axis))
         through = np.intersect1d(low[low > 0], high[high > 0])
         inside = np.isin(label, through)
         order = np.flatnonzero(inside)

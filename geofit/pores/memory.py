@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.pores.volume import VolumeError
 
 __all__ = ["available_memory", "check_memory"]
@@ -38,7 +38,7 @@ def available_memory() -> int | None:
         return None
 
 
-def check_memory(needed: int, task: str) -> None:
+def check_memory(needed: int, task: str | Message) -> None:
     """Raise an error with the remedy if a task needs more memory than there is.
 
     Raises

@@ -19,7 +19,7 @@ class _Table:
     """Columns of equal length."""
 
     def __len__(self) -> int:
-        return len(self.radius)  # type: ignore[attr-defined,no-any-return]
+        return len(self.radius)  # type: ignore[attr-defined]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +83,7 @@ class Throats(_Table):
     @property
     def shape_factor(self) -> NDArray[np.float64]:
         """G = A / P², at most that of the circle, 1 / (4 pi)."""
-        return np.minimum(self.area / np.maximum(self.perimeter, 1e-300) ** 2, 0.25 / np.pi)
+        return np.asarray(np.minimum(self.area / np.maximum(self.perimeter, 1e-300) ** 2, 0.25 / np.pi))
 
 
 @dataclass(frozen=True, eq=False)

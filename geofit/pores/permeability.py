@@ -27,12 +27,12 @@ class Permeability:
     ----------
     square_metres : tuple of three float
         0 along an axis whose two faces are not connected.
-    messages : tuple of str
+    messages : tuple of Message
         One for each axis without flow, with the reason.
     """
 
     square_metres: tuple[float, float, float]
-    messages: tuple[str, ...]
+    messages: tuple[Message, ...]
 
     @property
     def millidarcy(self) -> tuple[float, float, float]:
@@ -58,7 +58,8 @@ def network_permeability(network: PoreNetwork) -> Permeability:
     """
     edges = network.edges
     lengths = np.array(network.shape) * edges
-    values, messages = [], []
+    values: list[float] = []
+    messages: list[Message] = []
     for axis in range(3):
         if not network.percolates[axis]:
             values.append(0.0)

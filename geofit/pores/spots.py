@@ -105,7 +105,7 @@ def _nearest(rocks: NDArray[np.float64], count: int, place: NDArray[np.float64])
     for r in range(count):
         x, y, z = rocks[r, 0] - place[0], rocks[r, 1] - place[1], rocks[r, 2] - place[2]
         best = min(best, x * x + y * y + z * z)
-    return np.sqrt(best)
+    return float(np.sqrt(best))
 
 
 def own_saddle(

@@ -25,7 +25,7 @@ from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 from geofit.pores.balls import balls_of_distance, maximal_balls
 from geofit.pores.contacts import contact_points
-from geofit.pores.distance import squared_distance
+from geofit.pores.distance import Border, squared_distance
 from geofit.pores.extraction import pore_network
 from geofit.pores.network import PoreNetwork
 from geofit.pores.volume import RockVolume, VolumeError
@@ -252,7 +252,7 @@ def pore_surface(
 
 
 def _contact_field(volume: RockVolume) -> ContactField:
-    border = "closed" if volume.pore.all() else "open"
+    border: Border = "closed" if volume.pore.all() else "open"
     reach2 = squared_distance(volume.pore, border, volume.edges)
     balls = balls_of_distance(reach2, "exact" if volume.cubic else "cover", volume.edges)
     index, normals = contact_points(balls, volume.pore)
@@ -276,7 +276,7 @@ def _beside_wall(pore: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return the voxels of both kinds with a voxel of the other kind among their 26 neighbours."""
     from scipy import ndimage
 
-    cube = np.ones((3, 3, 3))
+    cube = np.ones((3, 3, 3), bool)
     grown = ndimage.binary_dilation(pore, cube)
     shrunk = ndimage.binary_erosion(pore, cube, border_value=1)
     return np.asarray(grown & ~shrunk)

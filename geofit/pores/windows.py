@@ -47,14 +47,16 @@ def outer_windows(pore_of: NDArray[np.int32], levels: NDArray[np.int32]) -> Wind
     index = np.arange(pore_of.size, dtype=np.int64).reshape(pore_of.shape)
     for face in range(6):
         axis, high = divmod(face, 2)
-        pores = pore_of.take(-1 if high else 0, axis=axis)
+        end = -1 if high else 0
+        pores = np.asarray(pore_of.take(end, axis=axis))
         mask = pores > 0
         keys.append(pores[mask].astype(np.int64) * 8 + face)
-        voxels.append(index.take(-1 if high else 0, axis=axis)[mask])
+        voxels.append(np.asarray(index.take(end, axis=axis))[mask])
         axes.append(np.full(int(mask.sum()), axis, np.int8))
         signs.append(np.full(int(mask.sum()), 1 if high else -1, np.int8))
-        found.append(levels.take(-1 if high else 0, axis=axis)[mask])
-    return _grouped(pore_of.shape, *map(np.concatenate, (keys, voxels, axes, signs, found)), 8)
+        found.append(np.asarray(levels.take(end, axis=axis))[mask])
+    key, voxel, level = np.concatenate(keys), np.concatenate(voxels), np.concatenate(found)
+    return _grouped(pore_of.shape, key, voxel, np.concatenate(axes), np.concatenate(signs), level, 8)
 
 
 def _grouped(

@@ -89,7 +89,7 @@ def left_out(
     fold: Fold,
     calibration: Calibration,
     plate: Floats | None,
-    report: Callable[[str], object],
+    report: Callable[[Message], object],
 ) -> LeftOut:
     """Return the figures of one scheme over all points of the horizon.
 
@@ -122,7 +122,7 @@ def left_out(
         }
         for method, predict in methods.items():
 
-            def missing(reason: str, method: str = method) -> None:
+            def missing(reason: Message, method: str = method) -> None:
                 report(
                     message(
                         "prediction.method-not-compared",

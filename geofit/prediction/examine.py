@@ -149,7 +149,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Of
 
 
 def _left_out(
-    model: Model, given: Posterior, grid: Grid, progress: Progress | None, notes: list[str]
+    model: Model, given: Posterior, grid: Grid, progress: Progress | None, notes: list[Message]
 ) -> tuple[list[Fold], Calibration, tuple[Outlier, ...]]:
     """Leave the points out, hold the standard deviation to their errors, and name those far from their neighbours."""
     many = len(given.value) > MOST

@@ -223,7 +223,7 @@ def write_reports(
     _make(out)
     images: dict[str, bytes] = {}
     made = []
-    warnings: list[str] = []
+    warnings: list[Message] = []
     for i, result in enumerate(results):
         low, high = 0.9 * i / len(results), 0.9 * (i + 1) / len(results)
         part = _within(progress, low, high, result.name)
@@ -303,11 +303,11 @@ def _written(
     return _Made(result, pictures.images, (*warnings, *missing))
 
 
-def _storage(surface: HorizonFit) -> tuple[Storage | None, tuple[str, ...]]:
+def _storage(surface: HorizonFit) -> tuple[Storage | None, tuple[Message, ...]]:
     """Compare the storage of a surface with that of a TIN and a grid; say why where that fails."""
     from geofit.checks.storage import equal_accuracy
 
-    missing: list[str] = []
+    missing: list[Message] = []
     found = guarded(
         lambda: equal_accuracy(surface, surface.settings.interior_tolerance),
         None,

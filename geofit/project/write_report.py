@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from geofit.data.errors import InputError
+from geofit.data.languages import language as language_of
 from geofit.data.messages import message
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit

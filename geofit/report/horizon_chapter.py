@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from itertools import zip_longest
 from typing import Literal
 
-from geofit.data.languages import Language, gravest_first, sentence, translate
-from geofit.data.messages import Message, message
+from geofit.data.languages import Language, sentence, translate
+from geofit.data.messages import Message, gravest_first, message
 from geofit.report import digits
 from geofit.report.accuracy_report import CheckLine, FileCheck, GroupLine, HorizonReport
 from geofit.report.document import (

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.files import replacing, spreadsheet_cell
-from geofit.data.files import replacing
 from geofit.data.languages import EN, Language, translate
 from geofit.data.site import ImportIssue
 from geofit.report.result import HorizonResult

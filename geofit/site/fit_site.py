@@ -162,7 +162,7 @@ class _Fits:
                     "site.fault-cannot-laid",
                     "the fault {fault} cannot be laid: {reason}",
                     fault=name,
-                    reason=error.args[0],
+                    reason=error.message,
                 )
             ) from None
         return found.faults[name]

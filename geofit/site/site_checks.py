@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from geofit.data.guard import guarded
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.data.site import Ground, Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.clip import inside
@@ -37,7 +37,7 @@ def check_surroundings(surface: HorizonFit, site: Site, horizon: str = "") -> Ho
     accuracy = surface.accuracy
     if accuracy is None:
         return surface
-    missing: list[str] = []
+    missing: list[Message] = []
     tolerance = 0.0 if site.ground is None else ground_tolerance(site.ground, surface.settings.interior_tolerance)
     measured = site.orientations
     asked = (

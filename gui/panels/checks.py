@@ -19,8 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.data.accuracy import Accuracy, Check, ReadBack
-from geofit.data.languages import gravest_first
-from geofit.data.messages import Message
+from geofit.data.messages import Message, gravest_first
 from geofit.data.prediction import OffData
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, verdict_mark

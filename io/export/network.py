@@ -315,6 +315,7 @@ def _rows(folder: Path, name: str) -> list[list[str]]:
             data = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
             return [line.split() for line in data.decode("ascii").splitlines() if line.strip()]
     raise InputError(
-        message("export.network-four-files", "a network needs four files, and this one is missing"), message("export.put-beside", "Put it beside the others."),
+        message("export.network-four-files", "a network needs four files, and this one is missing"),
+        message("export.put-beside", "Put it beside the others."),
         file=str(folder / name),
-    )  # fmt: skip
+    )

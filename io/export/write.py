@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.sampling.contours import contours
 from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
 from geofit.surfaces.protocol import Surface
@@ -220,7 +220,7 @@ def format_of(path: str | PathLike[str]) -> str:
     )
 
 
-def untrimmed(surfaces: Surfaces, format: str) -> list[str]:
+def untrimmed(surfaces: Surfaces, format: str) -> list[Message]:
     """Return a sentence for each surface whose trim loops a format cannot represent.
 
     Parameters
@@ -232,7 +232,7 @@ def untrimmed(surfaces: Surfaces, format: str) -> list[str]:
 
     Returns
     -------
-    list of str
+    list of Message
         Empty for formats of triangles, grids and lines, which end where the surface ends.
 
     Raises

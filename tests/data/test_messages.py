@@ -1,8 +1,7 @@
 from __future__ import annotations
 
 from geofit.data.accuracy import plain
-from geofit.data.languages import gravest_first
-from geofit.data.messages import message
+from geofit.data.messages import gravest_first, message
 
 
 def of(severity, name):
