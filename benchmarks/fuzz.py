@@ -106,7 +106,7 @@ def fit_one(seed: int, folder: Path) -> str:
     residuals = surface.accuracy.residuals
     if not np.isfinite(residuals).all():
         raise AssertionError("residuals are not finite")
-    if surface.fit["frame"] == "sections" and np.abs(residuals[surface.core]).max(initial=0.0) > CORE_LIMIT:
+    if surface.diagnostics["frame"] == "sections" and np.abs(residuals[surface.core]).max(initial=0.0) > CORE_LIMIT:
         raise AssertionError("a point is called exact and is missed")
     notes = [*surface.accuracy.notes, *examine(surface).notes]
     unforeseen = [note for note in notes if UNFORESEEN in note]

@@ -25,7 +25,7 @@ def load(monkeypatch):
     before = set(sys.modules)
     yield importlib.import_module
     for name in set(sys.modules) - before:
-        if name.split(".")[0] in {"real", "fit", "distance", "realdata", "peers"}:
+        if name.split(".")[0] in {"real", "field", "fit", "distance", "realdata", "peers"}:
             del sys.modules[name]
 
 
@@ -38,7 +38,7 @@ def scattered(n=60, seed=1):
     return np.column_stack([xy, plane(*xy.T)])
 
 
-@pytest.mark.parametrize("name", ["distance", "fit", "real"])
+@pytest.mark.parametrize("name", ["distance", "field", "fit", "real"])
 def test_script_imports_and_can_be_run(load, name):
     assert callable(load(name).main)
 
@@ -137,6 +137,32 @@ def test_reference_p_spline_reproduces_a_plane(load):
     spline = pspline.PSpline((0, 100, 0, 100), 8, 1e-3).fit(scattered(400))
     x, y = scattered(50, seed=2)[:, :2].T
     assert spline.elevation(x, y) == pytest.approx(plane(x, y), abs=1e-6)
+
+
+def test_the_dense_process_finds_range_and_noise_of_its_own_field(load):
+    gp = load("peers.gp")
+    rng = np.random.default_rng(0)
+    plane = rng.uniform(0, 10, (300, 2))
+    true = gp.Process("Matérn 3/2", 1.5, 0.01, 1, 0.0)
+    covariance = true.covariance(plane, plane) + 0.01 * np.eye(300)
+    z = np.linalg.cholesky(covariance) @ rng.normal(size=300) + plane @ (0.3, -0.2)
+    found = gp.fit_process(plane, z, "Matérn 3/2", 1)
+    assert found.reach == pytest.approx(1.5, rel=0.5)
+    assert found.nugget == pytest.approx(0.01, rel=0.8)
+    mean, sd = found.predict(plane[:250], z[:250], plane[250:])
+    assert 0.8 <= np.mean(np.abs(mean - z[250:]) <= 1.645 * sd) <= 1.0
+    assert np.std(mean - z[250:]) < 0.5 * np.std(z[250:])
+
+
+def test_sites_of_the_field_are_reproducible_and_lie_in_their_area(load):
+    field = load("field")
+    for seed in (0, 3, 6, 9):
+        one, again = field.site(seed), field.site(seed)
+        assert (one.points.xyz == again.points.xyz).all()
+        x0, x1, y0, y1 = one.core
+        x, y = one.points.xyz[one.points.section != "", :2].T
+        assert ((x >= x0) & (x <= x1) & (y >= y0) & (y <= y1)).all()
+        assert np.std(one.points.xyz[:, 2] - one.height(*one.points.xyz[:, :2].T)) < 0.4
 
 
 def test_smallest_size_within_a_limit(load):

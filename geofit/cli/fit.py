@@ -80,7 +80,7 @@ def fit(
     ] = None,
     max_iterations: Annotated[int | None, typer.Option(help=f"Cap of the refinement steps. {FROM_SITE} 20.")] = None,
     max_control_points: Annotated[
-        int | None, typer.Option(help=f"Cap of the control points. {FROM_SITE} ten a data point.")
+        int | None, typer.Option(help=f"Cap of the control points. {FROM_SITE} 40 a data point, 15 with a core.")
     ] = None,
     conflict_distance: Annotated[
         float | None, typer.Option(help=f"Points nearer than this are one place, m. {FROM_SITE} 0.01.")

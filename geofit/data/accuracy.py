@@ -82,20 +82,23 @@ class Partition:
     """How the points were split into core and periphery, and why (paper, sec. 3.2; fig. 3a).
 
     ``corners`` are the core's four corners in map coordinates (None without a core), ``core`` and
-    ``periphery`` count points, ``reason`` says in words what was chosen.
+    ``periphery`` count points, ``reason`` says what was chosen. ``lost``: there
+    is a dense core, and its points are approximated all the same.
     """
 
     corners: tuple[tuple[float, float], ...] | None
     core: int
     periphery: int
     reason: Message
+    lost: bool = False
 
 
 @dataclass(frozen=True, eq=False)
 class Accuracy:
     """The check of one horizon (paper, sec. 3.3, and METHOD).
 
-    ``sigma = sqrt(sum d_i^2 / (n - 1))`` over all n original points (eq. 3); passed when sigma < epsilon.
+    ``sigma = sqrt(sum d_i^2 / (n - 1))`` over all n original points (eq. 3); passed when sigma < epsilon and the
+    surface does not run far beyond the elevations of its data.
     ``residuals`` (n,) are signed orthogonal distances in metres, positive above the surface; ``patch`` (n,)
     names the patch of each point. ``over`` counts the points beyond tolerances, by the name of the setting:
     "interior_tolerance", "epsilon".
@@ -132,7 +135,7 @@ class Accuracy:
 
     @property
     def verdict(self) -> str:
-        """PASS or FAIL: sigma against epsilon, as the paper has it."""
+        """PASS or FAIL: sigma against epsilon, as the paper has it, of a surface that does not run away."""
         return "PASS" if self.passed else "FAIL"
 
 

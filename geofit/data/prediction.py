@@ -56,7 +56,8 @@ class Uncertainty:
     ``x`` (nx,), ``y`` (ny,) ascending, ``sd`` (ny, nx), nan outside the study area. ``factor`` is by how much the
     posterior standard deviation was widened (above 1) so that 90 % of the left-out points lie in the 90 % band: the
     median of the local ``factors`` (ny, nx). With ``frame`` "best-plane" x and y run along the strike and up the dip
-    of the surface's best plane, metres about its origin, and sd is measured across it.
+    of the surface's best plane, metres about its origin, and sd is measured across it. The contact that a new hole
+    finds scatters about the surface by ``noise`` more (1 sigma).
     """
 
     x: Floats
@@ -67,6 +68,7 @@ class Uncertainty:
     max: float
     factors: Floats
     frame: Literal["map", "best-plane"] = "map"
+    noise: float = 0.0
 
     def __repr__(self) -> str:
         grid = f"{len(self.x)} x {len(self.y)} nodes"

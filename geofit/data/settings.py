@@ -69,7 +69,8 @@ class FitSettings:
     max_iterations : int
         Cap of the refinement and adjustment steps.
     max_control_points : int or None
-        Cap of the number of control points; None: ten a data point, at least 400 and at most 60,000.
+        Cap of the number of control points; None: 40 a data point, 15 with a core, between 1,600 and 20,000, and as
+        many as it takes to interpolate the core.
     conflict_distance : float
         Points nearer to each other in plan than this many metres count as one place: if their elevations
         differ they are settled by accuracy, and listed.

@@ -19,12 +19,10 @@ from scipy.sparse import csr_array
 from geofit.fitting.skin import damped_change
 from geofit.splines.tensor import Factor, TensorSpace, band_times
 
-__all__ = ["Approximation", "approximate", "borrowed"]
+__all__ = ["Approximation", "approximate", "borrowed", "solved_beside"]
 
 Floats = NDArray[np.float64]
 
-#: Pull towards the start where a break leaves control points free, relative to the energy's diagonal.
-_HOLD = 1e-3
 #: Where a pulled point comes to lie, as a share of the tolerance.
 RIM = 0.9
 
@@ -51,23 +49,20 @@ def borrowed(space: TensorSpace, core: tuple[float, float, float, float]) -> NDA
 
 def approximate(
     space: TensorSpace,
-    energy: Floats | None,
     start: Floats,
     frozen: NDArray[np.bool_],
     plane: Floats,
     height: Floats,
-    weight: Floats,
     tolerance: float,
+    limit: float,
     rounds: int,
 ) -> Approximation:
-    """Fit the control points that are not frozen where asked to, then bring every point within the tolerance.
+    """Bring every point that lies beyond a limit within the tolerance; no frozen control point moves.
 
     Parameters
     ----------
     space : TensorSpace
         The space of the whole surface.
-    energy : (bandwidth + 1, size) array or None
-        Band of lambda times the energy; None: the start is the regional field's fit already.
     start : (size,) or (size, k) array
         Coefficients to start from; those that are frozen stay.
     frozen : (size,) array of bool
@@ -76,33 +71,33 @@ def approximate(
         Places of the peripheral points.
     height : (m,) or (m, k) array
         Their heights (or coordinates), metres.
-    weight : (m,) array
-        Their weights.
     tolerance : float
         How far from the surface a point may lie, metres.
+    limit : float
+        How far beyond it must lie to be pulled at all: the tolerance, or more where the points' noise explains it.
     rounds : int
         Cap of the number of rounds; with none, points outside the tolerance stay there.
     """
     matrix = space.matrix(plane)
-    best = start if energy is None else _solve(space, energy, start, frozen, plane, height, weight)
+    best = start
     misfit = height - matrix @ best
     held = np.zeros(len(plane), bool)
     done = 0
-    while done < rounds and (_size(misfit) > tolerance).any():
+    while done < rounds and (_size(misfit) > limit).any():
         done += 1
-        held |= _size(misfit) > tolerance
+        held |= _size(misfit) > limit
         # Points that are pulled once stay at the rim of their tolerance while their neighbours are pulled.
         length = _size(misfit[held])
         share = (1 - RIM * tolerance / np.maximum(length, RIM * tolerance)).reshape(-1, *[1] * (misfit.ndim - 1))
         pulled = best + damped_change(csr_array(matrix[held]), share * misfit[held], ~frozen)
         after = height - matrix @ pulled
-        if np.maximum(_size(after) - tolerance, 0).sum() >= 0.98 * np.maximum(_size(misfit) - tolerance, 0).sum():
+        if np.maximum(_size(after) - limit, 0).sum() >= 0.98 * np.maximum(_size(misfit) - limit, 0).sum():
             break
         best, misfit = pulled, after
     return Approximation(best, _size(misfit), done)
 
 
-def _solve(
+def solved_beside(
     space: TensorSpace,
     energy: Floats,
     start: Floats,
@@ -111,11 +106,12 @@ def _solve(
     height: Floats,
     weight: Floats,
 ) -> Floats:
+    """Return the penalised least squares of (m, 2) places with heights (m,) beside control points that are frozen.
+
+    ``energy`` is the band of the penalty, ``start`` holds the frozen coefficients; the others of it do not matter.
+    """
     band, right = space.normal_equations(plane, height, weight)
     band = band + energy
-    hold = _HOLD * float(np.median(energy[0]))
-    band[0] += hold
-    right = right + hold * start
     if frozen.any():
         known = start.copy()
         known[~frozen] = 0.0

@@ -190,7 +190,7 @@ def common_factor(fit: LinearFit, judged: NDArray[np.bool_]) -> float:
 
 def gathered(given: Posterior, predictions: list[Prediction]) -> LeftOutPoints:
     """Put the errors of several predictions one after another, without the points that were not left out."""
-    noise = (given.noise * given.noise_ratio) ** 2
+    noise = given.noise_variance
     point = np.tile(np.arange(len(given.value)), len(predictions))
     error = np.concatenate([np.empty(0), *(one.error for one in predictions)])
     variance = np.concatenate([np.empty(0), *(variance_of(one) for one in predictions)])

@@ -17,9 +17,9 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.approximate import borrowed
 from geofit.fitting.assemble import multiply_knots
-from geofit.fitting.field import Field, cell_weights, smooth
+from geofit.fitting.field import Field, Smoothed
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
-from geofit.fitting.net import COARSE, EVEN, Data, Net, Periphery, cap_for, choose_field, degree_for, gather, in_patches
+from geofit.fitting.net import Data, Net, Periphery, cap_for, choose_field, degree_for, gather, in_patches, smoothed
 from geofit.fitting.parametrize import Chart
 from geofit.fitting.partition import Split
 from geofit.fitting.skin import Lines, across_curves, least_change, ruled, section_lines, separate
@@ -31,14 +31,21 @@ __all__ = ["fit_with_core"]
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
 
+#: Control points a data point beside a core, and how many it may take where its points are met with no fewer.
+A_POINT, LAST_CAP = 15, 60
 #: Longest span beside a core, in units of the spacing of the sparse points.
-LONGEST = 0.8
+LONGEST = 0.6
 #: Spans between neighbours of one section, and of neighbouring sections, as a share of their distance.
 ALONG, ACROSS = 1.8, 1.0
+#: Spans beside a section line, as a share of the distance to the next, and how many there are on each side.
+HUG, HUGGED = 1 / 8, 1
 #: Lines nearer to the core's edge or to each other than this share of their mean distance get one knot.
 NARROW = 0.2
-#: Noise above this share of the values' spread, and above epsilon: points that do not bear each other out.
-RESOLVED = 0.02
+#: Noise above this share of the values' spread: points that do not bear each other out. It does not follow the
+#: tolerances, which may be raised beyond all relief.
+RESOLVED = 0.03
+#: The same for noise within the interior tolerance.
+LITTLE = 0.05
 
 
 def fit_with_core(
@@ -61,18 +68,19 @@ def fit_with_core(
     inside = split.inside[kept]
     scaled = [x / data.unit for x in split.core]
     core = (scaled[0], scaled[1], scaled[2], scaled[3])
-    degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane))
+    degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane), A_POINT)
     stage("field", 0.25)
-    coarse = _coarse_space(data, core, inside, degree, min(COARSE, most))
-    field = choose_field(data, coarse, settings)
+    field, coarse = choose_field(data, settings, most)
     chosen = settings.core == "auto" and settings.smoothing == "auto" and not chart.parametric
-    if chosen and field.noise > max(settings.epsilon, RESOLVED * field.spread):
+    little = min(settings.interior_tolerance, LITTLE * field.spread)
+    if chosen and field.noise > max(RESOLVED * field.spread, little):
         raise ExactnessError(
             message(
-                "fit.points-bear-epsilon",
-                "its points bear each other out to about {noise:.3g} m only, more than epsilon {epsilon:g} m",
+                "fitting.points-bear-each-other",
+                "its points bear each other out to about {noise:.3g} m only, where their relief is about "
+                "{spread:.3g} m",
                 noise=field.noise,
-                epsilon=settings.epsilon,
+                spread=field.spread,
             )
         )
     stage("core", 0.4)
@@ -87,55 +95,87 @@ def fit_with_core(
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
-    breaks = _breaks(data, core, inside, field, coarse, lines, most, settings)
-    knots = [bspline.clamped_knots(along, degree) for along in breaks]
-    space = TensorSpace(knots[0], knots[1], degree)
-    weight = cell_weights(space, data.plane, data.accuracy)
-    smoothed = smooth(space, field, data.plane, data.value, weight)
-    rule = None
-    if linear:
-        within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
-        rule = _apart(within, (core[0], core[1]), NARROW * (core[1] - core[0]) / len(lines.u))
+    while True:
         try:
-            space, coefficients = _skinned(space, smoothed, core, data, inside, settings, rule)
-        except ExactnessError:
-            rule = None
-            notes = (
-                message(
-                    "fit.core-linear-across-sections",
-                    "a core linear across its sections cannot meet all of its points; it is cubic across",
-                ).with_severity("warning"),
+            base, space, coefficients, plane, rule = _through_points(
+                data, core, inside, field, coarse, lines, linear, chart.parametric, most, settings
             )
-    if rule is None and chart.parametric and lines.straight:
-        coefficients = _lofted(space, smoothed, data, inside, lines.u)
-    elif rule is None:
-        space, coefficients = _skinned(space, smoothed, core, data, inside, settings, None)
+            break
+        except ExactnessError:
+            # Exactness outranks economy; a cap that a person gave is kept.
+            if settings.max_control_points is not None or most > LAST_CAP * len(data.plane):
+                raise
+            most = int(1.5 * most)
+    if linear and rule is None:
+        notes = (
+            message(
+                "fit.core-linear-across-sections",
+                "a core linear across its sections cannot meet all of its points; it is cubic across",
+            ).with_severity("warning"),
+        )
+    first = cap_for(settings, len(data.plane), A_POINT)
+    if most > first:
+        words = message(
+            "fitting.meeting-every-point-core",
+            "meeting every point of the core takes {count} control points, more than {a_point} a data point",
+            count=in_patches(space.shape, core, space),
+            a_point=A_POINT,
+        )
+        notes = (*notes, words)
     stage("periphery", 0.6)
     outer = ~inside
     frozen = borrowed(space, core).ravel()
     if not outer.any():
         total = coefficients + data.over_trend(space)
-        return Net(space, total, frozen, None, rule, data.unit, field, 0, notes)
+        return Net(space, base, total, frozen, None, rule, data.unit, field, 0, settings.interior_tolerance, notes)
     periphery = Periphery(data, outer, core, field, settings, most, refit=settings.seam == "position")
-    space, coefficients, frozen, rounds, more = periphery.fit(space, coefficients)
-    total = coefficients + data.over_trend(space)
-    return Net(space, total, frozen, core, rule, data.unit, field, rounds, notes + more)
+    found = periphery.fit(space, Smoothed(coefficients, plane))
+    total = found.coefficients + data.over_trend(found.space)
+    return Net(
+        found.space, base, total, found.frozen, core, rule, data.unit, field, found.rounds, found.limit,
+        notes + found.notes,
+    )  # fmt: skip
 
 
-def _coarse_space(data: Data, core: Rectangle, inside: NDArray[np.bool_], degree: int, most: int) -> TensorSpace:
-    """Return the space on which the field is chosen: spans as fine as the points of the core, and of the rest."""
-    dense = float(np.sqrt((core[1] - core[0]) * (core[3] - core[2]) / inside.sum()))
-    span, area = EVEN, data.area
-    while True:
-        breaks = [
-            graded_breaks([*area[k : k + 2], *core[k : k + 2]], span, np.array([[*core[k : k + 2], span * dense]]))
-            for k in (0, 2)
-        ]
-        knots = [bspline.clamped_knots(along, degree) for along in breaks]
-        space = TensorSpace(knots[0], knots[1], degree)
-        if space.size <= most or span > 1e3:
-            return space
-        span *= 1.1
+def _through_points(
+    data: Data,
+    core: Rectangle,
+    inside: NDArray[np.bool_],
+    field: Field,
+    coarse: TensorSpace,
+    lines: Lines,
+    linear: bool,
+    parametric: bool,
+    most: int,
+    settings: FitSettings,
+) -> tuple[TensorSpace, TensorSpace, Floats, Floats, Floats | None]:
+    """Lay knots within a cap, fit the field on them, and let it pass through the core's points.
+
+    Returns the field's space, the surface's, its coefficients, the plane under them, and the section lines of a core
+    that is linear across them.
+
+    Raises
+    ------
+    ExactnessError
+        If so many control points cannot pass through the points.
+    """
+    degree = degree_for(len(data.plane))
+    breaks = _breaks(data, core, inside, field, coarse, lines, most, max(settings.max_iterations, 1))
+    knots = [bspline.clamped_knots(along, degree) for along in breaks]
+    base = TensorSpace(knots[0], knots[1], degree)
+    start = smoothed(data, base, field)
+    if linear:
+        within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
+        rule = _apart(within, (core[0], core[1]), NARROW * (core[1] - core[0]) / len(lines.u))
+        try:
+            space, coefficients = _skinned(base, start.coefficients, core, data, inside, settings, rule)
+            return base, space, coefficients, start.plane, rule
+        except ExactnessError:
+            pass
+    if parametric and lines.straight:
+        return base, base, _lofted(base, start.coefficients, data, inside, lines.u), start.plane, None
+    space, coefficients = _skinned(base, start.coefficients, core, data, inside, settings, None)
+    return base, space, coefficients, start.plane, None
 
 
 def _breaks(
@@ -146,16 +186,21 @@ def _breaks(
     coarse: TensorSpace,
     lines: Lines,
     most: int,
-    settings: FitSettings,
+    rounds: int,
 ) -> tuple[Floats, Floats]:
-    """Lay breaks that follow the core's points, and split them where two points pull one control point apart."""
-    plane, degree, area = data.plane[inside], coarse.degree, data.area
+    """Lay breaks that follow the core's points, and split them where two points pull one control point apart.
+
+    What makes the surface pass through a point must be narrow in both directions: across the sections breaks hug each
+    of them, along them they follow the closest neighbours of any.
+    """
+    plane, area = data.plane[inside], data.area
+    degree = degree_for(len(data.plane))
     pairs = neighbour_pairs(plane)
     within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
     narrow = NARROW * (core[1] - core[0]) / max(len(lines.u), 1)
     required_u = _apart(within, (area[0], core[0], core[1], area[1]), narrow)
     required_v = np.array([area[2], core[2], core[3], area[3]])
-    sizes_u = np.empty((0, 3)) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
+    sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
     sizes_v = pair_sizes(plane, pairs, 1, ALONG if lines.straight else ACROSS)
     stretch = 1.0
     while True:
@@ -166,15 +211,20 @@ def _breaks(
         space = TensorSpace(knots[0], knots[1], degree)
         if in_patches(space.shape, core, space) <= 0.9 * most or stretch > 1e3:
             break
-        stretch *= 1.15
-    weight = cell_weights(coarse, data.plane, data.accuracy)
-    trial = smooth(coarse, field, data.plane, data.value, weight)
-    misfit = data.value[inside] - coarse.matrix(plane) @ trial
+        stretch *= 1.1
+    misfit = data.value[inside] - coarse.matrix(plane) @ smoothed(data, coarse, field).coefficients
 
     def counted(shape: tuple[int, int]) -> bool:
         return in_patches(shape, core, space) <= most
 
-    return separate(breaks_u, breaks_v, plane, misfit, degree, counted, max(settings.max_iterations, 1))
+    return separate(breaks_u, breaks_v, plane, misfit, degree, counted, rounds)
+
+
+def _beside_lines(lines: Lines) -> Floats:
+    """Return (k, 3) rows (low, high, size) of short spans that hug each section line."""
+    gaps = np.diff(lines.u)
+    size = HUG * np.minimum(np.append(gaps, gaps[-1]), np.insert(gaps, 0, gaps[0]))
+    return np.column_stack([lines.u - lines.stray - HUGGED * size, lines.u + lines.stray + HUGGED * size, size])
 
 
 def _apart(values: Floats, fixed: tuple[float, ...], least: float) -> Floats:

@@ -2,20 +2,21 @@
 
 With the smoothing, the knots and the set of pulled points as they were chosen, a fit is linear in its heights:
 
-1. the regional field, K f = A' W z with K = A' W A + lambda E;
+1. the regional field and the plane under it, of least (z - f)' W (z - f) + rho (f - plane)' E (f - plane);
 2. the core's correction, the least change of the control points with B (f + g) = z on the core's points;
 3. the pull on peripheral points outside the tolerance, a damped least change of the control points beside the core.
 
-Taking a group g out of step 1 is a rank update (Cook & Weisberg 1982, sec. 3.6): with the hat matrix H = A K^-1 A' W
-its left-out error is e = (I - H_gg)^-1 r_g, and every other residual grows by A K^-1 A_g' W_g e. Steps 2 and 3 are
-interpolations with the kernel M = B B' (plus a nugget in step 3), and a group leaves an interpolation by blocks of
-the inverse P = M^-1 (Dubrule 1983, Math. Geology 15, 687-699): its multipliers become P r - P_:g P_gg^-1 (P r)_g.
+Taking a group g out of step 1 is a rank update (Cook & Weisberg 1982, sec. 3.6): with the hat matrix H = C W, C the
+posterior covariance over noise^2, its left-out error is e = (I - H_gg)^-1 r_g, and every other residual grows by
+C_:g W_g e. Steps 2 and 3 are interpolations with the kernel M = B B' (plus a nugget in step 3), and a group leaves an
+interpolation by blocks of the inverse P = M^-1 (Dubrule 1983, Math. Geology 15, 687-699): its multipliers become
+P r - P_:g P_gg^-1 (P r)_g.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,7 +93,7 @@ class LinearFit:
     posterior : Posterior
         The field.
     covariance : (n, n) array
-        A K^-1 A': the covariance of the field at the points, in units of noise^2.
+        The covariance of the field at the points, in units of noise^2.
     corrections : tuple of Correction
         What follows the field: the core, and the pull.
     """
@@ -117,12 +118,10 @@ class LinearFit:
         given = self.posterior
         n = len(given.value)
         error, field_error, variance = (np.full(n, np.nan) for _ in range(3))
-        trend = _Trend(given.plane, given.value)
-        tilted = trend.basis - self.covariance @ (given.weight[:, None] * trend.basis)
         left = np.empty((n, len(groups)))
         predicted = []
         for k, group in enumerate(groups):
-            residual = given.residual + tilted @ trend.change(group)
+            residual = given.residual
             among = self.covariance[np.ix_(group, group)]
             gap = np.eye(len(group)) - among * given.weight[group]
             if len(group) == n or np.linalg.cond(gap) > 1 / _HELD:
@@ -139,41 +138,14 @@ class LinearFit:
         return Prediction(error, field_error, given.noise**2 * variance)
 
 
-class _Trend:
-    """The plane of least squares under the field, and how it changes as a group leaves."""
-
-    def __init__(self, plane: Floats, value: Floats) -> None:
-        self.basis = np.column_stack([np.ones(len(plane)), plane - plane.mean(axis=0)])
-        self._inverse = np.linalg.pinv(self.basis.T @ self.basis, rcond=1e-12)
-        self._residual = value - self.basis @ (self._inverse @ (self.basis.T @ value))
-
-    def change(self, group: Ints) -> Floats:
-        """Return (3,) by how much the heights about the trend rise, in terms of the basis, without a group."""
-        mine = self.basis[group]
-        gap = np.eye(len(group)) - mine @ self._inverse @ mine.T
-        error = np.linalg.lstsq(gap, self._residual[group], rcond=1e-9)[0]
-        return np.asarray(self._inverse @ mine.T @ error)
-
-
 def linear_fit(model: Model, given: Posterior) -> LinearFit:
-    """Return a fitted height field as the linear estimator that it is, on the space of its control net.
-
-    Parameters
-    ----------
-    model : Model
-        The fit.
-    given : Posterior
-        Its field; the corrections are left out where its space is not the fit's own.
-    """
-    matrix = given.matrix(given.plane)
-    fit = LinearFit(given, given.factor.gram(matrix), ())
-    return replace(fit, corrections=_corrections(given, matrix, model)) if given.exact_net else fit
+    """Return a fitted height field, whose field is ``given``, as the linear estimator that it is."""
+    return LinearFit(given, given.gram(given.plane), _corrections(given, model))
 
 
-def _corrections(given: Posterior, matrix: csr_array, model: Model) -> tuple[Correction, ...]:
+def _corrections(given: Posterior, model: Model) -> tuple[Correction, ...]:
     net, problem = model.net, model.problem
-    frozen = net.frozen.reshape(net.space.shape)
-    free = ~(frozen.T if given.turned else frozen).ravel()
+    matrix, free = net.space.matrix(given.plane), ~net.frozen
     steps: list[Correction] = []
     residual = given.residual[:, None]
     inside = problem.split.inside[given.kept] & (problem.split.core is not None)

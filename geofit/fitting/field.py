@@ -1,81 +1,103 @@
 """The regional field: the smooth surface that the data support, and how noisy they are.
 
-A penalised least-squares spline, the sum of w_i d_i^2 + lambda * energy. Lengths are counted in units of the
-spacing of the sparse points, so that one range of lambda serves every site. Two energies are offered:
+A Gaussian field about a plane, on a space of splines: heights are plane + field + noise, where the field has a Matérn
+covariance (:mod:`geofit.splines.matern`) with its own smoothness, range, direction of the longest range, and size.
+The thin-plate spline is its limit of an infinite range. All parameters are those of the greatest restricted likelihood
+(:mod:`geofit.fitting.likelihood`). Lengths are counted in units of the spacing of the sparse points.
 
-========= ============================================ ====================================================
-name      energy                                       where it wins
-========= ============================================ ====================================================
-"smooth"  third derivatives + 4 x second derivatives   gentle horizons: half the error of a thin plate
-"plate"   second derivatives: the thin plate           rugged horizons, where third derivatives overshoot
-"level"   second derivatives + 1/4 first derivatives   points in a line, which say nothing of the slope across it
-========= ============================================ ====================================================
-
-At short distances third derivatives rule the first, beyond the spacing the second, which calm the surface where no
-data are. Energy and lambda are those of the greatest restricted likelihood, in which the energy is a Gaussian prior
-of the surface (S. N. Wood, J. R. Stat. Soc. B 73, 2011, 3-36): one that is too stiff for the relief, or too loose,
-makes the data unlikely. Restricted likelihoods compare only energies that leave the same surfaces free, here planes.
+The field is solved on a space that reaches beyond the study area, where no data bend it, and cut at the area's edge.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize_scalar
 
 from geofit.data.errors import FitError
 from geofit.data.messages import message
-from geofit.splines.tensor import Factor, TensorSpace
+from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Optimum, plane_coefficients
+from geofit.splines import bspline
+from geofit.splines.matern import MaternPrecision
+from geofit.splines.tensor import Factor, TensorSpace, band_times
 
-__all__ = ["ENOUGH", "Field", "cell_weights", "choose", "energy_band", "plane_trend", "smooth"]
+__all__ = [
+    "ENOUGH",
+    "Field",
+    "Smoothed",
+    "choose",
+    "drift_of",
+    "plane_trend",
+    "precision_band",
+    "relative_noise",
+    "restricted",
+    "smooth",
+    "widened",
+]
 
 Floats = NDArray[np.float64]
 
-#: Weights of the derivative orders in each energy, and the dimension of what it leaves free.
-ENERGIES: dict[str, tuple[dict[int, float], int]] = {
-    "smooth": ({3: 1.0, 2: 4.0}, 3),
-    "plate": ({2: 1.0}, 3),
-    "level": ({2: 1.0, 1: 0.25}, 1),
-    "flat": ({1: 1.0}, 1),
-}
-#: Range of log10(lambda) in units of the spacing.
-_LOG_RANGE = (-9.0, 3.0)
 #: Noise above this share of the values' own spread contradicts any tolerance below it.
 CONTRADICTION = 0.5
+#: Fewer points than these cannot tell noise from relief, nor one direction from another.
+ENOUGH = 16
 #: Standard deviation across a strip, in units of the spacing, below which it counts as a line.
 _NARROW = 0.05
-#: Fewer points than these cannot tell noise from relief.
-ENOUGH = 16
-#: Part of an energy's diagonal that stands in for what the energy leaves free, in its determinant.
-_RIDGE = 1e-10
-#: No elevation is known better than this, metres: keeps the likelihood finite on exact planes.
-_FINEST = 1e-4
-#: Stands for the likelihood of a lambda whose system has no solution; finite, for Brent's method.
-_UNSOLVABLE = 1e12
+#: How far the field's space reaches beyond the area, in units, and how fast its spans grow there.
+_BEYOND, _GROWTH = 1.5, 1.5
+#: Starts of the search: kappa per unit, and log rho.
+_KAPPAS, _LOG_RHOS = (0.1, 0.7), (-10.0, -6.0, -2.0)
+#: Stretches that the search for a direction starts from.
+_STRETCHES = ((0.0, 0.0), (0.2, 0.0), (-0.2, 0.0), (0.0, 0.2), (0.0, -0.2))
+#: Rounds of the search over kappa and rho, and over all parameters.
+_FIRST, _LAST = 6, 4
 
 
 @dataclass(frozen=True)
 class Field:
-    """What was chosen: energy, lambda, and the noise (1 sigma, metres) that the likelihood finds.
+    """What was chosen: the covariance of the field, and the noise (1 sigma, metres) that the likelihood finds.
 
-    ``contradictory`` says that the data are little else than noise; ``spread`` is the standard deviation of the data
-    about their trend, metres.
+    ``alpha`` is the exponent of the operator (smoothness nu = alpha - 1), ``kappa`` its inverse range per unit,
+    ``rho`` the noise's variance relative to the field's, ``stretch`` its direction (see
+    :func:`geofit.splines.matern.metric`). ``contradictory`` says that the data are little else than noise;
+    ``spread`` is the standard deviation of the data about their trend, metres.
     """
 
-    energy: str
-    smoothing: float
+    alpha: int
+    kappa: float
+    rho: float
+    stretch: tuple[float, float]
     noise: float
     contradictory: bool = False
     spread: float = math.inf
 
+    @property
+    def energy(self) -> str:
+        """The covariance in words."""
+        ratio = math.exp(2 * math.hypot(*self.stretch))
+        name = f"Matérn {self.alpha - 1}"
+        return name if ratio < 1.05 else f"{name}, {ratio:.1f} : 1"
 
-def energy_band(space: TensorSpace, name: str) -> Floats:
-    """Return the band of a named energy on a space, (bandwidth + 1, size)."""
-    orders, _ = ENERGIES[name]
-    return sum((factor * space.energy(order) for order, factor in orders.items()), start=np.zeros(1))
+    @property
+    def smoothing(self) -> float:
+        """Weight of the field's energy against squared misfits."""
+        return self.rho
+
+    @property
+    def turned(self) -> Field:
+        """The same field with u and v exchanged."""
+        return replace(self, stretch=(-self.stretch[0], self.stretch[1]))
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothed:
+    """A field fitted on a space: coefficients, plane included, and the plane's own, (3,) or (3, k) of 1, u, v."""
+
+    coefficients: Floats
+    plane: Floats
 
 
 def plane_trend(plane: Floats, z: Floats, weight: Floats) -> Floats:
@@ -91,63 +113,84 @@ def plane_trend(plane: Floats, z: Floats, weight: Floats) -> Floats:
     return solution.reshape(3, *z.shape[1:])
 
 
-def cell_weights(space: TensorSpace, plane: Floats, accuracy: Floats) -> Floats:
-    """Return the weight of each point: relative accuracy, shared where a knot cell holds more points than most.
-
-    Points nearer to each other than the knots say one thing together; sharing keeps one dense section from
-    deciding how noisy and how rough the whole area is. Points without a stated accuracy take the median.
-    """
+def relative_noise(accuracy: Floats) -> Floats:
+    """Return each point's noise against that of the median stated accuracy; 1 where none is stated."""
     stated = np.isfinite(accuracy)
-    relative = np.ones(len(plane))
+    ratio = np.ones(len(accuracy))
     if stated.any():
-        middle = float(np.median(accuracy[stated]))
-        relative[stated] = np.clip(middle / accuracy[stated], 0.1, 10.0) ** 2
-    index, _ = space.rows(plane)
-    _, cell, count = np.unique(index[:, 0], return_inverse=True, return_counts=True)
-    return np.asarray(relative * np.minimum(1.0, np.median(count) / count[cell]))
+        ratio[stated] = np.clip(accuracy[stated] / float(np.median(accuracy[stated])), 0.1, 10.0)
+    return ratio
+
+
+def precision_band(space: TensorSpace, field: Field) -> Floats:
+    """Return the band of rho * E, (bandwidth + 1, size), the precision of the field in units of the noise's."""
+    return field.rho * MaternPrecision(space, field.alpha).band(field.kappa, field.stretch)
+
+
+def drift_of(plane: Floats) -> Floats:
+    """Return (3, r) the combinations of 1, u, v that (n, 2) places determine: no slope across a line of points."""
+    centre = plane.mean(axis=0)
+    _, size, axes = np.linalg.svd(plane - centre, full_matrices=False)
+    known = axes[size > _NARROW * math.sqrt(len(plane))]
+    return np.column_stack([[1.0, 0.0, 0.0], *([-(centre @ axis), *axis] for axis in known)])
 
 
 def choose(
     space: TensorSpace,
     plane: Floats,
     z: Floats,
-    weight: Floats,
+    noise: Floats,
     smoothing: float | None = None,
-) -> Field:
-    """Choose the energy and lambda for data about their trend.
+    known: Field | None = None,
+) -> tuple[Field, float]:
+    """Choose the covariance and the noise for data about their trend.
 
     Parameters
     ----------
     space : TensorSpace
-        A space with a few knots a spacing; the choice holds for finer ones.
+        A space of even spans over the area; what it cannot follow counts as noise.
     plane : (n, 2) array
         Places, in units of the spacing.
     z : (n,) or (n, k) array
         Heights (or coordinates) in metres, trend removed.
-    weight : (n,) array
-        Weights.
+    noise : (n,) array
+        Noise of each point relative to the others (:func:`relative_noise`).
     smoothing : float, optional
-        Take this lambda; only the energy is chosen.
+        Take this rho; the covariance alone is chosen.
+    known : Field, optional
+        What a coarser space gave: the search starts there.
+
+    Returns
+    -------
+    field : Field
+        What was chosen.
+    value : float
+        -2 log of its restricted likelihood, but for a constant of the data.
 
     Raises
     ------
     FitError
-        If no lambda gives a solvable system.
+        If no field gives a solvable system.
     """
-    if space.shape[1] > space.shape[0]:
-        space, plane = space.turned, plane[:, ::-1]
-    band, right = space.normal_equations(plane, z, weight)
+    wide = widened(space)
+    turned = wide.shape[1] > wide.shape[0]
+    if turned:
+        wide, plane, known = wide.turned, plane[:, ::-1], known and known.turned
+    weight = 1 / noise**2
+    band, right = wide.normal_equations(plane, z, weight)
     square = float((weight @ (z.reshape(len(z), -1) ** 2)).sum())
-    names = {3: ("smooth", "plate"), 2: ("plate",)}.get(space.degree, ("flat",))
-    if space.degree > 1 and _in_line(plane):
-        names = ("level",)
-    found = []
-    for name in names:
-        likelihood = _Likelihood(space, name, band, right, square, len(plane), float(weight.sum()))
-        log = likelihood.best() if smoothing is None else math.log10(smoothing)
-        found.append((likelihood(log), log, likelihood))
-    value, log, likelihood = min(found, key=lambda one: one[0])
-    if value >= _UNSOLVABLE:
+    drift = plane_coefficients(wide) @ drift_of(plane)
+
+    def likelihood(alpha: int) -> Likelihood:
+        return Likelihood(wide, alpha, band, right, square, drift, len(plane))
+
+    few = len(plane) < ENOUGH
+    if known is not None:
+        start = (math.log(known.kappa), math.log(known.rho), *known.stretch)
+        best = likelihood(known.alpha).best([start], 0 if smoothing is not None else 2, _FIRST // 2)
+    else:
+        best = _search(likelihood, space.degree, len(plane), None if smoothing is None else math.log(smoothing))
+    if best.value >= UNSOLVABLE:
         text = message(
             "fit.no-smoothing-system-points",
             "No smoothing makes the system of {points} points and {size} control points solvable: the points lie on "
@@ -156,81 +199,81 @@ def choose(
             size=space.size,
         )
         raise FitError(text)
-    noise = likelihood.noise(log)
-    spread = float(np.std(z, axis=0).max())
-    contradictory = len(plane) >= ENOUGH and noise > CONTRADICTION * max(spread, _FINEST)
-    return Field(likelihood.name, 10.0**log, noise, contradictory, spread)
+    spread, own = float(np.std(z, axis=0).max()), math.sqrt(best.variance)
+    contradictory = not few and own > CONTRADICTION * max(spread, FINEST)
+    field = Field(best.alpha, best.kappa, best.rho, best.stretch, own, contradictory, spread)
+    return (field.turned if turned else field), best.value
 
 
-def _in_line(plane: Floats) -> bool:
-    """Tell whether the points lie in a strip so narrow, beside their spacing, that no slope across it is known."""
-    across = np.linalg.svd(plane - plane.mean(axis=0), compute_uv=False)[-1]
-    return float(across) < _NARROW * math.sqrt(len(plane))
+def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rho: float | None) -> Optimum:
+    """Compare the smoothnesses without a direction, then give the better one its direction."""
+    few = n < ENOUGH
+    alphas = {3: (2,) if few else (2, 3), 2: (2,)}.get(degree, (1,))
+    logs, free = (_LOG_RHOS, 2) if log_rho is None else ((log_rho,), 1)
+    found = []
+    for alpha in alphas:
+        judge = likelihood(alpha)
+        kappas = _KAPPAS if alpha == alphas[0] else _KAPPAS[-1:]
+        starts = [(math.log(kappa), log, 0.0, 0.0) for kappa in kappas for log in logs]
+        found.append((judge.best(starts, free, _FIRST), judge))
+    best, judge = min(found, key=lambda one: one[0].value)
+    if few or best.value >= UNSOLVABLE:
+        return best
+    starts = [(math.log(best.kappa), math.log(best.rho), *stretch) for stretch in _STRETCHES]
+    turned = judge.best(starts, 0 if log_rho is not None else 4, _LAST)
+    # Two parameters more must pay for themselves (G. Schwarz, Ann. Stat. 6, 1978, 461-464).
+    return turned if turned.value < best.value - 2 * math.log(n) else best
 
 
-class _Likelihood:
-    """Restricted likelihood of lambda for one energy; each new value costs one factorisation."""
-
-    def __init__(
-        self, space: TensorSpace, name: str, band: Floats, right: Floats, square: float, n: int, weight: float
-    ) -> None:
-        self.name, self.space, self.band, self.right, self.square = name, space, band, right, square
-        self.energy = energy_band(space, name)
-        self.determinant = _log_pseudo_determinant(self.energy, ENERGIES[name][1])
-        self.columns = 1 if right.ndim == 1 else right.shape[1]
-        self.n, self.free = n, ENERGIES[name][1]
-        self.weight = weight
-        self.floor = n * self.columns * _FINEST**2
-        self.known: dict[float, tuple[float, float]] = {}
-
-    def _solve(self, log: float) -> tuple[float, float]:
-        """Return the value, and the penalised sum of squares."""
-        try:
-            factor = Factor(self.band + 10.0**log * self.energy)
-        except FitError:
-            return _UNSOLVABLE, math.nan
-        penalised = max(self.square - float((factor.solve(self.right) * self.right).sum()), self.floor)
-        degrees = max(self.n - self.free, 1)
-        misfit = self.columns * degrees * math.log(penalised / (degrees * self.columns))
-        prior = self.determinant + (self.space.size - self.free) * log * math.log(10)
-        return misfit + self.columns * (factor.logdet - prior), penalised
-
-    def __call__(self, log: float) -> float:
-        """Return -2 log of the restricted likelihood, but for a constant of the data."""
-        if log not in self.known:
-            self.known[log] = self._solve(log)
-        return self.known[log][0]
-
-    def best(self) -> float:
-        """Search log10 lambda: a coarse scan, then Brent's method between the neighbours of its best."""
-        grid = np.linspace(*_LOG_RANGE, 7)
-        values = [self(log) for log in grid]
-        k = int(np.argmin(values))
-        if values[k] >= _UNSOLVABLE:
-            return float(grid[-1])
-        low, high = grid[max(k - 1, 0)], grid[min(k + 1, len(grid) - 1)]
-        found = minimize_scalar(self, bounds=(low, high), method="bounded", options={"xatol": 0.15})
-        return float(found.x) if found.fun <= values[k] else float(grid[k])
-
-    def noise(self, log: float) -> float:
-        """Return the likeliest noise of a point, metres."""
-        penalised = self.known[log][1]
-        share = self.n / (max(self.n - self.free, 1) * self.columns * self.weight)
-        return math.sqrt(penalised * share)
+def widened(space: TensorSpace) -> TensorSpace:
+    """Return the space carried on beyond its edges, in spans that grow."""
+    return TensorSpace(_beyond(space.knots_u, space.degree), _beyond(space.knots_v, space.degree), space.degree)
 
 
-def _log_pseudo_determinant(energy: Floats, free: int) -> float:
-    """Return log of the product of the eigenvalues of an energy that are not zero."""
-    ridge = _RIDGE * float(np.median(energy[0]))
-    held = energy.copy()
-    held[0] += ridge
-    return Factor(held).logdet - free * math.log(ridge)
+def _beyond(knots: Floats, degree: int) -> Floats:
+    inner = knots[degree + 1 : -degree - 1]
+    ends = []
+    for edge, next_to in ((knots[0], np.unique(knots)[1]), (knots[-1], np.unique(knots)[-2])):
+        step, reached = float(edge - next_to), [float(edge)]
+        while abs(reached[-1] - edge) < _BEYOND:
+            step *= _GROWTH
+            reached.append(reached[-1] + step)
+        ends.append(reached)
+    low, high = ends
+    return np.concatenate([np.repeat(low[-1], degree), low[::-1], inner, high, np.repeat(high[-1], degree)])
 
 
-def smooth(space: TensorSpace, field: Field, plane: Floats, z: Floats, weight: Floats) -> Floats:
-    """Return the coefficients of a chosen field on any space, (size,) or (size, k): heights, metres."""
-    turned = space.turned if space.shape[1] > space.shape[0] else space
-    band, right = turned.normal_equations(plane if turned is space else plane[:, ::-1], z, weight)
-    solution = Factor(band + field.smoothing * energy_band(turned, field.energy)).solve(right)
-    net = solution.reshape(*turned.shape, *solution.shape[1:])
-    return (net if turned is space else np.swapaxes(net, 0, 1)).reshape(solution.shape)
+def restricted(space: TensorSpace, coefficients: Floats) -> Floats:
+    """Return the coefficients on a space of a surface on the widened one: cut by knot insertion at the edges."""
+    wide, p = widened(space), space.degree
+    net = coefficients.reshape(*wide.shape, -1)
+    for axis, (knots, wide_knots) in enumerate(((space.knots_u, wide.knots_u), (space.knots_v, wide.knots_v))):
+        fine = np.sort(np.concatenate([wide_knots, np.repeat([knots[0], knots[-1]], p - 1)]))
+        cut = bspline.insertion_matrix(wide_knots, fine, p)
+        first = int(np.searchsorted(fine, knots[0], side="left")) - 1
+        cut = cut[first : first + len(knots) - p - 1]
+        net = np.moveaxis(np.tensordot(cut, net, axes=(1, axis)), 0, axis)
+    return np.ascontiguousarray(net).reshape(space.size, *coefficients.shape[1:])
+
+
+def smooth(space: TensorSpace, field: Field, plane: Floats, z: Floats, weight: Floats) -> Smoothed:
+    """Return a chosen field on any space: heights about the trend, metres, with the plane of the likelihood."""
+    wide = widened(space)
+    turned = wide.shape[1] > wide.shape[0]
+    if turned:
+        wide, plane, field = wide.turned, plane[:, ::-1], field.turned
+    band, right = wide.normal_equations(plane, z, weight)
+    prior = precision_band(wide, field)
+    directions = drift_of(plane)
+    drift = plane_coefficients(wide) @ directions
+    held = band_times(prior, drift)
+    columns = right.reshape(len(right), -1)
+    solved = Factor(band + prior).solve(np.column_stack([columns, held]))
+    free, drifted = solved[:, : columns.shape[1]], solved[:, columns.shape[1] :]
+    slopes = np.linalg.lstsq(drift.T @ held - held.T @ drifted, held.T @ free, rcond=None)[0]
+    net = (free + drifted @ slopes).reshape(*wide.shape, -1)
+    found = directions @ slopes
+    if turned:
+        net, found = np.swapaxes(net, 0, 1), found[[0, 2, 1]]
+    coefficients = restricted(space, net.reshape(wide.size, *z.shape[1:]))
+    return Smoothed(coefficients, found.reshape(3, *z.shape[1:]))

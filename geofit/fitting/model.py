@@ -58,7 +58,7 @@ class Problem:
             xyz = self.chart.frame.turn_back(local) + self.chart.frame.origin
             corners = tuple((float(x), float(y)) for x, y in xyz[:, :2])
         inside = int((self.split.inside & self.kept).sum())
-        return Partition(corners, inside, len(self.kept) - inside, self.split.reason)
+        return Partition(corners, inside, len(self.kept) - inside, self.split.reason, self.split.lost)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +97,7 @@ class Model:
             "energy": net.field.energy,
             "smoothing": net.field.smoothing,
             "noise": net.field.noise,
+            "noise_limit": net.limit,
             "spacing": net.unit,
             "rounds": net.rounds,
         }

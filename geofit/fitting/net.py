@@ -6,26 +6,27 @@ those beside a core, whose net :mod:`geofit.fitting.core` makes.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import ndtri
 
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
-from geofit.fitting.approximate import approximate, borrowed
+from geofit.fitting.approximate import approximate, borrowed, solved_beside
 from geofit.fitting.assemble import multiply_knots
-from geofit.fitting.field import ENOUGH, Field, cell_weights, choose, energy_band, plane_trend
+from geofit.fitting.field import ENOUGH, Field, Smoothed, choose, plane_trend, precision_band, relative_noise, smooth
+from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.parametrize import Chart
 from geofit.fitting.partition import Split
 from geofit.splines import bspline
-from geofit.splines.tensor import CELLWISE, Factor, TensorSpace
+from geofit.splines.tensor import TensorSpace
 
 __all__ = [
-    "COARSE",
-    "EVEN",
     "Data",
     "Net",
     "Periphery",
@@ -42,16 +43,25 @@ Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
 Stage = Callable[[str, float], None]
 
-#: Longest span of a surface without a core, in units of the spacing of the points.
-EVEN = 0.6
+#: Shortest spans of the space on which the field is chosen, in units of the spacing: what is shorter no points of that
+#: spacing resolve. Control points of its first level, and at most.
+EVEN, FIRST_LEVEL, LAST_LEVEL = 0.5, 1_500, 25_000
+#: A finer level must raise the restricted likelihood by this much, -2 log of it.
+GAIN = 10.0
+#: Span around a point that is met within its tolerance, in units: what lies between stays the field's.
+NARROW = 0.15
 #: Shortest span that is still halved for a point outside its tolerance.
 FINEST = 0.05
-#: Noise beyond this many times the interior tolerance is told: the points are met at the cost of what is between.
+#: Noise beyond this many times the interior tolerance is no noise, but relief between sparse points.
 BENT = 3.0
-#: Control points of the space on which the field is chosen.
-COARSE = 1_600
-#: Control points to try where points are many, and how many of these points choose the field.
-LEVELS, PART = (1_000, 4_000, 16_000, 60_000), 50_000
+#: Where points scatter by this share of their noise about the field, they are so many that it shows.
+SHOWN = 0.8
+#: Noise explains the misfits beyond which it predicts fewer points than this.
+UNLIKELY = 0.5
+#: Places whose rows are held at a time.
+PART = 50_000
+#: Control points a data point, and their bounds.
+A_POINT, FEWEST, MOST = 40, 1_600, 20_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,10 +69,12 @@ class Net:
     """A fitted surface before it is cut into patches; lengths in u and v are counted in ``unit`` metres.
 
     ``coefficients`` (size,) heights or (size, 3) coordinates, metres; ``frozen`` (size,) marks the control
-    points that act on the core; ``lines`` are the section lines of a core that is linear across them.
+    points that act on the core; ``lines`` are the section lines of a core that is linear across them. ``base`` is
+    the space of the field, before knots were added; ``limit`` (m) is how far from the surface noise explains points.
     """
 
     space: TensorSpace
+    base: TensorSpace
     coefficients: Floats
     frozen: NDArray[np.bool_]
     core: Rectangle | None
@@ -70,6 +82,7 @@ class Net:
     unit: float
     field: Field
     rounds: int
+    limit: float
     notes: tuple[Message, ...]
 
 
@@ -86,11 +99,7 @@ class Data:
 
     def over_trend(self, space: TensorSpace) -> Floats:
         """Return the trend's coefficients on a space."""
-        u = bspline.greville(space.knots_u, space.degree)
-        v = bspline.greville(space.knots_v, space.degree)
-        plane = np.stack([np.ones(space.shape), *np.meshgrid(u, v, indexing="ij")], axis=-1)
-        trend: Floats = plane.reshape(space.size, 3) @ self.trend
-        return trend
+        return np.asarray(plane_coefficients(space) @ self.trend)
 
 
 def gather(points: PointSet, chart: Chart, kept: NDArray[np.bool_], split: Split | None) -> Data:
@@ -128,9 +137,9 @@ def even_space(area: Rectangle, span: float, degree: int, most: int) -> TensorSp
     )
 
 
-def cap_for(settings: FitSettings, n: int) -> int:
+def cap_for(settings: FitSettings, n: int, a_point: int = A_POINT) -> int:
     """Return the cap of the number of control points."""
-    return settings.max_control_points or int(np.clip(10 * n, 400, 60_000))
+    return settings.max_control_points or int(np.clip(a_point * n, FEWEST, MOST))
 
 
 def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpace) -> int:
@@ -144,38 +153,71 @@ def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpac
     return rows[0] * rows[1]
 
 
-def choose_field(data: Data, space: TensorSpace, settings: FitSettings) -> Field:
-    """Choose the regional field on a space (see :func:`geofit.fitting.field.choose`)."""
-    weight = cell_weights(space, data.plane, data.accuracy)
+def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, TensorSpace]:
+    """Choose the regional field, and the even space that resolves it (see :func:`geofit.fitting.field.choose`).
+
+    Spans are halved in area while the likelihood gains by it, down to those that the points resolve.
+    """
+    degree, noise = degree_for(len(data.plane)), relative_noise(data.accuracy)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
-    return choose(space, data.plane, data.value, weight, given)
+    limit = min(most, LAST_LEVEL)
+    count = min(FIRST_LEVEL, limit)
+    space = even_space(data.area, EVEN, degree, count)
+    field, value = choose(space, data.plane, data.value, noise, given)
+    while 2 * count <= limit:
+        count *= 2
+        finer = even_space(data.area, EVEN, degree, count)
+        if finer.size < 1.3 * space.size:
+            break
+        better, reached = choose(finer, data.plane, data.value, noise, given, field)
+        if reached > value - GAIN:
+            break
+        space, field, value = finer, better, reached
+    return field, space
+
+
+def smoothed(data: Data, space: TensorSpace, field: Field) -> Smoothed:
+    """Return a chosen field on a space."""
+    return smooth(space, field, data.plane, data.value, 1 / relative_noise(data.accuracy) ** 2)
 
 
 def approximate_all(
     points: PointSet, chart: Chart, kept: NDArray[np.bool_], settings: FitSettings, stage: Stage
 ) -> Net:
-    """Fit a surface without a core: the smoothest one within the interior tolerance, as far as knots allow."""
+    """Fit a surface without a core: the field, brought within the interior tolerance of sparse points."""
     data = gather(points, chart, kept, None)
-    n, degree = len(data.plane), degree_for(len(data.plane))
+    n = len(data.plane)
     most = cap_for(settings, n)
     stage("field", 0.25)
-    if n >= CELLWISE and not chart.parametric:
-        return _approximate_many(data, settings, most)
-    space = even_space(data.area, EVEN, degree, most)
-    field = choose_field(data, space, settings)
+    field, base = choose_field(data, settings, most)
+    start = smoothed(data, base, field)
     stage("periphery", 0.5)
-    start = np.zeros((space.size, *data.value.shape[1:]))
-    periphery = Periphery(data, np.ones(n, bool), None, field, settings, most, refit=True)
-    space, coefficients, frozen, rounds, notes = periphery.fit(space, start)
-    return Net(space, coefficients + data.over_trend(space), frozen, None, None, data.unit, field, rounds, notes)
+    periphery = Periphery(data, np.ones(n, bool), None, field, settings, most, refit=False)
+    found = periphery.fit(base, start)
+    total = found.coefficients + data.over_trend(found.space)
+    return Net(
+        found.space, base, total, found.frozen, None, None, data.unit, field, found.rounds, found.limit, found.notes
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """What an approximation gives: see :class:`Net`."""
+
+    space: TensorSpace
+    coefficients: Floats
+    frozen: NDArray[np.bool_]
+    rounds: int
+    limit: float
+    notes: tuple[str, ...]
 
 
 @dataclass(frozen=True, eq=False)
 class Periphery:
     """The points to approximate, beside the core that lends its control points.
 
-    Beside a core the regional field's fit stands already, and its core's edge is the patch's edge. ``refit``
-    solves for it anew: without a core, or where a break is allowed at the seams.
+    The regional field's fit stands already, and its core's edge is the patch's edge. ``refit`` solves for it anew
+    where a break is allowed at the seams.
     """
 
     data: Data
@@ -186,28 +228,75 @@ class Periphery:
     most: int
     refit: bool
 
-    def fit(
-        self, space: TensorSpace, start: Floats
-    ) -> tuple[TensorSpace, Floats, NDArray[np.bool_], int, tuple[Message, ...]]:
+    def fit(self, space: TensorSpace, start: Smoothed) -> Beside:
         """Approximate, and add knots where points stay outside the tolerance, as far as the cap allows."""
         data, tolerance = self.data, self.settings.interior_tolerance
         plane, value = data.plane[self.outer], data.value[self.outer]
+        coefficients = self._refitted(space, start) if self.refit else start.coefficients
+        misfit = _misfit(space, coefficients, plane, value)
+        limit = self._limit(misfit)
         # A tolerance finer than the data's own contradiction is reported, not chased; nor is a given smoothing.
         chased = not self.field.contradictory and self.settings.smoothing == "auto"
         rounds = self.settings.max_iterations if chased else 0
+        if chased and (misfit > limit).any():
+            space, coefficients = self._narrowed(space, coefficients, plane[misfit > limit])
         total = 0
+        if not (misfit > limit).any():
+            beyond = np.where(misfit > tolerance, misfit, 0.0)
+            return Beside(space, coefficients, self._frozen(space), 0, limit, self._notes(beyond, limit))
         while True:
-            frozen = np.zeros(space.size, bool) if self.core is None else borrowed(space, self.core).ravel()
-            energy = self.field.smoothing * energy_band(space, self.field.energy) if self.refit else None
-            weight = cell_weights(space, data.plane, data.accuracy)[self.outer]
-            result = approximate(space, energy, start, frozen, plane, value, weight, tolerance, rounds)
+            frozen = self._frozen(space)
+            result = approximate(space, coefficients, frozen, plane, value, tolerance, limit, rounds)
             total += result.rounds
-            excess = np.where(result.misfit > tolerance, result.misfit, 0.0)
+            excess = np.where(result.misfit > limit, result.misfit, 0.0)
             at_u, at_v = self._new_knots(space, plane, excess) if chased else ({}, {})
             if not at_u and not at_v:
                 break
-            space, start = multiply_knots(space, result.coefficients, at_u, at_v)
-        return space, result.coefficients, frozen, total, self._notes(excess)
+            space, coefficients = multiply_knots(space, result.coefficients, at_u, at_v)
+        beyond = np.where(result.misfit > tolerance, result.misfit, 0.0)
+        return Beside(space, result.coefficients, frozen, total, limit, self._notes(beyond, limit))
+
+    def _frozen(self, space: TensorSpace) -> NDArray[np.bool_]:
+        return np.zeros(space.size, bool) if self.core is None else borrowed(space, self.core).ravel()
+
+    def _refitted(self, space: TensorSpace, start: Smoothed) -> Floats:
+        """Solve for the control points beside the core again, in a space that may break at its edge."""
+        data, over = self.data, plane_coefficients(space) @ start.plane
+        plane = data.plane[self.outer]
+        rest = data.value[self.outer] - np.column_stack([np.ones(len(plane)), plane]) @ start.plane
+        frozen = self._frozen(space)
+        weight = 1 / relative_noise(data.accuracy)[self.outer] ** 2
+        energy = precision_band(space, self.field)
+        return over + solved_beside(space, energy, start.coefficients - over, frozen, plane, rest, weight)
+
+    def _limit(self, misfit: Floats) -> float:
+        """Return how far a point may lie from the field: the tolerance, or as far as noise explains.
+
+        It does where so many points show it that their misfit to the field is the noise itself, and where it is of the
+        tolerance's size: what is far larger is relief between sparse points.
+        """
+        noise, tolerance = self.field.noise, self.settings.interior_tolerance
+        shown = float(np.sqrt(np.mean(misfit**2))) > SHOWN * noise
+        if not shown or noise > BENT * tolerance or len(misfit) < ENOUGH:
+            return tolerance
+        return max(tolerance, noise * float(ndtri(1 - UNLIKELY / (2 * len(misfit)))))
+
+    def _narrowed(self, space: TensorSpace, coefficients: Floats, pulled: Floats) -> tuple[TensorSpace, Floats]:
+        """Shorten the spans around the points to pull, as far as the cap allows."""
+        ranges = [(np.inf, -np.inf)] * 2 if self.core is None else [self.core[:2], self.core[2:]]
+        narrow = NARROW
+        while True:
+            new = []
+            for axis, knots in enumerate((space.knots_u, space.knots_v)):
+                low, high = ranges[axis]
+                x = pulled[(pulled[:, axis] < low) | (pulled[:, axis] > high), axis]
+                added = finer_breaks(np.unique(knots), x, narrow)
+                new.append(dict.fromkeys(added[(added < low) | (added > high)].tolist(), 1))
+            shape = (space.shape[0] + len(new[0]), space.shape[1] + len(new[1]))
+            if in_patches(shape, self.core, space) <= self.most or not (new[0] or new[1]):
+                break
+            narrow *= 1.1
+        return multiply_knots(space, coefficients, new[0], new[1]) if new[0] or new[1] else (space, coefficients)
 
     def _new_knots(
         self, space: TensorSpace, plane: Floats, excess: Floats
@@ -237,8 +326,24 @@ class Periphery:
                 new[axis][middle] = 1
         return new
 
-    def _notes(self, excess: Floats) -> tuple[Message, ...]:
-        return (*self._bent_notes(), *self._excess_notes(excess))
+    def _notes(self, beyond: Floats, limit: float) -> tuple[Message, ...]:
+        if limit > self.settings.interior_tolerance and not (beyond > limit).any():
+            return self._noise_notes(beyond)
+        return (*self._bent_notes(), *self._excess_notes(beyond))
+
+    def _noise_notes(self, beyond: Floats) -> tuple[Message, ...]:
+        """Count the points that lie beyond the tolerance because their own noise puts them there."""
+        count = int((beyond > 0).sum())
+        if not count:
+            return ()
+        note = message(
+            "fitting.points-beyond-noise-predicts",
+            "{count} points beyond {tolerance:g} m, as noise of {noise:.3g} m predicts; they are listed, not chased",
+            count=count,
+            tolerance=self.settings.interior_tolerance,
+            noise=self.field.noise,
+        )
+        return (note,)
 
     def _bent_notes(self) -> tuple[Message, ...]:
         """Say where meeting the points costs more between them than it gains at them."""
@@ -282,38 +387,29 @@ class Periphery:
         return (note.with_severity("warning"),)
 
 
-def _approximate_many(data: Data, settings: FitSettings, most: int) -> Net:
-    """Approximate more points than can be pulled one by one: refine while the fit gains by it.
+def finer_breaks(breaks: Floats, x: Floats, longest: float) -> Floats:
+    """Return new breaks, between ascending ones, that leave no span longer than asked for around places.
 
-    Energy and lambda, which do not depend on the number of points, are chosen on a part of them.
+    Around a place lie its own span and the parts of others within two of the longest spans of it: where the bumps of
+    cubic splines at that place lie. Spans are halved.
     """
-    n = len(data.plane)
-    part = slice(None, None, max(n // PART, 1))
-    weight = np.ones(n)
-    given = None if settings.smoothing == "auto" else float(settings.smoothing)
-    coarse = even_space(data.area, EVEN, 3, LEVELS[0])
-    field = choose(coarse, data.plane[part], data.value[part], weight[part], given)
-    best: tuple[float, TensorSpace, Floats] | None = None
-    for count in LEVELS:
-        if best is not None and count > min(most, n / 3):
-            break
-        space = even_space(data.area, EVEN, 3, count)
-        sums = space.sums(data.plane, data.value, weight)
-        band, right = space.equations(sums)
-        coefficients = Factor(band + field.smoothing * energy_band(space, field.energy)).solve(right)
-        score = float(np.sqrt(sums.misfit(coefficients) * n)) / max(n - space.size, 1)
-        if best is not None and score > 0.99 * best[0]:
-            break
-        best = (score, space, coefficients)
-    assert best is not None
-    noise, space, coefficients = best
-    field = replace(field, noise=noise)
-    note = message(
-        "fit.points-judged-sigma-not",
-        "{n} points are judged by sigma, not pulled into the tolerance one by one; noise about {noise:.3f} m",
-        n=n,
-        noise=noise,
-    )
-    free = np.zeros(space.size, bool)
-    total = coefficients + data.over_trend(space)
-    return Net(space, total, free, None, None, data.unit, field, 1, (note,))
+    added = []
+    for low, high in itertools.pairwise(breaks):
+        near = x[(x > low - 2 * longest) & (x < high + 2 * longest)]
+        if len(near) and high - low > longest:
+            parts = 2 ** int(np.ceil(np.log2((high - low) / longest) - 1e-9))
+            inner = np.linspace(low, high, parts + 1)
+            away = np.abs((inner[:-1] + inner[1:])[:, None] / 2 - near).min(axis=1)
+            close = away < 2 * longest + (high - low) / parts
+            added.append(inner[1:-1][close[:-1] | close[1:]])
+    return np.concatenate(added) if added else np.empty(0)
+
+
+def _misfit(space: TensorSpace, coefficients: Floats, plane: Floats, value: Floats) -> Floats:
+    """Return the distances of values at (n, 2) places, part by part: the rows of a million places fill the memory."""
+    parts = [slice(start, start + PART) for start in range(0, len(plane), PART)]
+    return np.concatenate([_size(value[part] - space.matrix(plane[part]) @ coefficients) for part in parts])
+
+
+def _size(misfit: Floats) -> Floats:
+    return np.abs(misfit) if misfit.ndim == 1 else np.linalg.norm(misfit, axis=1)

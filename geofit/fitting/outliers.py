@@ -1,9 +1,9 @@
 """Points that their neighbours do not bear out: shown, never dropped by themselves.
 
-A point's left-out error is set against its own standard deviation, which holds the field's without the point, and the
-noise as the other points find it: S_(i) = S - w_i r_i^2 / (1 - h_i) (externally studentised residuals; Cook & Weisberg
-1982, Residuals and Influence in Regression, sec. 2.2). The worst point is taken out before the next is looked for:
-a blunder drags the field to itself, and would otherwise accuse its neighbours, or hide another beside it.
+A point's left-out error is set against its own standard deviation, which holds the field's without the point and the
+noise, both as large as the other points find them: S_(i) = S - w_i r_i^2 / (1 - h_i) (externally studentised residuals;
+Cook & Weisberg 1982, Residuals and Influence in Regression, sec. 2.2). The worst point is taken out before the next is
+looked for: a blunder drags the field to itself, and would otherwise accuse its neighbours, or hide another beside it.
 """
 
 from __future__ import annotations
@@ -56,9 +56,9 @@ def find_outliers(fit: LinearFit, factor: Floats, judged: NDArray[np.bool_] | No
         error = residual / safe
         others = np.maximum(square - given.weight * residual * error, 0.0) / max(square, 1e-300)
         others *= degrees / (degrees - 1)
-        variance = given.noise**2 * (
-            factor**2 * np.diag(covariance) / safe + np.minimum(others, 1.0) * given.noise_ratio**2
-        )
+        # The field's variance is a multiple of the noise's: a blunder swells both.
+        scale = given.noise**2 * np.minimum(others, 1.0)
+        variance = scale * (factor**2 * np.diag(covariance) / safe + 1 / given.weight)
         ratio = np.where(known, np.abs(error) / np.sqrt(np.maximum(variance, 1e-300)), 0.0)
         worst = int(np.argmax(ratio))
         if ratio[worst] <= LIMIT:

@@ -25,7 +25,7 @@ CONTRAST = 2.0
 #: Fewer points than these make no core worth a patch of its own.
 FEWEST = 20
 #: More points than these are not interpolated without being asked: they outnumber any sensible control net.
-MOST = 5_000
+MOST = 2_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +33,13 @@ class Split:
     """Core and periphery in the plane of the surface.
 
     ``core`` is the rectangle (u0, u1, v0, v1), or None without a core; ``inside`` (n,) marks its points;
-    ``reason`` says in words what was chosen and why.
+    ``reason`` says in words what was chosen and why; ``lost`` that a core was found and could not be kept.
     """
 
     core: Rectangle | None
     inside: NDArray[np.bool_]
     reason: Message
+    lost: bool = False
 
 
 def split_none(plane: Floats, reason: Message) -> Split:

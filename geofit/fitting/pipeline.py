@@ -127,7 +127,7 @@ def _fit_horizon(
             reason=split.reason,
             error=error.message,
         )
-        model = replace(problem, split=Split(None, inside, reason.with_severity("warning"))).fit(
+        model = replace(problem, split=Split(None, inside, reason.with_severity("warning"), lost=True)).fit(
             kept & chart.placed, clock.stage
         )
     if not chart.placed.all():
@@ -168,7 +168,7 @@ def _adjusted(model: Model, surface: HorizonFit) -> HorizonFit:
     for step in range(given.settings.max_iterations + 1):
         accuracy = surface.accuracy
         assert accuracy is not None
-        if accuracy.passed:
+        if accuracy.sigma < accuracy.epsilon:
             if step:
                 surface = _with_note(
                     surface,

@@ -1,9 +1,10 @@
 """How sure the regional field is of itself: the posterior of the smoothing spline.
 
-The energy is a Gaussian prior of the surface, so the field's coefficients have the posterior covariance
-noise^2 K^-1 with K = A' W A + lambda E, A the collocation matrix of the points, W their weights
-(Wahba 1983, J. R. Stat. Soc. B 45, 133-150; its coverage on the average over the area: Nychka 1988, J. Am. Stat.
-Assoc. 83, 1134-1143). A variance b' K^-1 b asks for the band of K^-1 alone (Takahashi, Fagan & Chin 1973).
+The field is Gaussian, so its coefficients have the posterior covariance noise^2 P^-1 with P = A' W A + rho E, A the
+collocation matrix of the points, W their weights. The plane under it, which no prior holds, adds noise^2 D M^-1 D',
+where D = P^-1 rho E B is what the field leaves of the planes B, and M = B' rho E (B - D) their normal matrix
+(G. Wahba, J. R. Stat. Soc. B 45, 1983, 133-150). A variance b' P^-1 b asks for the band of P^-1 alone (Takahashi,
+Fagan & Chin 1973).
 """
 
 from __future__ import annotations
@@ -17,11 +18,12 @@ from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
 from geofit.data.messages import message
-from geofit.fitting.field import cell_weights, energy_band
+from geofit.fitting.field import Field, drift_of, precision_band, relative_noise, widened
+from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.model import Model
 from geofit.fitting.net import even_space, gather
 from geofit.splines.blocks import BlockFactor, InverseBlocks
-from geofit.splines.tensor import TensorSpace
+from geofit.splines.tensor import TensorSpace, band_times
 
 __all__ = ["Posterior", "posterior"]
 
@@ -42,20 +44,21 @@ class Posterior:
     ----------
     kept : (n,) array of int
         Numbers of the points that the fit honours, among all points.
-    plane, value, weight, noise_ratio : (n, 2) and (n,) arrays
-        Their places, heights about the trend (m), weights, and the noise of each beside that of the median point.
+    plane, value, weight : (n, 2) and (n,) arrays
+        Their places, heights about the trend (m), and weights: 1 for a point of the field's own noise.
     space : TensorSpace
-        Space of the field; ``turned`` says that its u runs along the net's v, for a narrower band.
+        Space of the field, wider than the area; ``turned`` says that its u runs along the net's v, for a narrower
+        band.
     factor : BlockFactor
-        Factor of K.
+        Factor of P.
+    drift, moment : (size, r) and (r, r) arrays
+        D and M.
     field : (size,) array
         Coefficients about the trend, metres.
-    noise : float
-        Noise of the median point, metres (1 sigma).
+    model : Field
+        The field's covariance and noise.
     square : float
         The penalised sum of squares, z' W (z - f): what noise^2 is estimated from.
-    exact_net : bool
-        Whether the space is the fit's own.
     trend : (3,) array
         Plane 1, u, v under the field, metres.
     """
@@ -64,15 +67,25 @@ class Posterior:
     plane: Floats
     value: Floats
     weight: Floats
-    noise_ratio: Floats
     space: TensorSpace
     turned: bool
     factor: BlockFactor
+    drift: Floats
+    moment: Floats
     field: Floats
-    noise: float
+    model: Field
     square: float
-    exact_net: bool
     trend: Floats
+
+    @property
+    def noise(self) -> float:
+        """Noise of a point of weight 1, metres (1 sigma)."""
+        return self.model.noise
+
+    @property
+    def noise_variance(self) -> Floats:
+        """Variance of each point about the field, (n,) m^2."""
+        return np.asarray(self.noise**2 / self.weight)
 
     def rows(self, plane: Floats) -> tuple[Ints, Floats]:
         """Return the coefficients that act at (n, 2) places and their basis values."""
@@ -84,21 +97,29 @@ class Posterior:
 
     def variance(self, plane: Floats) -> Floats:
         """Return the (n,) variances of the field at (n, 2) places, m^2."""
-        return np.asarray(self.noise**2 * np.maximum(self._inverse.quadratic(*self.rows(plane)), 0.0))
+        return np.asarray(self.noise**2 * self._quadratic(plane))
 
     def height(self, plane: Floats) -> Floats:
         """Return the (n,) heights of the field at (n, 2) places, trend included, metres."""
         base = np.column_stack([np.ones(len(plane)), plane]) @ self.trend
         return np.asarray(base + self.matrix(plane) @ self.field)
 
+    def gram(self, plane: Floats) -> Floats:
+        """Return the (n, n) covariance of the field among (n, 2) places, in units of noise^2."""
+        matrix = self.matrix(plane)
+        over = matrix @ self.drift
+        return np.asarray(self.factor.gram(matrix) + over @ np.linalg.solve(self.moment, over.T))
+
     def covariance(self, plane: Floats) -> Floats:
         """Return the (n, n) covariance of the field among (n, 2) places, m^2."""
-        return np.asarray(self.noise**2 * self.factor.gram(self.matrix(plane)))
+        return np.asarray(self.noise**2 * self.gram(plane))
 
     def covariance_with(self, plane: Floats, others: Floats) -> Floats:
         """Return the (n, k) covariance of the field at (n, 2) places with that at a few (k, 2) others, m^2."""
-        solved = self.factor.solve(self.matrix(others).T.toarray())
-        return np.asarray(self.noise**2 * (self.matrix(plane) @ solved))
+        mine, theirs = self.matrix(plane), self.matrix(others)
+        solved = self.factor.solve(theirs.T.toarray())
+        over = (mine @ self.drift) @ np.linalg.solve(self.moment, (theirs @ self.drift).T)
+        return np.asarray(self.noise**2 * (mine @ solved + over))
 
     @cached_property
     def residual(self) -> Floats:
@@ -107,8 +128,13 @@ class Posterior:
 
     @cached_property
     def leverage(self) -> Floats:
-        """Diagonal of the hat matrix A K^-1 A' W, (n,)."""
-        return np.asarray(self.weight * self._inverse.quadratic(*self.rows(self.plane)))
+        """Diagonal of the hat matrix, (n,)."""
+        return np.asarray(self.weight * self._quadratic(self.plane))
+
+    def _quadratic(self, plane: Floats) -> Floats:
+        over = self.matrix(plane) @ self.drift
+        own = np.maximum(self._inverse.quadratic(*self.rows(plane)), 0.0)
+        return np.asarray(own + (over * np.linalg.solve(self.moment, over.T).T).sum(axis=1))
 
     @cached_property
     def _inverse(self) -> InverseBlocks:
@@ -134,28 +160,25 @@ def posterior(model: Model) -> Posterior:
     kept = given.kept & given.chart.placed
     split = given.split if given.split.core is not None else None
     data = gather(given.points, given.chart, kept, split)
-    own = net.space.size <= LARGEST
-    space = net.space if own else even_space(data.area, _SPAN, net.space.degree, LARGEST)
+    space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
+    space, field = widened(space), net.field
     turned = space.shape[1] > space.shape[0]
     if turned:
-        space = TensorSpace(space.knots_v, space.knots_u, space.degree)
+        space, field = space.turned, field.turned
     plane = data.plane[:, ::-1] if turned else data.plane
-    weight = cell_weights(space, plane, data.accuracy)
+    weight = 1 / relative_noise(data.accuracy) ** 2
     band, right = space.normal_equations(plane, data.value, weight)
-    factor = BlockFactor(band + net.field.smoothing * energy_band(space, net.field.energy))
-    field = factor.solve(right[:, None])[:, 0]
-    square = float(weight @ data.value**2 - right @ field)
-    ratio = _noise_ratio(data.accuracy)
+    prior = precision_band(space, field)
+    planes = plane_coefficients(space) @ drift_of(plane)
+    held = band_times(prior, planes)
+    factor = BlockFactor(band + prior)
+    solved = factor.solve(np.column_stack([right, held]))
+    free, drift = solved[:, 0], solved[:, 1:]
+    moment = planes.T @ held - held.T @ drift
+    moment = (moment + moment.T) / 2
+    coefficients = free + drift @ np.linalg.solve(moment, held.T @ free)
+    square = float(weight @ data.value**2 - right @ coefficients)
     return Posterior(
-        np.flatnonzero(kept), data.plane, data.value, weight, ratio, space, turned, factor, field,
-        net.field.noise, square, own, data.trend,
+        np.flatnonzero(kept), data.plane, data.value, weight, space, turned, factor, drift, moment, coefficients,
+        field, square, data.trend,
     )  # fmt: skip
-
-
-def _noise_ratio(accuracy: Floats) -> Floats:
-    """Return each point's stated accuracy beside the median one, for :func:`geofit.fitting.field.cell_weights`."""
-    stated = np.isfinite(accuracy)
-    ratio = np.ones(len(accuracy))
-    if stated.any():
-        ratio[stated] = np.clip(accuracy[stated] / float(np.median(accuracy[stated])), 0.1, 10.0)
-    return ratio

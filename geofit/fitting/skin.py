@@ -45,9 +45,13 @@ DAMPING = 0.01
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Section lines across the core: ``u`` (k,) where they lie; ``straight`` if all run along v."""
+    """Section lines across the core: ``u`` (k,) where they lie, ``stray`` (k,) by how much their points leave them.
+
+    ``straight`` if all run along v.
+    """
 
     u: Floats
+    stray: Floats
     straight: bool
 
 
@@ -65,11 +69,12 @@ def section_lines(plane: Floats, section: NDArray[np.str_], spacing: float) -> L
             means.append(u.mean())
             strays.append(np.abs(u - u.mean()).max())
     if len(means) < 2:
-        return Lines(np.empty(0), False)
-    lines = np.array(means)[np.array(strays) < 0.1 * spacing]
-    lines = np.sort(lines)
+        return Lines(np.empty(0), np.empty(0), False)
+    order = np.argsort(means, kind="stable")
+    lines, stray = np.array(means)[order], np.array(strays)[order]
+    lines, stray = lines[stray < 0.1 * spacing], stray[stray < 0.1 * spacing]
     keep = np.concatenate([[True], np.diff(lines) > 0.05 * spacing]) if len(lines) else np.empty(0, bool)
-    return Lines(lines[keep], len(lines) >= 2)
+    return Lines(lines[keep], stray[keep], len(lines) >= 2)
 
 
 def least_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | None = None) -> Floats:

@@ -25,6 +25,8 @@ from geofit.splines import bspline
 __all__ = ["Grid", "Spread", "band", "grid_over", "prediction_sd", "uncertainty_on"]
 
 Floats = NDArray[np.float64]
+#: What a standard deviation is of: the surface, or the contact that a new hole finds there.
+Of = Literal["surface", "contact"]
 
 #: Nodes along the longer side of the grid.
 NODES = 100
@@ -111,11 +113,11 @@ def uncertainty_on(grid: Grid, spread: Spread) -> Uncertainty:
     frame: Literal["map", "best-plane"] = "map" if spread.model.problem.chart.frame.kind == "map" else "best-plane"
     return Uncertainty(
         grid.x, grid.y, grid.spread_out(sd), float(np.median(factors)), float(sd.mean()), float(sd.max()),
-        grid.spread_out(factors), frame,
+        grid.spread_out(factors), frame, spread.posterior.noise,
     )  # fmt: skip
 
 
-def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike) -> Floats:
+def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike, of: Of = "surface") -> Floats:
     """Return the prediction standard deviation of a surface at any place.
 
     Parameters
@@ -126,6 +128,8 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike)
         ``examine(surface).uncertainty``.
     xyz : (n, 3) array_like
         Map coordinates on the surface, metres; (n, 2) is enough for a height field over the map.
+    of : {"surface", "contact"}
+        Of the surface itself, or of the contact that a new hole finds there: it has the points' noise besides.
 
     Returns
     -------
@@ -157,11 +161,13 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike)
     else:
         plane = frame.to_local(places)[:, :2]
     with threadpool_limits(limits=1):
-        return _sd(model, uncertainty, plane / model.net.unit)
+        return _sd(model, uncertainty, plane / model.net.unit, of)
 
 
-def band(surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9) -> tuple[HorizonFit, HorizonFit]:
-    """Return the upper and the lower surface between which the rock lies with the given probability.
+def band(
+    surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9, of: Of = "contact"
+) -> tuple[HorizonFit, HorizonFit]:
+    """Return the upper and the lower surface between which a new hole finds the rock with the given probability.
 
     Parameters
     ----------
@@ -171,6 +177,8 @@ def band(surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9) 
         What :func:`geofit.prediction.examine.examine` found.
     share : float
         Probability, above 0 and below 1.
+    of : {"contact", "surface"}
+        Whether the band holds the contacts of new holes, noise included, or the surface about which they scatter.
 
     Returns
     -------
@@ -212,7 +220,7 @@ def band(surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9) 
     u, v = bspline.greville(space.knots_u, space.degree), bspline.greville(space.knots_v, space.degree)
     abscissae = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     with threadpool_limits(limits=1):
-        offset = float(ndtri((1 + share) / 2)) * _sd(model, uncertainty, abscissae)
+        offset = float(ndtri((1 + share) / 2)) * _sd(model, uncertainty, abscissae, of)
     sides = []
     for sign, word in ((1, "upper"), (-1, "lower")):
         moved = model.with_net(replace(model.net, coefficients=model.net.coefficients + sign * offset))
@@ -228,7 +236,7 @@ def band(surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9) 
     return sides[0], sides[1]
 
 
-def _sd(model: Model, uncertainty: Uncertainty, plane: Floats) -> Floats:
+def _sd(model: Model, uncertainty: Uncertainty, plane: Floats, of: Of) -> Floats:
     """Return the standard deviation at places in units, with the factors of a grid."""
     frame = model.problem.chart.frame
     x, y = np.meshgrid(uncertainty.x, uncertainty.y)
@@ -238,7 +246,8 @@ def _sd(model: Model, uncertainty: Uncertainty, plane: Floats) -> Floats:
     if uncertainty.frame == "map":
         metres = (frame.turn_back(np.column_stack([metres, np.zeros(len(metres))])) + frame.origin)[:, :2]
     factor = NearestNDInterpolator(nodes - nodes[0], uncertainty.factors[known])(metres - nodes[0])
-    return np.asarray(factor * Spread(model, posterior(model), uncalibrated()).sd(plane))
+    sd = factor * Spread(model, posterior(model), uncalibrated()).sd(plane)
+    return np.asarray(np.hypot(sd, uncertainty.noise) if of == "contact" else sd)
 
 
 def _model(surface: HorizonFit) -> Model:

@@ -110,7 +110,7 @@ def left_out(
         Called with the reason where another method fails; the figures do without it.
     """
     error = fold.predicted.error
-    variance, noise = variance_of(fold.predicted), (given.noise * given.noise_ratio) ** 2
+    variance, noise = variance_of(fold.predicted), given.noise_variance
     widened = calibration.at(given.plane) ** 2 * variance + noise
     known = np.isfinite(error)
     others: dict[str, float] = {}

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
@@ -10,11 +12,11 @@ from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion
 from geofit.data.progress import Progress, tell
-from geofit.fitting.calibration import Calibration, uncalibrated
-from geofit.fitting.deletion import linear_fit
+from geofit.fitting.calibration import Calibration, common_factor, uncalibrated
+from geofit.fitting.deletion import LinearFit, linear_fit
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
-from geofit.fitting.outliers import find_outliers
+from geofit.fitting.outliers import LIMIT, find_outliers
 from geofit.fitting.posterior import Posterior, posterior
 from geofit.prediction.bands import Grid, Spread, grid_over, uncertainty_on
 from geofit.prediction.crossval import Fold, about_the_hull, calibrated, folds_of, left_out, one_by_one
@@ -28,6 +30,8 @@ Floats = NDArray[np.float64]
 
 #: More points than these are left out one by one only: the covariance of all of them would not fit.
 MOST = 4_000
+#: Fits without the outliers found so far, at most.
+ROUNDS = 2
 #: Shares of left-out points inside the 90 % band between which the band counts as held.
 HELD = (0.85, 0.95)
 
@@ -169,15 +173,35 @@ def _left_out(
         folds = folds_of(model, fit)
         tell(progress, "calibration", 0.5)
         calibration = calibrated(fit, folds, grid.plane, Spread(model, given, uncalibrated()).variance(grid.plane))
-        outliers = find_outliers(fit, calibration.at(given.plane))
-        if not given.exact_net:
-            notes.append(
-                message(
-                    "prediction.many-control-points-regional",
-                    "so many control points: the regional field alone is left out, on a coarser net",
-                )
-            )
+        outliers = _outliers(model, fit, calibration.at(given.plane))
     return folds, calibration, outliers
+
+
+def _outliers(model: Model, fit: LinearFit, factor: Floats) -> tuple[Outlier, ...]:
+    """List the outliers, judged by a fit without those found so far: a blunder makes the field rough that judges it."""
+    found = find_outliers(fit, factor)
+    for _ in range(ROUNDS):
+        out = np.array([outlier.index for outlier in found], np.int64)
+        kept = model.problem.kept.copy()
+        kept[out] = False
+        if not len(out) or model.problem.split.inside[out].any():
+            break
+        clean = replace(model.problem, kept=kept).fit(kept, lambda stage, fraction: None)
+        given = posterior(clean)
+        without = linear_fit(clean, given)
+        # Never narrower than the posterior: many points are near their neighbours, which says little of the far ones.
+        common = max(common_factor(without, np.ones(len(given.value), bool)), 1.0)
+        chart = model.problem.chart
+        plane = chart.plane[out] / clean.net.unit
+        error = chart.values[out] - given.height(plane)
+        sd = np.sqrt(common**2 * given.variance(plane) + given.noise**2)
+        again = [Outlier(int(k), float(e), float(s), float(abs(e) / s)) for k, e, s in zip(out, error, sd, strict=True)]
+        again = [outlier for outlier in again if outlier.ratio > LIMIT]
+        more = find_outliers(without, np.full(len(given.value), common))
+        found = tuple(sorted([*again, *more], key=lambda one: -one.ratio))
+        if {one.index for one in found} == set(out.tolist()):
+            break
+    return found
 
 
 def _not_held(found: LeftOut) -> list[Message]:

@@ -90,6 +90,8 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
 
 def _sentence(h: HorizonReport, t: Language) -> str:
     sigma, epsilon = digits.equals(h.sigma), digits.given(h.epsilon)
+    if h.verdict != "PASS" and h.sigma < h.epsilon:
+        return t("The surface runs far beyond the elevations of its data: see below.")
     if h.verdict != "PASS":
         return t("σ {sigma} is not below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
     text = t("σ {sigma} is below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from geofit.fitting.approximate import approximate, borrowed
-from geofit.fitting.field import energy_band
+from geofit.fitting.approximate import approximate, borrowed, solved_beside
 from geofit.splines import bspline
+from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import TensorSpace
 
 CORE = (3.0, 5.0, 2.0, 6.0)
@@ -38,9 +38,9 @@ def scattered(n, seed=0):
 def run(space, plane, height, tolerance=0.05, rounds=20, core=CORE, start=None, smoothing=1e-3):
     frozen = borrowed(space, core).ravel() if core else np.zeros(space.size, bool)
     start = np.random.default_rng(5).normal(size=(space.size, *height.shape[1:])) if start is None else start
-    energy = smoothing * energy_band(space, "smooth")
-    result = approximate(space, energy, start, frozen, plane, height, np.ones(len(plane)), tolerance, rounds)
-    return result, start, frozen
+    energy = smoothing * MaternPrecision(space, 3).band(0.5)
+    beside = solved_beside(space, energy, start, frozen, plane, height, np.ones(len(plane)))
+    return approximate(space, beside, frozen, plane, height, tolerance, tolerance, rounds), start, frozen
 
 
 def test_borrowed_control_points_are_those_that_act_in_the_core():

@@ -7,19 +7,22 @@ from functools import cache
 import numpy as np
 import pytest
 from refusals import refused
+from scipy.sparse import csc_array, diags_array
+from scipy.sparse.linalg import splu
 from truth import Truth, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError, SettingsError
 from geofit.fitting.calibration import uncalibrated
 from geofit.fitting.deletion import LinearFit, linear_fit
-from geofit.fitting.field import energy_band
+from geofit.fitting.field import precision_band
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.fitting.posterior import posterior
+from geofit.fitting.posterior import Posterior, posterior
 from geofit.prediction.bands import Spread, band, grid_over, prediction_sd, uncertainty_on
 from geofit.prediction.drilling import greedy_holes, suggest_holes
 from geofit.splines import bspline
 from geofit.splines.blocks import BlockFactor
+from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import RIDGES, TensorSpace
 
 
@@ -38,7 +41,7 @@ def system() -> tuple[TensorSpace, np.ndarray, np.ndarray]:
     space = TensorSpace(*(bspline.clamped_knots(along, 3) for along in breaks))
     plane = np.random.default_rng(4).uniform(size=(60, 2))
     data, _ = space.normal_equations(plane, np.zeros(60), np.linspace(0.5, 2, 60))
-    return space, plane, data + 1e-5 * energy_band(space, "smooth")
+    return space, plane, data + 1e-5 * MaternPrecision(space, 3).band(2.0)
 
 
 def test_block_factor_agrees_with_dense_algebra():
@@ -74,23 +77,37 @@ def linear(surface: HorizonFit) -> LinearFit:
     return linear_fit(surface.model, posterior(surface.model))
 
 
+def field_without(given: Posterior, keep: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Heights of field and plane at all points, and their covariance over noise^2, from some of the points alone."""
+    a = given.matrix(given.plane)
+    f = np.column_stack([np.ones(len(given.value)), given.plane])
+    band = precision_band(given.space, given.model)
+    below = diags_array(list(band), offsets=[-k for k in range(len(band))], shape=(a.shape[1], a.shape[1]))
+    energy = below + below.T - diags_array(band[0])
+    some, w = a[keep], given.weight[keep]
+    k = some.T @ diags_array(w) @ some + energy
+    # The ridge of the factor that the fit is solved with: K of all points has it.
+    k = k + RIDGES[0] * diags_array((a.T @ diags_array(given.weight) @ a + energy).diagonal())
+    solved = splu(csc_array(k)).solve(a.T.toarray())
+    # Covariance of the field a priori conditioned on the points; the plane is free.
+    among = a @ solved
+    v = np.diag(w) - w[:, None] * among[np.ix_(keep, keep)] * w
+    moment = f[keep].T @ v @ f[keep]
+    b = np.linalg.solve(moment, f[keep].T @ v @ given.value[keep])
+    height = among[:, keep] @ (w * (given.value[keep] - f[keep] @ b)) + f @ b
+    rest = f - among[:, keep] @ (w[:, None] * f[keep])
+    return height, among + rest @ np.linalg.solve(moment, rest.T)
+
+
 def brute_force(surface: HorizonFit, fit: LinearFit, group: np.ndarray) -> np.ndarray:
     """Errors of the same three steps, solved anew from the points that are left."""
-    given = fit.posterior
+    given, net = fit.posterior, surface.model.net
     keep = np.setdiff1d(np.arange(len(given.value)), group)
-    total = given.value + np.column_stack([np.ones(len(given.value)), given.plane]) @ given.trend
-    basis = np.column_stack([np.ones(len(given.value)), given.plane])
-    trend = np.linalg.lstsq(basis[keep], total[keep], rcond=None)[0]
-    value = total - basis @ trend
-    a = given.matrix(given.plane).toarray()
-    energy = dense(energy_band(given.space, surface.model.net.field.energy)) * surface.model.net.field.smoothing
-    k = a[keep].T @ (a[keep] * given.weight[keep, None]) + energy
-    # The ridge of the factor that the fit is solved with: K of all points has it.
-    k += RIDGES[0] * np.diag(np.diag(a.T @ (a * given.weight[:, None]) + energy))
-    c = np.linalg.solve(k, a[keep].T @ (given.weight[keep] * value[keep]))
+    height, _ = field_without(given, keep)
+    rows = net.space.matrix(given.plane)
     for step in fit.corrections:
         mine = np.intersect1d(step.points, keep)
-        wanted = value[mine] - a[mine] @ c
+        wanted = given.value[mine] - height[mine]
         if step.slack:
             wanted = np.sign(wanted) * np.maximum(np.abs(wanted) - step.slack, 0)
         # The kernel's own inverse tells its nugget.
@@ -98,12 +115,9 @@ def brute_force(surface: HorizonFit, fit: LinearFit, group: np.ndarray) -> np.nd
         index = [place[p] for p in mine]
         among = np.linalg.inv(step.inverse)[np.ix_(index, index)]
         multiplier = np.linalg.solve(among, wanted)
-        free = np.ones(a.shape[1])
-        if step.slack:
-            frozen = surface.model.net.frozen.reshape(surface.model.net.space.shape)
-            free = (~(frozen.T if given.turned else frozen)).ravel().astype(float)
-        c = c + free * (a[mine].T @ multiplier)
-    return value[group] - a[group] @ c
+        free = (~net.frozen).astype(float) if step.slack else np.ones(rows.shape[1])
+        height = height + rows @ (free * (rows[mine].T @ multiplier))
+    return given.value[group] - height[group]
 
 
 @pytest.mark.parametrize(
@@ -136,11 +150,20 @@ def test_variance_at_points_left_out():
     given = fit.posterior
     group = np.array([5, 6, 140])
     keep = np.setdiff1d(np.arange(len(given.value)), group)
-    a = given.matrix(given.plane).toarray()
-    energy = dense(energy_band(given.space, surface.model.net.field.energy)) * surface.model.net.field.smoothing
-    inverse = np.linalg.inv(a[keep].T @ (a[keep] * given.weight[keep, None]) + energy)
-    variance = given.noise**2 * np.diag(a[group] @ inverse @ a[group].T)
-    assert fit.without([group]).variance[group] == pytest.approx(variance, rel=1e-6)
+    variance = given.noise**2 * np.diag(field_without(given, keep)[1])[group]
+    assert fit.without([group]).variance[group] == pytest.approx(variance, rel=1e-5)
+
+
+def test_the_covariance_holds_the_plane_s_own_doubt():
+    given = posterior(small_surface().model)
+    every = np.arange(len(given.value))
+    height, covariance = field_without(given, every)
+    assert given.gram(given.plane) == pytest.approx(covariance, rel=1e-5, abs=1e-7 * covariance.max())
+    assert given.variance(given.plane) == pytest.approx(given.noise**2 * np.diag(covariance), rel=1e-5)
+    assert given.value - given.residual == pytest.approx(height, abs=1e-5)
+    some = given.plane[:5]
+    expected = given.noise**2 * covariance[:, :5]
+    assert given.covariance_with(given.plane, some) == pytest.approx(expected, rel=1e-5, abs=1e-7 * expected.max())
 
 
 def test_a_hole_left_out_is_close_to_a_new_fit_without_it():
@@ -177,7 +200,9 @@ def test_band_lies_z_times_sd_above_and_below_and_keeps_its_seams():
     uncertainty = uncertainty_on(grid_over(surface), spread)
     upper, lower = band(surface, uncertainty, 0.9)
     x, y = small_truth().places(400).T
-    sd = prediction_sd(surface, uncertainty, np.column_stack([x, y]))
+    sd = prediction_sd(surface, uncertainty, np.column_stack([x, y]), of="contact")
+    alone = prediction_sd(surface, uncertainty, np.column_stack([x, y]))
+    assert sd == pytest.approx(np.hypot(alone, posterior(surface.model).noise), rel=1e-9)
     middle = surface.elevation(x, y)
     assert (upper.elevation(x, y) > middle).all()
     assert upper.elevation(x, y) - middle == pytest.approx(middle - lower.elevation(x, y), abs=1e-6)
@@ -222,13 +247,10 @@ def test_a_suggested_hole_lowers_the_deviation_as_promised():
     before = np.sqrt(spread.variance(grid.plane)).mean()
     assert before > holes[0].mean_after > holes[1].mean_after > holes[3].mean_after
     node = grid.plane[np.argmin(np.linalg.norm(grid.places(model)[:, :2] - (holes[0].x, holes[0].y), axis=1))]
-    at = np.vstack([given.plane, node])
-    system_band, _ = given.space.normal_equations(
-        at[:, ::-1] if given.turned else at, np.zeros(len(at)), np.append(given.weight, 1.0)
-    )
-    energy = model.net.field.smoothing * energy_band(given.space, model.net.field.energy)
-    inverse = BlockFactor(system_band + energy).inverse()
-    lowered = given.noise**2 * inverse.quadratic(*given.rows(grid.plane))
+    # The variance given one more point of the field's own noise; the covariance itself is tested above.
+    with_it = given.covariance_with(grid.plane, node[None])[:, 0]
+    own = given.variance(node[None])[0] + given.noise**2
+    lowered = given.variance(grid.plane) - with_it**2 / own
     departure = spread.variance(grid.plane) - given.variance(grid.plane)
     assert holes[0].mean_after == pytest.approx(np.sqrt(lowered + departure).mean(), rel=1e-6)
     apart = np.array([[h.x, h.y] for h in holes])

@@ -1,0 +1,293 @@
+"""The field away from its data: sites of varied truths, many scattered points, folds of the real sets.
+
+Run ``python benchmarks/field.py [sites [COUNT]] [scattered [N ...]] [real [SET ...]]`` (default: a few sites and
+10,000 points, within two minutes). Errors are root mean squares; every truth has its own seed.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from geofit import FitSettings, GeofitError, HorizonFit, PointSet, fit_horizon
+from geofit.prediction.kriging import krige_left_out
+
+sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
+from peers.gp import KERNELS, fit_process
+from peers.pspline import PSpline
+from realdata.score import folds, thin_plate
+from realdata.sets import SETS, data_folder, rectangle
+from truth import EASTING, NORTHING, Height, hills, rms
+
+SIZE = 2000.0
+#: Noise (m) and least spacing along the sections (m) that the sites go through.
+NOISES, SPACINGS = (0.01, 0.05, 0.15, 0.3), (2.0, 6.0, 15.0, 30.0)
+#: Spans of the plain P-spline, and its penalty.
+SPANS, PENALTY = 50, 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Site:
+    """Points of one horizon with its truth; ``core`` (x0, x1, y0, y1) holds the sections."""
+
+    title: str
+    points: PointSet
+    height: Height
+    core: tuple[float, float, float, float]
+
+
+def random_field(seed: int, smoothness: float, reach: float, relief: float = 25.0) -> Height:
+    """Return a dipping plane and a random field of Matérn smoothness nu (infinite: Gaussian), as 600 random waves."""
+    rng = np.random.default_rng(seed)
+    wave = rng.normal(size=(600, 2)) / reach
+    if np.isfinite(smoothness):
+        wave *= np.sqrt(2 * smoothness / rng.chisquare(2 * smoothness, 600))[:, None]
+    phase, dip = rng.uniform(0, 2 * np.pi, 600), rng.normal(0, 0.08, 2)
+
+    def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        plan = np.stack([np.asarray(x, float) - EASTING, np.asarray(y, float) - NORTHING], axis=-1)
+        flat = plan.reshape(-1, 2)
+        value = np.concatenate([np.cos(part @ wave.T + phase).sum(axis=1) for part in np.array_split(flat, 20)])
+        return 1500.0 + plan @ dip + relief * np.sqrt(2 / 600) * value.reshape(plan.shape[:-1])
+
+    return height
+
+
+def folded_truth(seed: int) -> Height:
+    """Return a train of upright folds with rounded hinges that plunge and change along their axis."""
+    rng = np.random.default_rng(seed)
+    azimuth, length, plunge = rng.uniform(0, np.pi), rng.uniform(500, 900), rng.normal(0, 0.03)
+    phase, sharp, drift = rng.uniform(0, 2 * np.pi), rng.uniform(0.2, 0.6), rng.uniform(2000, 4000)
+    c, s = np.cos(azimuth), np.sin(azimuth)
+
+    def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        x, y = np.asarray(x, float) - EASTING, np.asarray(y, float) - NORTHING
+        across, along = c * x + s * y, c * y - s * x
+        angle = 2 * np.pi * across / length + phase + 0.8 * np.sin(2 * np.pi * along / drift)
+        return 1500.0 + plunge * along + 30 * np.sin(angle + sharp * np.sin(angle))
+
+    return height
+
+
+def truth_of(seed: int) -> tuple[str, Height]:
+    """Return one of six kinds of truth, in turn."""
+    kinds: list[tuple[str, Callable[[], Height]]] = [
+        ("waves", lambda: hills(seed)),
+        ("Matérn 3/2", lambda: random_field(seed, 1.5, 300.0)),
+        ("Matérn 5/2", lambda: random_field(seed, 2.5, 250.0)),
+        ("Gaussian", lambda: random_field(seed, np.inf, 220.0)),
+        ("folded", lambda: folded_truth(seed)),
+        ("hills", lambda: hills(seed, shortest=400.0, relief=40.0)),
+    ]
+    name, make = kinds[seed % len(kinds)]
+    return name, make()
+
+
+def site(seed: int) -> Site:
+    """Return about 600 points: 11 sections of unequal, crooked or crossing course in a core, holes around it."""
+    rng = np.random.default_rng(5000 + seed)
+    name, height = truth_of(seed)
+    noise, least = NOISES[(seed // 6) % 4], SPACINGS[(seed // 2) % 4]
+    layout = ("straight", "crooked", "crossing", "unequal")[(seed // 3) % 4]
+    x0, x1 = 700.0, 1300.0
+    lines = np.linspace(x0, x1, 11)
+    if layout == "unequal":
+        lines = np.sort(np.concatenate([[x0, x1], rng.uniform(x0, x1, 9)]))
+        lines = x0 + (x1 - x0) * np.cumsum(np.append(0, np.diff(lines) + 15)) / (x1 - x0 + 150)
+    xyz, section = [], []
+    for i, x in enumerate(lines):
+        gaps = rng.dirichlet(np.ones(41)) * (SIZE - least * 39)
+        y = np.cumsum(gaps[:-1]) + least * np.arange(40)
+        bend = rng.normal(0, 8) * np.sin(2 * np.pi * y / SIZE + rng.uniform(0, 6)) if layout == "crooked" else 0.0
+        xyz.append(np.column_stack([np.clip(x + bend + 0 * y, x0, x1), y]))
+        section += [f"S{i + 1:02d}"] * 40
+    if layout == "crossing":
+        for j, y in enumerate((500.0, 1100.0, 1600.0)):
+            x = np.sort(rng.uniform(x0, x1, 12))
+            xyz.append(np.column_stack([x, np.full(12, y)]))
+            section += [f"C{j + 1}"] * 12
+    holes = 157
+    side = np.where(rng.uniform(size=holes) < 0.5, 0.0, x1 + 60.0)
+    xyz.append(np.column_stack([side + rng.uniform(0, x0 - 60.0, holes), rng.uniform(0, SIZE, holes)]))
+    plan = np.concatenate(xyz) + np.array([EASTING, NORTHING])
+    z = height(*plan.T) + rng.normal(0, noise, len(plan))
+    points = PointSet(
+        np.column_stack([plan, z]),
+        kind=["section"] * len(section) + ["borehole"] * holes,
+        section=section + [""] * holes,
+        hole=[""] * len(section) + [f"B{i + 1:03d}" for i in range(holes)],
+    )
+    core = (EASTING + x0, EASTING + x1, NORTHING, NORTHING + SIZE)
+    return Site(f"{name}, {layout}, {noise:g} m, {least:g} m", points, height, core)
+
+
+AREA = (EASTING, EASTING + SIZE, NORTHING, NORTHING + SIZE)
+BOUNDARY = rectangle(np.array([[AREA[0], AREA[2], 0.0], [AREA[1], AREA[3], 0.0]]))
+
+
+def places(area: tuple[float, float, float, float], count: int = 4000) -> np.ndarray:
+    return np.random.default_rng(7).uniform((area[0], area[2]), (area[1], area[3]), (count, 2))
+
+
+def sites(seeds: list[int]) -> None:
+    print("error / exact thin plate; exact: largest distance of a core point; a point: control points a data point")
+    print(f"{'site':42s}{'core':>7s}{'whole':>7s}{'exact':>9s}{'in core':>8s}{'a point':>8s}{'s':>7s}  energy, noise")
+    rows = []
+    for seed in seeds:
+        one = site(seed)
+        start = time.process_time()
+        try:
+            surface = fit_horizon(one.points, FitSettings(), BOUNDARY)
+        except GeofitError as error:
+            print(f"{seed:3d} {one.title:38s} FAILED {error}")
+            continue
+        seconds = time.process_time() - start
+        ratios = []
+        for area in (one.core, AREA):
+            at = places(area)
+            truth = one.height(*at.T)
+            theirs = rms(thin_plate(one.points.xyz, at) - truth)
+            ratios.append(rms(surface.elevation(*at.T) - truth) / theirs)
+        core = np.abs(surface.accuracy.residuals[surface.core])
+        exact = float(core.max()) if len(core) else np.nan
+        a_point = surface.control_points / len(one.points)
+        rows.append((*ratios, exact, a_point, seconds))
+        print(
+            f"{seed:3d} {one.title:38s}{ratios[0]:7.2f}{ratios[1]:7.2f}{exact:9.1e}{len(core):8d}"
+            f"{a_point:8.1f}{seconds:7.2f}  {surface.diagnostics['energy']} {surface.diagnostics['noise']:.3f}",
+            flush=True,
+        )
+    table = np.array(rows)
+    lost = int((~(table[:, 2] < 1e-6)).sum())
+    for word, figures in (("median", np.median(table, axis=0)), ("worst", np.max(table, axis=0))):
+        print(f"{word:42s}{figures[0]:7.2f}{figures[1]:7.2f}{'':17s}{figures[3]:8.1f}{figures[4]:7.2f}")
+    print(f"core not exact on {lost} of {len(table)} sites\n")
+
+
+def cloud(seed: int, n: int, noise: float = 0.05) -> tuple[PointSet, Height]:
+    """Return n scattered points, half of them in a dense rectangle."""
+    rng, height = np.random.default_rng(seed), hills(seed)
+    dense = rng.uniform((700, 500), (1300, 1500), (n // 2, 2))
+    plan = np.concatenate([dense, rng.uniform(0, SIZE, (n - n // 2, 2))]) + np.array([EASTING, NORTHING])
+    return PointSet(np.column_stack([plan, height(*plan.T) + rng.normal(0, noise, n)])), height
+
+
+def scattered(counts: list[int]) -> None:
+    print("scattered points, half in a dense core, noise 0.05 m, beside a plain P-spline of 50 x 50 spans")
+    print(
+        f"{'n':>8s}{'error':>9s}{'worst':>8s}{'s':>8s}{'control':>9s}{'P-spline':>10s}{'s':>7s}  noise; verdict; notes"
+    )
+    at = places(AREA, 10_000)
+    for n in counts:
+        points, height = cloud(0, n)
+        truth = height(*at.T)
+        start = time.process_time()
+        surface: HorizonFit = fit_horizon(points, FitSettings(), BOUNDARY)
+        seconds = time.process_time() - start
+        off = surface.elevation(*at.T) - truth
+        start = time.process_time()
+        with threadpool_limits(limits=1):
+            spline = PSpline(AREA, SPANS, PENALTY).fit(points.xyz)
+        theirs = time.process_time() - start
+        words = [check.name for check in surface.accuracy.checks if check.passed is False]
+        print(
+            f"{n:8,d}{rms(off):9.4f}{np.abs(off).max():8.3f}{seconds:8.2f}{surface.control_points:9,d}"
+            f"{rms(spline.elevation(*at.T) - truth):10.4f}{theirs:7.2f}  {surface.diagnostics['noise']:.4f}; "
+            f"{surface.accuracy.verdict} {words}",
+            flush=True,
+        )
+    print()
+
+
+def real(keys: list[str]) -> None:
+    folder = data_folder()
+    if folder is None:
+        print("The real data are not here. Set GEOFIT_DATA to their folder, or lay them at ../shared/data.")
+        return
+    print("ten folds over holes; ratio: error / best of the others")
+    print(
+        f"{'set':34s}{'n':>6s}{'geofit':>8s}{'plate':>8s}{'kriging':>8s}{'OK':>8s}{'UK':>8s}{'ratio':>7s}"
+        f"{'none':>5s}{'s a fit':>8s}"
+    )
+    ratios = []
+    for key in keys:
+        one = SETS[key](folder)
+        for name, points in one.site.horizons.items():
+            line = _folds(points)
+            if line is None:
+                continue
+            ours, others, none, seconds = line
+            ratios.append(ours / np.nanmin(others))
+            print(
+                f"{f'{key}: {name}'[:33]:34s}{len(points):6d}{ours:8.2f}"
+                + "".join(f"{other:8.2f}" for other in others)
+                + f"{ratios[-1]:7.2f}{none:5d}{seconds:8.2f}",
+                flush=True,
+            )
+    share = float(np.mean(np.array(ratios) <= 1.02))
+    print(f"geometric mean {np.exp(np.mean(np.log(ratios))):.3f}, worst {max(ratios):.2f}, at most 1.02 on {share:.0%}")
+
+
+def _folds(points: PointSet) -> tuple[float, list[float], int, float] | None:
+    """Return the error of geofit, those of the others, how many points geofit leaves out, and seconds a fit."""
+    fold, area, z = folds(points), rectangle(points.xyz), points.xyz[:, 2]
+    plane = points.xyz[:, :2] - points.xyz[:, :2].mean(axis=0)
+    processes = [
+        min((fit_process(plane, z, kernel, drift) for kernel in KERNELS), key=lambda one: one.value) for drift in (0, 1)
+    ]
+    groups = [np.flatnonzero(fold == k) for k in np.unique(fold)]
+    ours, plate = (np.full(len(z), np.nan) for _ in range(2))
+    dense = np.full((2, len(z)), np.nan)
+    seconds = 0.0
+    for group in groups:
+        rest = np.setdiff1d(np.arange(len(z)), group)
+        start = time.process_time()
+        try:
+            surface = fit_horizon(points[rest], FitSettings(), area)
+            ours[group] = surface.elevation(*points.xyz[group, :2].T)
+        except GeofitError as error:
+            print("   ", error)
+        seconds += time.process_time() - start
+        plate[group] = thin_plate(points.xyz[rest], points.xyz[group, :2])
+        for row, process in zip(dense, processes, strict=True):
+            row[group] = process.predict(plane[rest], z[rest], plane[group])[0]
+    known = np.isfinite(ours)
+    if not known.any():
+        return None
+    try:
+        kriged = krige_left_out(plane, z, groups)
+    except np.linalg.LinAlgError:  # points at one place
+        kriged = np.full(len(z), np.nan)
+    others = [plate, kriged, *dense]
+    figures = [rms((other - z)[known]) for other in others]
+    return rms((ours - z)[known]), figures, int((~known).sum()), seconds / len(groups)
+
+
+def main() -> None:
+    words = sys.argv[1:]
+    parts: dict[str, list[str]] = {}
+    for word in words:
+        if word in ("sites", "scattered", "real"):
+            parts[word] = []
+        elif parts:
+            parts[list(parts)[-1]].append(word)
+        else:
+            sys.exit(f"There is no part '{word}'; the parts are: sites, scattered, real.")
+    for part, more in (parts or {"sites": ["12"], "scattered": ["10000"]}).items():
+        if part == "sites":
+            low, high = (0, int(more[0])) if len(more) == 1 else (int(more[0]), int(more[1])) if more else (0, 24)
+            sites(list(range(low, high)))
+        elif part == "scattered":
+            scattered([int(word) for word in more] or [5_000, 10_000, 20_000])
+        else:
+            real(more or ["chamaya", "kimberlina", "weka_hills", "muensterland", "copper_creek"])
+
+
+if __name__ == "__main__":
+    main()

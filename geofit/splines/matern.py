@@ -1,0 +1,111 @@
+"""Precision of Matérn fields on a tensor-product spline space.
+
+A field with the spectral density 1 / (tau (kappa^2 + w' H w)^alpha) has the precision tau * E, where
+
+    E = sum over m of binomial(alpha, m) kappa^(2 (alpha - m)) E_m,
+    E_m = integral of H_(i1 j1) ... H_(im jm) f_(i1 ... im) f_(j1 ... jm),   det H = 1
+
+(P. Whittle, Biometrika 41, 1954, 434-449; F. Lindgren, H. Rue, J. Lindström, J. R. Stat. Soc. B 73, 2011, 423-498).
+E_m is a positive form of the derivatives of order m; with kappa -> 0 and alpha = 2 it is the thin plate's energy.
+In terms of how many of the indices are v, k of the i and n of the j, the weight of f_(u^(m-k) v^k) f_(u^(m-n) v^n) is
+the coefficient of x^k y^n in (a + b x + b y + c x y)^m for H = [[a, b], [b, c]]. Each term is a Kronecker product of
+the Gram matrices of both directions.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.splines import bspline
+from geofit.splines.tensor import TensorSpace
+
+__all__ = ["MaternPrecision", "metric"]
+
+Floats = NDArray[np.float64]
+
+
+def metric(stretch: tuple[float, float]) -> tuple[float, float, float]:
+    """Return (a, b, c) of H = exp([[p, q], [q, -p]]), det H = 1; its larger eigenvalue is exp(hypot(p, q))."""
+    p, q = stretch
+    size = math.hypot(p, q)
+    even, odd = math.cosh(size), math.sinh(size) / size if size > 1e-12 else 1.0
+    return even + odd * p, odd * q, even - odd * p
+
+
+class MaternPrecision:
+    """The matrix E of a space for any kappa and anisotropy.
+
+    Parameters
+    ----------
+    space : TensorSpace
+        The space; its degree must be at least ``alpha``.
+    alpha : int
+        Exponent of the operator kappa^2 - div H grad; the smoothness nu of the field is alpha - 1.
+    """
+
+    def __init__(self, space: TensorSpace, alpha: int) -> None:
+        self.space, self.alpha = space, alpha
+
+    @cached_property
+    def _terms(self) -> list[tuple[int, int, int]]:
+        return [(m, k, n) for m in range(self.alpha + 1) for k in range(m + 1) for n in range(m + 1)]
+
+    @cached_property
+    def _factors(self) -> tuple[Floats, Floats]:
+        """Diagonals of the factors of each term: (terms, p + 1, nu) at and below, and (terms, 2 p + 1, nv) of all."""
+        p = self.space.degree
+        gu, gv = (_grams(knots, p, self.alpha) for knots in (self.space.knots_u, self.space.knots_v))
+        along = [[_diagonal(gu[m - k][m - n], a) for a in range(p + 1)] for m, k, n in self._terms]
+        across = [[_diagonal(gv[k][n], b) for b in range(-p, p + 1)] for _, k, n in self._terms]
+        return np.array(along), np.array(across)
+
+    def weights(self, kappa: float, stretch: tuple[float, float]) -> Floats:
+        """Return the weight of each term."""
+        a, b, c = metric(stretch)
+        power = np.ones((1, 1))
+        tables = []
+        for _ in range(self.alpha + 1):
+            tables.append(power)
+            grown = np.zeros((len(power) + 1, len(power) + 1))
+            grown[:-1, :-1] += a * power
+            grown[1:, :-1] += b * power
+            grown[:-1, 1:] += b * power
+            grown[1:, 1:] += c * power
+            power = grown
+        order = [math.comb(self.alpha, m) * kappa ** (2 * (self.alpha - m)) for m in range(self.alpha + 1)]
+        return np.array([order[m] * tables[m][k, n] for m, k, n in self._terms])
+
+    def band(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
+        """Return the band of E, (bandwidth + 1, size), for a kappa per unit of length and a stretch (see `metric`)."""
+        p, (nu, nv) = self.space.degree, self.space.shape
+        along, across = self._factors
+        weighted = along * self.weights(kappa, stretch)[:, None, None]
+        blocks = np.einsum("tai,tbj->abij", weighted, across, optimize=True)
+        band = np.zeros((self.space.bandwidth + 1, nu, nv))
+        for a in range(p + 1):
+            for b in range(-p, p + 1):
+                if a * nv + b >= 0:
+                    band[a * nv + b] += blocks[a, b + p]
+        return band.reshape(self.space.bandwidth + 1, self.space.size)
+
+
+def _grams(knots: Floats, degree: int, order: int) -> list[list[Floats]]:
+    """Return G[r][s], the integrals of B_i^(r) B_j^(s), (count, count), for r and s up to an order."""
+    nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
+    breaks = np.unique(knots)
+    half = np.diff(breaks) / 2
+    x = ((breaks[:-1] + half)[:, None] + half[:, None] * nodes).ravel()
+    w = np.sqrt(half[:, None] * weights).reshape(-1, 1)
+    rows = [bspline.collocation(knots, degree, x, derivative) * w for derivative in range(order + 1)]
+    return [[first.T @ second for second in rows] for first in rows]
+
+
+def _diagonal(matrix: Floats, below: int) -> Floats:
+    """Return d with d[i] = matrix[i + below, i], zero where that leaves the matrix."""
+    diagonal = np.diagonal(matrix, -below)
+    pad = np.zeros(min(abs(below), len(matrix)))
+    return np.concatenate([diagonal, pad] if below >= 0 else [pad, diagonal])[: len(matrix)]

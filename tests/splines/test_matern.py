@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+from scipy.special import gamma, kv
+
+from geofit.splines import bspline
+from geofit.splines.matern import MaternPrecision, metric
+from geofit.splines.tensor import TensorSpace, band_times
+
+
+def space_of(length_u=6.0, length_v=5.0, span=0.5):
+    return TensorSpace(
+        bspline.clamped_knots(np.arange(0, length_u + 1e-9, span), 3),
+        bspline.clamped_knots(np.arange(0, length_v + 1e-9, span), 3),
+    )
+
+
+def dense(band):
+    size = band.shape[1]
+    full = np.zeros((size, size))
+    for k in range(len(band)):
+        index = np.arange(size - k)
+        full[index + k, index] = full[index, index + k] = band[k, : size - k]
+    return full
+
+
+@pytest.mark.parametrize("stretch", [(0.0, 0.0), (0.5, -0.2), (-1.0, 0.7)])
+def test_metric_has_determinant_one_and_the_stated_eigenvalue(stretch):
+    a, b, c = metric(stretch)
+    assert a * c - b * b == pytest.approx(1)
+    assert np.linalg.eigvalsh([[a, b], [b, c]])[1] == pytest.approx(np.exp(np.hypot(*stretch)))
+
+
+@pytest.mark.parametrize("alpha", [1, 2, 3])
+def test_without_a_stretch_the_terms_are_those_of_the_energies(alpha):
+    space, kappa = space_of(), 0.7
+    binomial = {1: (1, 1), 2: (1, 2, 1), 3: (1, 3, 3, 1)}[alpha]
+    expected = sum(
+        weight * kappa ** (2 * (alpha - order)) * space.energy(order) for order, weight in enumerate(binomial)
+    )
+    np.testing.assert_allclose(MaternPrecision(space, alpha).band(kappa), expected, atol=1e-9)
+
+
+@pytest.mark.parametrize("alpha", [2, 3])
+def test_a_stretch_against_numerical_integration(alpha):
+    """On a polynomial, which the space holds exactly, all derivatives are known."""
+    space, kappa, stretch = space_of(2.0, 1.5), 0.6, (0.4, 0.3)
+    a, b, c = metric(stretch)
+    grid = np.stack(np.meshgrid(np.linspace(0, 2, 20), np.linspace(0, 1.5, 20)), axis=-1).reshape(-1, 2)
+    u, v = grid.T
+    net = np.linalg.lstsq(space.matrix(grid).toarray(), u**3 * v - 2 * u * v**2 + v**3, rcond=None)[0]
+
+    def density(v, u):
+        h = np.array([[a, b], [b, c]])
+        f = u**3 * v - 2 * u * v**2 + v**3
+        first = np.array([3 * u**2 * v - 2 * v**2, u**3 - 4 * u * v + 3 * v**2])
+        mixed = 3 * u**2 - 4 * v
+        second = np.array([[6 * u * v, mixed], [mixed, -4 * u + 6 * v]])
+        third = np.zeros((2, 2, 2))
+        third[0, 0, 0], third[1, 1, 1] = 6 * v, 6.0
+        third[0, 0, 1] = third[0, 1, 0] = third[1, 0, 0] = 6 * u
+        third[0, 1, 1] = third[1, 0, 1] = third[1, 1, 0] = -4.0
+        e = [
+            f * f,
+            first @ h @ first,
+            np.einsum("ij,kl,ik,jl", second, second, h, h),
+            np.einsum("ijk,lmn,il,jm,kn", third, third, h, h, h),
+        ]
+        weights = {2: (1, 2, 1), 3: (1, 3, 3, 1)}[alpha]
+        return sum(w * kappa ** (2 * (alpha - m)) * e[m] for m, w in enumerate(weights))
+
+    expected = dblquad(density, 0, 2, 0, 1.5)[0]
+    assert net @ band_times(MaternPrecision(space, alpha).band(kappa, stretch), net) == pytest.approx(
+        expected, rel=1e-6
+    )
+
+
+@pytest.mark.parametrize("stretch", [(0.0, 0.0), (0.8, 0.5)])
+def test_the_precision_is_positive_definite(stretch):
+    for alpha in (1, 2, 3):
+        assert np.linalg.eigvalsh(dense(MaternPrecision(space_of(), alpha).band(0.5, stretch)))[0] > 0
+
+
+@pytest.mark.parametrize("alpha", [2, 3])
+def test_its_inverse_is_the_matern_covariance(alpha):
+    """Whittle's covariance of variance 1 / (4 pi nu kappa^(2 nu)), far from the edges of the space."""
+    space, kappa, nu = space_of(10.0, 10.0, 0.25), 1.5, alpha - 1
+    at = np.column_stack([5 + np.array([0.0, 0.5, 1.0, 2.0]), np.full(4, 5.0)])
+    rows = space.matrix(at).toarray()
+    found = rows[0] @ np.linalg.solve(dense(MaternPrecision(space, alpha).band(kappa)), rows.T)
+    t = kappa * np.array([1e-9, 0.5, 1.0, 2.0])
+    shape = 2 ** (1 - nu) / gamma(nu) * t**nu * kv(nu, t)
+    assert found == pytest.approx(shape / (4 * np.pi * nu * kappa ** (2 * nu)), rel=0.05)
