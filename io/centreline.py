@@ -77,6 +77,10 @@ def read_centreline(
     ------
     InputError
         If the table has no line of two usable stations, or no column with a size.
+
+    Notes
+    -----
+    Headers that are recognized: ``docs/formats_in.md``.
     """
     if level not in ("axis", "floor"):
         raise InputError(

@@ -62,6 +62,10 @@ def read_compass(source: Source | str | Path, journal: Journal | None = None) ->
     ------
     InputError
         If the file is missing, or has no survey.
+
+    Notes
+    -----
+    Columns and flags that are read: ``docs/formats_in.md``.
     """
     source, journal = as_source(source), journal if journal is not None else Journal()
     first_issue, first_count = len(journal.issues), len(journal.counts)

@@ -335,6 +335,10 @@ def read_survex(source: Source | str | Path, journal: Journal | None = None) -> 
     ------
     InputError
         If a file is missing, or ``*begin`` and ``*end`` do not match.
+
+    Notes
+    -----
+    Commands that are read: ``docs/formats_in.md``.
     """
     source, journal = as_source(source), journal if journal is not None else Journal()
     first_issue, first_count = len(journal.issues), len(journal.counts)

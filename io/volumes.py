@@ -69,6 +69,10 @@ def read_volume(
     VolumeError
         If the label or the voxel size is missing, or the labels leave a doubt; the message lists labels and shares.
 
+    Notes
+    -----
+    Formats: ``docs/formats_in.md``.
+
     Examples
     --------
     >>> import tempfile

@@ -101,8 +101,9 @@ def test_a_function_documents_parameters_results_errors_and_source(name, functio
 @pytest.mark.parametrize(("name", "cls"), CLASSES)
 def test_a_class_documents_its_fields(name, cls):
     found = sections(inspect.getdoc(cls))
-    if fields := getattr(cls, "__dataclass_fields__", None):
-        assert list(described(found["Parameters"])) == list(fields)
+    if hasattr(cls, "__dataclass_fields__"):
+        # What a caller passes: a class with its own constructor may keep its data in other fields.
+        assert list(described(found["Parameters"])) == list(inspect.signature(cls).parameters)
 
 
 def test_short_forms():

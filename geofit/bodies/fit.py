@@ -66,6 +66,11 @@ def fit_body(
     SettingsError
         If codes are missing, or given for arrays.
 
+    Notes
+    -----
+    Interpolation by radial functions r^3 with a linear trend: Turk and O'Brien, ACM TOG 21(4), 2002. Samples give
+    inequalities; those that bind are found by an active set (:mod:`geofit.bodies.active`).
+
     Examples
     --------
     >>> import numpy as np

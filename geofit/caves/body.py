@@ -198,7 +198,7 @@ def centreline_body(
     Parameters
     ----------
     survey : Survey or AdjustedSurvey
-        A survey is adjusted with its default errors.
+        Stations, shots and walls; a survey is adjusted with its default errors.
     radius : float, optional
         Distance of the walls where a survey has none at all, metres.
     ends : {"round", "flat"}
@@ -206,12 +206,22 @@ def centreline_body(
     blend : float, optional
         Radius of the smooth union where branches meet, metres; by default half of the median wall distance.
 
+    Returns
+    -------
+    PassageBody
+        A field in metres, negative in the passages; walls that were filled are listed in ``sections.filled``.
+
     Raises
     ------
     SurveyError
         If stations are unconnected, or passages have no size.
     SettingsError
         If a setting is out of its range.
+
+    Notes
+    -----
+    A section of four quarter ellipses at each station, swept to the next one, and a smooth union of the sweeps; loops
+    are adjusted first (:func:`geofit.caves.adjust`).
     """
     if ends not in ("round", "flat"):
         raise SettingsError(

@@ -131,14 +131,17 @@ def metaballs(
     distance : {"euclid", "chamfer"}
         Exact maximal balls (default), or those of the chamfer distance with ``weights``, as in the article; chamfer
         needs voxels that are cubes.
+    weights : three int
+        Chamfer distances to a neighbour across a face, an edge and a corner of a voxel; the Euclidean distance does not
+        use them.
     cost : float
-        Cost of covering a rock voxel, against 1 gained by a pore voxel.
+        Weight of a rock voxel that is covered, relative to a pore voxel.
     share : float
         Stop once this share of the voxels is covered and 95 % of the boundary voxels lie within 0.75 voxel.
     max_balls : int, optional
         Stop at this number of balls.
     stiffness : float
-        s of the kernel: a ball acts to 1 + 2 / s times its radius.
+        Weight s in the exponent of the kernel: a ball acts to 1 + 2 / s times its radius.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
 

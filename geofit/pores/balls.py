@@ -85,6 +85,7 @@ def maximal_balls(
     Parameters
     ----------
     volume : RockVolume
+        The pore space.
     rule : {"exact", "paper", "cover"}, optional
         ``"exact"``: every ball that no other ball includes (default for cubic voxels). ``"paper"``: the article's
         comparison R2 + distance <= L1, which loses voxels; compare ``union()`` with the volume. ``"cover"``: from large
@@ -93,15 +94,21 @@ def maximal_balls(
     border : "closed", "open" or three of them
         Closed (the article's rule): the sample's faces stop a ball like rock. Open: only rock does.
     progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
 
     Returns
     -------
     MaximalBalls
+        Centres and squared radii, from large to small.
 
     Raises
     ------
     VolumeError
         If the rule needs cubic voxels and these are not.
+
+    Notes
+    -----
+    Maximal balls of a pore space: Huang et al. (2007); the rules "exact" and "cover" are this library's.
 
     Examples
     --------

@@ -42,18 +42,20 @@ def pore_network(
     Parameters
     ----------
     volume : RockVolume
+        The pore space.
     balls : MaximalBalls, optional
         Of this volume with this border. Only ``hierarchy="paper"`` needs them, and computes them if they are absent;
         the merge tree works on the distance map that they come from.
     r_min : float
-        Radius in voxels of the smallest ball that may be a pore, unless it is alone.
+        Radius of the smallest ball that may be a pore, unless it is alone; in voxels, not in metres.
     tau : float
-        A wider place than ``tau`` times the narrower pore's radius is no throat: the two are one pore.
+        Share of the narrower pore's radius: a wider place is not a throat, and the two are one pore.
     border : "closed", "open" or three of them
         Whether the sample's faces stop a ball. Open by default: the rock goes on there, and so do its pores.
     hierarchy : {"merge-tree", "paper"}
         The article's super balls and slaves, or the merge tree of the narrow places.
     progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
 
     Returns
     -------
@@ -64,6 +66,11 @@ def pore_network(
     ------
     VolumeError
         If a parameter is out of its range.
+
+    Notes
+    -----
+    Super balls, slaves and throats: Huang et al. (2007). The merge tree joins the basins of the distance map in the
+    order of their widest connection; see :mod:`geofit.pores.merge_tree`.
 
     Examples
     --------

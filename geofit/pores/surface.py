@@ -204,23 +204,31 @@ def pore_surface(
     Parameters
     ----------
     volume : RockVolume
+        The pore space.
     network : PoreNetwork, optional
         Its pores are rebuilt; what it dropped is left out. Computed with the defaults if absent.
     construction : {"contact", "blend"}
         From contact points (keeps the volume; default), or from the blended balls.
     kappa : float
-        Sharpness of the blend: the surface lies outside the union of the balls by at most
+        Sharpness of the blend (a weight in the exponent, without a unit): the surface lies outside the union of the balls by at most
         R (sqrt(1 + ln m / kappa) - 1) where m balls are in reach.
     progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
 
     Returns
     -------
     PoreSurface
+        A field in metres, negative in the pores, with its triangles.
 
     Raises
     ------
     VolumeError
         If a parameter is out of its range, or the network is not of this volume.
+
+    Notes
+    -----
+    Implicit pores from balls and throats: Huang et al. (2007); contact points between pore and rock voxels:
+    :mod:`geofit.pores.contacts`.
     """
     if construction not in ("contact", "blend"):
         raise VolumeError(
