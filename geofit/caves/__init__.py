@@ -1,6 +1,6 @@
 """Bodies along surveyed centre lines: caves, adits, tunnels.
 
-Names are loaded when they are first used, so that ``import geofit.caves`` costs nothing.
+Other names are loaded when they are first used, so that ``import geofit.caves`` costs numpy only.
 """
 
 from __future__ import annotations
@@ -8,7 +8,12 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
-_MODULES = {
+# These functions must hide the modules of their names, so they cannot wait.
+from geofit.caves.adjust import adjust
+from geofit.caves.clearance import clearance
+from geofit.caves.strata import strata
+
+_LAZY = {
     "AdjustedSurvey": "adjust",
     "Clearance": "clearance",
     "Loop": "adjust",
@@ -16,17 +21,14 @@ _MODULES = {
     "Survey": "survey",
     "SurveyError": "survey",
     "VolumeEstimate": "uncertainty",
-    "adjust": "adjust",
     "centreline_body": "body",
-    "clearance": "clearance",
-    "strata": "strata",
     "volume_estimate": "uncertainty",
 }
 
-__all__ = sorted(_MODULES)
+__all__ = ["adjust", "clearance", "strata", *_LAZY]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _MODULES:
+    if name not in _LAZY:
         raise AttributeError(f"module 'geofit.caves' has no attribute '{name}'")
-    return getattr(import_module(f"geofit.caves.{_MODULES[name]}"), name)
+    return getattr(import_module(f"geofit.caves.{_LAZY[name]}"), name)

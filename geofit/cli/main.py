@@ -11,7 +11,11 @@ from geofit.cli.app import app
 
 __all__ = ["app", "main"]
 
-for _command in ("demo", "fit", "report", "check", "info", "import_files", "export", "section", "gui"):
+_COMMANDS = (
+    "demo", "fit", "report", "check", "info", "import_files", "export", "section", "body", "pores", "metaballs", "cave",
+    "gui",
+)  # fmt: skip
+for _command in _COMMANDS:
     import_module(f"geofit.cli.{_command}")
 
 

@@ -5,18 +5,22 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geofit.data.files import replacing, spreadsheet_cell
 from geofit.data.languages import EN, Language, translate
 from geofit.data.site import ImportIssue
 from geofit.report.result import HorizonResult
 
-__all__ = ["write_issues", "write_residuals"]
+if TYPE_CHECKING:
+    from geofit.bodies.body import ImplicitBody
+
+__all__ = ["write_contacts", "write_issues", "write_residuals"]
 
 RESIDUAL_HEADER = (
     "file", "row", "kind", "hole", "section", "x", "y", "z", "residual_m", "patch", "exact", "used", "reason",
 )  # fmt: skip
+CONTACT_HEADER = ("hole", "x", "y", "z", "residual_m")
 ISSUE_HEADER = ("severity", "file", "row", "column", "value", "reason", "remedy")
 
 
@@ -44,6 +48,17 @@ def write_residuals(result: HorizonResult, path: Path, language: Language = EN) 
         for i in range(len(points))
     )
     _write(path, RESIDUAL_HEADER, rows)
+
+
+def write_contacts(body: ImplicitBody, path: Path) -> None:
+    """Write one line a contact of a body, in their order; metres, residuals are positive outside the surface."""
+    assert body.accuracy is not None
+    rows = zip(body.data.hole.tolist(), body.data.contacts, body.accuracy.residuals.tolist(), strict=True)
+    _write(
+        path,
+        CONTACT_HEADER,
+        ((hole, *(f"{value:.4f}" for value in xyz), f"{residual:.9f}") for hole, xyz, residual in rows),
+    )
 
 
 def write_issues(issues: Sequence[ImportIssue], path: Path, language: Language = EN) -> None:

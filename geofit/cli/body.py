@@ -1,0 +1,112 @@
+"""``geofit body``: logged intervals to a closed body."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from geofit.cli.app import app
+from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
+from geofit.cli.options import Json, Out
+from geofit.data.errors import InputError
+
+if TYPE_CHECKING:
+    from geofit.io.boreholes import Boreholes
+    from geofit.project.body_run import BodyRun
+
+__all__ = ["body"]
+
+
+@app.command()
+@guarded
+def body(
+    source: Annotated[
+        Path, typer.Argument(metavar="SITE_OR_COLLAR", help="site.toml with [boreholes], or a table of collars.")
+    ],
+    code: Annotated[list[str], typer.Option(help="Code of the intervals inside the body; may be repeated.")],
+    out: Out,
+    survey: Annotated[Path | None, typer.Option(help="With a collar table: depth, azimuth and dip.")] = None,
+    intervals: Annotated[
+        list[Path] | None, typer.Option(help="With a collar table: logged intervals; may be repeated.")
+    ] = None,
+    epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
+    as_json: Json = False,
+) -> int:
+    """Fit a closed body to logged intervals: STEP, triangles, volumes, residuals."""
+    from geofit.bodies.settings import BodySettings
+    from geofit.project.body_run import run_body
+
+    settings = BodySettings(epsilon=epsilon)
+    holes = _read(source, survey, intervals or [])
+    print_issues(holes.issues)
+    print_counts(holes.counts)
+    with listening() as progress:
+        run = run_body(holes, out, codes=code, settings=settings, progress=progress)
+    if as_json:
+        print_json({**run.figures(), "files": [str(file) for file in run.files]})
+    else:
+        _print(run)
+    _print_issues(run)
+    for text in run.failed_checks:
+        say(f"Check failed: {text}")
+    say(f"Files: {', '.join(file.name for file in run.files)} in {out}")
+    return run.exit_code
+
+
+def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes:
+    if source.suffix.casefold() != ".toml":
+        from geofit.io.boreholes import read_boreholes
+
+        if not intervals:
+            raise InputError(
+                "A table of collars alone has no logged intervals",
+                "Give the tables of intervals with --intervals.",
+                file=str(source),
+            )
+        return read_boreholes(source, survey, intervals)
+    if survey is not None or intervals:
+        raise InputError(
+            "--survey and --intervals are for a table of collars",
+            "A site file names its own tables in [boreholes].",
+            file=str(source),
+        )
+    from geofit.io.site_file import read_site_boreholes
+
+    return read_site_boreholes(source)
+
+
+def _print_issues(run: BodyRun) -> None:
+    kinds: dict[tuple[str, bool], list[str]] = {}
+    for issue in run.body.issues:
+        kinds.setdefault((issue.kind, issue.used), []).append(issue.text)
+    for (_, used), texts in sorted(kinds.items(), key=lambda kind: kind[0][1]):
+        more = f" ({len(texts) - 1} more like it in the JSON file)" if len(texts) > 1 else ""
+        say(f"{'note' if used else 'not used'}: {texts[0]}{more}")
+
+
+def _print(run: BodyRun) -> None:
+    from geofit.report.digits import metres
+
+    a, volumes, file = run.accuracy, run.volumes, run.read_back
+    sound = not run.failed_checks
+    reasons = [check.text for check in file.checks if check.name == "grade"]
+    rows = [
+        ("verdict", a.verdict if sound or not a.passed else f"{a.verdict} (!)"),
+        ("contacts", str(a.n)),
+        ("sigma, m", f"{metres(a.sigma)} {'<' if a.passed else '>='} {a.epsilon:g}"),
+        ("largest residual, m", metres(a.max_abs)),
+        ("volume, m3", f"{volumes.best:.6g}"),
+        ("volume P10, m3", f"{volumes.p10:.6g}"),
+        ("volume P50, m3", f"{volumes.p50:.6g}"),
+        ("volume P90, m3", f"{volumes.p90:.6g}"),
+        ("logged, m", f"{a.logged_length:.2f}"),
+        ("logged inside, lies outside, m", f"{a.missed_length:.2f}"),
+        ("logged outside, lies inside, m", f"{a.excess_length:.2f}"),
+        ("surface far from data", f"{a.far_share:.1%} beyond {a.far_distance:.1f} m"),
+        ("STEP, read back", f"{file.solids} solids, {file.grade}, {'passed' if file.passed else 'FAILED'}"),
+    ]
+    print_table(("body", run.body.name), rows, left=(0, 1))
+    for reason in reasons:
+        say(reason)

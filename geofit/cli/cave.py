@@ -1,0 +1,87 @@
+"""``geofit cave``: a survey along centre lines to the body of its passages."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from geofit.cli.app import app
+from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
+from geofit.cli.options import Json, Out
+
+if TYPE_CHECKING:
+    from geofit.project.cave_run import CaveRun
+
+__all__ = ["cave"]
+
+SHOWN = 10
+
+
+@app.command()
+@guarded
+def cave(
+    survey: Annotated[
+        Path, typer.Argument(metavar="SURVEY", help="Compass .dat, Survex .svx, or a table of a centre line.")
+    ],
+    out: Out,
+    radius: Annotated[float | None, typer.Option(help="Wall distance, m, for a survey without walls.")] = None,
+    spacing: Annotated[
+        float | None, typer.Option(help="Spacing of the triangles, m. Default: 3/8 of the median diameter.")
+    ] = None,
+    as_json: Json = False,
+) -> int:
+    """Adjust a cave survey and give its passages a volume and a surface."""
+    from geofit.project.cave_run import read_survey, run_cave
+
+    measured = read_survey(survey)
+    print_issues(measured.issues)
+    print_counts(measured.counts)
+    with listening() as progress:
+        run = run_cave(measured, out, radius=radius, spacing=spacing, progress=progress)
+    if as_json:
+        print_json({**run.figures(), "files": [str(file) for file in run.files]})
+    else:
+        _print(run)
+    say(f"Files: {', '.join(file.name for file in run.files)} in {out}")
+    return 0
+
+
+def _print(run: CaveRun) -> None:
+    survey, volume, filled = run.adjusted.survey, run.volume, run.body.sections.filled
+    thin = run.body.thinner_than(run.spacing)
+    rows = [
+        ("stations, shots", f"{len(survey.stations)}, {len(survey.start)}"),
+        ("surveyed length, m", f"{survey.length:.1f}"),
+        ("volume, m3", f"{volume.volume:.0f} ± {volume.sigma:.0f}"),
+        ("volume P10, P90, m3", f"{volume.p10:.0f}, {volume.p90:.0f}"),
+        (
+            "sigma by measured, missing walls, shots, m3",
+            f"{volume.walls:.0f}, {volume.missing:.0f}, {volume.survey:.0f}",
+        ),
+        ("filled walls", f"{len(filled)} of {len(run.body.sections.measured)}"),
+        ("spacing of the triangles, m", f"{run.spacing:.3g}"),
+        ("shots thinner than that", str(len(thin))),
+    ]
+    print_table(("passages", survey.name), rows)
+    loops = run.adjusted.loops
+    if loops:
+        cells = [
+            (
+                f"{loop.stations[0]} .. {loop.stations[-1]} ({len(loop.stations)})",
+                f"{loop.length:.1f}",
+                f"{loop.distance:.2f}",
+                f"{loop.percent:.2f}",
+                f"{loop.expected:.2f}",
+                "yes" if loop.suspicious else "",
+            )
+            for loop in loops[:SHOWN]
+        ]
+        header = ("loop (stations)", "length, m", "misclosure, m", "%", "expected, m", "suspicious")
+        print_table(header, cells, left=(0, 5))
+        if len(loops) > SHOWN:
+            say(f"The {SHOWN} worst of {len(loops)} loops; the others are in the table of loops.")
+    if filled:
+        shown = ", ".join(f"{wall.station} {wall.wall} {wall.distance:.2f} m" for wall in filled[:SHOWN])
+        say(f"Walls filled from neighbours: {shown}{', ...' if len(filled) > SHOWN else ''}; all are in a table.")

@@ -1,0 +1,75 @@
+"""``geofit pores``: a rock volume to its pore network and surface."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from geofit.cli.app import app
+from geofit.cli.console import guarded, listening, print_json, print_table, say
+from geofit.cli.options import Json, Out
+from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, open_volume, stem_of
+
+if TYPE_CHECKING:
+    from geofit.pores.table import PoreFigures
+    from geofit.project.pores_run import PoresRun
+
+__all__ = ["pores"]
+
+
+@app.command()
+@guarded
+def pores(
+    source: VolumeFile,
+    out: Out,
+    pore: PoreLabel,
+    voxel: VoxelEdge = None,
+    shape: Shape = None,
+    as_json: Json = False,
+) -> int:
+    """Extract pores, throats and the pore surface; compare the rock before and after."""
+    from geofit.project.pores_run import run_pores
+
+    volume = open_volume(source, pore, voxel, shape)
+    with listening() as progress:
+        run = run_pores(volume, out, stem_of(source), progress)
+    if as_json:
+        print_json({**run.figures(), "files": [str(file) for file in run.files]})
+    else:
+        _print(run)
+    for text in run.table.before.network.messages if run.table.before.network else ():
+        say(text)
+    say(f"Files: {', '.join(file.name for file in run.files)} in {out}")
+    return 0
+
+
+def _print(run: PoresRun) -> None:
+    network = run.network
+    counts = {
+        "maximal balls": len(run.balls),
+        "pores": len(network.pores),
+        "throats": len(network.throats),
+        "pores without a path to a face, left out": len(network.dropped),
+        "mean coordination": f"{network.coordination.mean():.2f}" if len(network.pores) else "–",
+    }
+    print_table(("network", "count"), [(name, str(count)) for name, count in counts.items()])
+    before, after = _column(run.table.before), _column(run.table.after)
+    rows = [(name, value, after[name]) for name, value in before.items()]
+    print_table(("figure", "voxels", "rebuilt"), rows)
+
+
+def _column(figures: PoreFigures) -> dict[str, str]:
+    from geofit.pores.permeability import MILLIDARCY
+
+    found = figures.connectivity
+    rows: dict[str, Any] = {
+        "porosity, %": f"{100 * found.porosity:.2f}",
+        "connected porosity, %": f"{100 * found.connected:.2f}",
+        "percolates along axis 0, 1, 2": ", ".join("yes" if along else "no" for along in found.percolates),
+        "Euler number": str(found.euler),
+        "specific surface, 1/mm": f"{figures.specific_surface / 1e3:.2f}",
+        "grain diameter, mm": f"{figures.grain_diameter * 1e3:.4f}",
+        "Kozeny permeability, mD": f"{figures.kozeny / MILLIDARCY:.4g}",
+    }
+    if figures.network is not None:
+        rows["network permeability along axis 0, 1, 2, mD"] = ", ".join(f"{k:.4g}" for k in figures.network.millidarcy)
+    return rows

@@ -1,0 +1,120 @@
+"""From logged intervals to the files of a closed body: STEP solid, triangles, figures, residuals of the contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geofit.bodies.fit import fit_body
+from geofit.bodies.settings import BodySettings
+from geofit.data.accuracy import plain
+from geofit.data.files import file_stems
+from geofit.data.progress import Progress, tell
+from geofit.project.body_files import folder_for, write_figures, write_triangles
+
+if TYPE_CHECKING:
+    from geofit.bodies.accuracy import BodyAccuracy
+    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.data import BodyData
+    from geofit.bodies.simulate import BodyVolumes
+    from geofit.cad.solid import SolidReadBack
+    from geofit.io.boreholes import Boreholes
+
+__all__ = ["BodyRun", "run_body"]
+
+
+@dataclass(frozen=True, eq=False)
+class BodyRun:
+    """A fitted body with its volumes, its STEP file as read back, and all files that were written."""
+
+    body: ImplicitBody
+    volumes: BodyVolumes
+    read_back: SolidReadBack
+    files: tuple[Path, ...]
+
+    @property
+    def accuracy(self) -> BodyAccuracy:
+        """The verdict."""
+        assert self.body.accuracy is not None
+        return self.body.accuracy
+
+    @property
+    def failed_checks(self) -> tuple[str, ...]:
+        """What each failed check of the body and of its file found."""
+        checks = (*self.accuracy.checks, *self.read_back.checks)
+        return tuple(check.text for check in checks if check.passed is False)
+
+    @property
+    def exit_code(self) -> int:
+        """0: sigma < epsilon; 1: not."""
+        return 0 if self.accuracy.passed else 1
+
+    def figures(self) -> dict[str, Any]:
+        """Return everything that the JSON file has, as plain data."""
+        from geofit import __version__
+
+        accuracy = plain(self.accuracy)
+        for per_contact in ("residuals", "patch"):
+            accuracy.pop(per_contact)
+        volumes = plain(self.volumes)
+        volumes.pop("values")
+        settings = self.body.settings
+        return {
+            "body": self.body.name,
+            "verdict": self.accuracy.verdict,
+            "settings": {f.name: plain(getattr(settings, f.name)) for f in fields(settings)},
+            **accuracy,
+            "volumes": volumes,
+            "read_back": {**plain(self.read_back), "file": Path(self.read_back.file).name},
+            "issues": plain(self.body.issues),
+            "version": __version__,
+        }
+
+
+def run_body(
+    source: Boreholes | BodyData,
+    out: Path,
+    *,
+    codes: str | Sequence[str] | None = None,
+    name: str = "",
+    settings: BodySettings | None = None,
+    progress: Progress | None = None,
+) -> BodyRun:
+    """Fit a body, examine it, and write ``NAME.step``, ``.stl``, ``.vtp``, ``.json`` and ``NAME_contacts.csv``.
+
+    Parameters
+    ----------
+    source, codes, name, settings
+        As for :func:`geofit.fit_body`.
+    out : Path
+        Folder for the files; created if missing. Each file is whole or absent.
+    progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
+
+    Raises
+    ------
+    FitError, SettingsError
+        As for :func:`geofit.fit_body`.
+    InputError
+        If a file cannot be written, or the body is empty.
+    """
+    from geofit.report.tables import write_contacts
+
+    folder = folder_for(out)
+    tell(progress, "fit", 0.0)
+    body = fit_body(source, settings, codes=codes, name=name)
+    stem = folder / file_stems([body.name])[body.name]
+    tell(progress, "volumes", 0.3)
+    volumes = body.volumes()
+    tell(progress, "STEP", 0.6)
+    step, contacts = stem.with_name(f"{stem.name}.step"), stem.with_name(f"{stem.name}_contacts.csv")
+    read_back = body.write_step(step)
+    tell(progress, "files", 0.9)
+    write_contacts(body, contacts)
+    figures = stem.with_name(f"{stem.name}.json")
+    files = (step, figures, contacts, *write_triangles(body.overview, stem, body.origin))
+    run = BodyRun(body, volumes, read_back, files)
+    write_figures(run.figures(), figures)
+    return run

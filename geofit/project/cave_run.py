@@ -1,0 +1,182 @@
+"""From a survey or a centre line to the files of its passages: loops, stations, filled walls, volume, triangles."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geofit.data.accuracy import plain
+from geofit.data.files import file_stems, replacing, spreadsheet_cell
+from geofit.data.progress import Progress, tell
+from geofit.project.body_files import folder_for, write_figures, write_triangles
+
+if TYPE_CHECKING:
+    from geofit.caves.adjust import AdjustedSurvey
+    from geofit.caves.body import PassageBody
+    from geofit.caves.survey import Survey
+    from geofit.caves.uncertainty import VolumeEstimate
+
+__all__ = ["CaveRun", "read_survey", "run_cave"]
+
+#: Spacing of the triangles, in units of the spacing that resolves most sections.
+COARSER = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class CaveRun:
+    """Passages of a survey, their volume, the spacing of their triangles (metres), and the files."""
+
+    body: PassageBody
+    volume: VolumeEstimate
+    spacing: float
+    files: tuple[Path, ...]
+
+    @property
+    def adjusted(self) -> AdjustedSurvey:
+        """Stations and loops."""
+        return self.body.adjusted
+
+    def figures(self) -> dict[str, Any]:
+        """Return everything that the JSON file has, as plain data; metres."""
+        from geofit import __version__
+
+        survey = self.adjusted.survey
+        loops = [
+            {
+                "stations": list(loop.stations),
+                "length": loop.length,
+                "misclosure": loop.distance,
+                "percent": loop.percent,
+                "expected": loop.expected,
+                "suspicious": loop.suspicious,
+            }
+            for loop in self.adjusted.loops
+        ]
+        estimate = self.volume
+        return {
+            "survey": survey.name,
+            "stations": len(survey.stations),
+            "shots": len(survey.start),
+            "length": survey.length,
+            "loops": plain(loops),
+            "filled_walls": plain(self.body.sections.filled),
+            "volume": {**plain(estimate), "sigma": estimate.sigma, "p10": estimate.p10, "p90": estimate.p90},
+            "mesh_spacing": self.spacing,
+            "thinner_than_mesh": [list(shot) for shot in self.body.thinner_than(self.spacing)],
+            "version": __version__,
+        }
+
+
+def read_survey(path: Path) -> Survey:
+    """Read a Compass file (.dat), a Survex file (.svx), or any other file as a table of a centre line.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, or has no survey.
+    """
+    from geofit.io.centreline import read_centreline
+    from geofit.io.compass import read_compass
+    from geofit.io.survex import read_survex
+
+    match path.suffix.casefold():
+        case ".dat":
+            return read_compass(path)
+        case ".svx":
+            return read_survex(path)
+        case _:
+            return read_centreline(path)
+
+
+def run_cave(
+    survey: Survey,
+    out: Path,
+    *,
+    radius: float | None = None,
+    spacing: float | None = None,
+    progress: Progress | None = None,
+) -> CaveRun:
+    """Adjust a survey, make its passages a body, and write it.
+
+    The files: ``NAME_stations.csv``, ``NAME_loops.csv``, ``NAME_filled_walls.csv``, the body as ``NAME.stl`` and
+    ``.vtp``, and ``NAME.json`` with the figures.
+
+    Parameters
+    ----------
+    survey : Survey
+        What was measured.
+    out : Path
+        Folder for the files; created if missing. Each file is whole or absent.
+    radius : float, optional
+        Distance of the walls of a survey without walls, metres.
+    spacing : float, optional
+        Spacing of the triangles, metres; by default three eighths of the median diameter.
+    progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
+
+    Raises
+    ------
+    SurveyError, SettingsError
+        As for :func:`geofit.centreline_body`.
+    InputError
+        If a file cannot be written.
+    """
+    from geofit.caves.adjust import adjust
+    from geofit.caves.body import centreline_body
+    from geofit.caves.uncertainty import volume_estimate
+
+    tell(progress, "adjust", 0.0)
+    adjusted = adjust(survey)
+    body = centreline_body(adjusted, radius=radius)
+    tell(progress, "volume", 0.1)
+    volume = volume_estimate(body)
+    tell(progress, "triangles", 0.5)
+    step = COARSER * body.fine if spacing is None else spacing
+    triangles = body.triangulate(step)
+    tell(progress, "files", 0.9)
+    name = Path(survey.name).stem
+    stem = folder_for(out) / file_stems([name])[name]
+    tables = _write_tables(body, stem)
+    figures = stem.with_name(f"{stem.name}.json")
+    run = CaveRun(body, volume, step, (figures, *tables, *write_triangles(triangles, stem)))
+    write_figures(run.figures(), figures)
+    return run
+
+
+def _write_tables(body: PassageBody, stem: Path) -> tuple[Path, ...]:
+    adjusted = body.adjusted
+    stations = zip(adjusted.survey.stations, adjusted.xyz.tolist(), adjusted.sigma.tolist(), strict=True)
+    loops = (
+        (*(f"{x:.3f}" for x in (loop.length, loop.distance, loop.percent, loop.expected)),
+         "yes" if loop.suspicious else "no", " ".join(loop.stations))
+        for loop in adjusted.loops
+    )  # fmt: skip
+    return (
+        _table(
+            stem.with_name(f"{stem.name}_stations.csv"),
+            ("station", "x", "y", "z", "sigma_x_m", "sigma_y_m", "sigma_z_m"),
+            ((name, *(f"{value:.4f}" for value in (*xyz, *sigma))) for name, xyz, sigma in stations),
+        ),
+        _table(
+            stem.with_name(f"{stem.name}_loops.csv"),
+            ("length_m", "misclosure_m", "misclosure_percent", "expected_m", "suspicious", "stations"),
+            loops,
+        ),
+        _table(
+            stem.with_name(f"{stem.name}_filled_walls.csv"),
+            ("station", "wall", "distance_m"),
+            ((filled.station, filled.wall, f"{filled.distance:.3f}") for filled in body.sections.filled),
+        ),
+    )
+
+
+def _table(path: Path, header: Sequence[str], rows: Iterable[Sequence[str]]) -> Path:
+    # The byte-order mark lets spreadsheets read the text as UTF-8.
+    with replacing(path) as part, part.open("w", encoding="utf-8-sig", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows([spreadsheet_cell(cell) for cell in row] for row in rows)
+    return path

@@ -1,0 +1,103 @@
+"""From a rock volume to the files of its pore space: network, figures before and after, surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from geofit.data.accuracy import plain
+from geofit.data.files import file_stems
+from geofit.data.progress import Progress, tell
+from geofit.project.body_files import folder_for, write_figures, write_triangles
+
+if TYPE_CHECKING:
+    from geofit.pores.balls import MaximalBalls
+    from geofit.pores.network import PoreNetwork
+    from geofit.pores.surface import PoreSurface
+    from geofit.pores.table import BeforeAfter
+    from geofit.pores.volume import RockVolume
+
+__all__ = ["PoresRun", "run_pores"]
+
+
+@dataclass(frozen=True, eq=False)
+class PoresRun:
+    """Pore space of a rock volume: maximal balls, network, surface, figures before and after, files."""
+
+    volume: RockVolume
+    balls: MaximalBalls
+    network: PoreNetwork
+    surface: PoreSurface
+    table: BeforeAfter
+    files: tuple[Path, ...]
+
+    def figures(self) -> dict[str, Any]:
+        """Return everything that the JSON file has, as plain data; lengths in metres."""
+        from geofit import __version__
+
+        network = self.network
+        return {
+            "shape": plain(self.volume.shape),
+            "voxel": plain(self.volume.voxel),
+            "maximal_balls": len(self.balls),
+            "pores": len(network.pores),
+            "throats": len(network.throats),
+            "dropped_pores": len(network.dropped),
+            "mean_coordination": float(network.coordination.mean()) if len(network.pores) else 0.0,
+            "percolates": plain(network.percolates),
+            "settings": plain(network.settings),
+            **plain(self.table),
+            "version": __version__,
+        }
+
+
+def run_pores(volume: RockVolume, out: Path, name: str, progress: Progress | None = None) -> PoresRun:
+    """Extract balls, network and surface of a pore space and write them.
+
+    The files: ``NAME_pores.csv``, ``_throats.csv``, ``_face_throats.csv`` and ``_dropped.csv``, ``NAME_openpnm.json``,
+    Statoil's ``NAME_node1.dat`` to ``NAME_link2.dat``, ``NAME_network.vtp``, the surface as ``NAME_surface.stl`` and
+    ``.vtp``, and ``NAME.json`` with the figures.
+
+    Parameters
+    ----------
+    volume : RockVolume
+        The voxels.
+    out : Path
+        Folder for the files; created if missing. Each file is whole or absent.
+    name : str
+        Name of the sample: the stem of all files.
+    progress : callable, optional
+        ``progress(stage, fraction)``; False stops.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be written.
+    """
+    from geofit.io.export.network import write_network_csv, write_network_vtp, write_openpnm_json, write_statoil
+    from geofit.pores.balls import maximal_balls
+    from geofit.pores.extraction import pore_network
+    from geofit.pores.surface import pore_surface
+    from geofit.pores.table import before_after
+
+    stem = folder_for(out) / file_stems([name])[name]
+    tell(progress, "maximal balls", 0.0)
+    balls = maximal_balls(volume)
+    tell(progress, "network", 0.2)
+    network = pore_network(volume)
+    tell(progress, "surface", 0.4)
+    surface = pore_surface(volume, network)
+    tell(progress, "figures", 0.5)
+    table = before_after(volume, network, surface)
+    tell(progress, "files", 0.8)
+    openpnm, lines = stem.with_name(f"{stem.name}_openpnm.json"), stem.with_name(f"{stem.name}_network.vtp")
+    tables = write_network_csv(network, out, stem.name)
+    write_openpnm_json(network, openpnm)
+    write_network_vtp(network, lines)
+    statoil = write_statoil(network, out, stem.name)
+    triangles = write_triangles(surface.triangulate(), stem.with_name(f"{stem.name}_surface"))
+    figures = stem.with_name(f"{stem.name}.json")
+    run = PoresRun(volume, balls, network, surface, table, (figures, *tables, openpnm, *statoil, lines, *triangles))
+    write_figures(run.figures(), figures)
+    return run
