@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.logs import IntervalLog
 from geofit.data.messages import Verbatim, message
 from geofit.data.site import Ground, Hole, ImportIssue, TableCount
 from geofit.io.axes import Region, check_axes
@@ -30,18 +31,6 @@ DipSign = Literal["down-positive", "down-negative"]
 
 #: Depths of logs are written in centimetres: smaller differences are no difference, metres.
 DEPTH_TOLERANCE = 0.005
-
-
-@dataclass(frozen=True, eq=False)
-class IntervalLog:
-    """One interval table: arrays of equal length, sorted by hole and depth; ``row`` is the file's line."""
-
-    file: str
-    hole: NDArray[np.str_]
-    top: Floats
-    base: Floats
-    code: NDArray[np.str_]
-    row: NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError, SettingsError
+from geofit.data.logs import LoggedHoles
 from geofit.data.messages import Verbatim, message
 from geofit.data.points import KINDS, PointSet
 from geofit.data.progress import Progress, tell
@@ -199,6 +200,7 @@ def build_site(
         orientations=_joined(attitudes),
         order=order,
         faults=faults,
+        boreholes=tuple(LoggedHoles(c.paths, c.ends, c.logs) for c in boreholes),
     )
 
 

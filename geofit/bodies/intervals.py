@@ -45,7 +45,7 @@ class _Log(Protocol):
 
 
 class IntervalSource(Protocol):
-    """Boreholes with their logs, as :func:`geofit.io.boreholes.read_boreholes` returns them."""
+    """Boreholes with their logs: :class:`geofit.io.boreholes.Boreholes`, or a campaign of a site."""
 
     @property
     def paths(self) -> Mapping[str, Any]:
@@ -85,7 +85,8 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
             )
         return source
     holes = source if hasattr(source, "logs") else getattr(source, "boreholes", None)
-    if holes is None or not hasattr(holes, "paths"):
+    campaigns = tuple(holes) if isinstance(holes, Sequence) else (holes,)
+    if not campaigns or not all(hasattr(campaign, "paths") for campaign in campaigns):
         raise SettingsError(
             message(
                 "bodies.holds-logged-intervals",
@@ -99,10 +100,12 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
                 "bodies.codes-missing-codes", "codes is missing: name the codes of the intervals that lie in the body."
             )
         )
-    return from_intervals(holes, codes, settings.step)
+    return from_intervals(campaigns, codes, settings.step)
 
 
-def from_intervals(holes: IntervalSource, codes: str | Sequence[str], step: float | None = None) -> BodyData:
+def from_intervals(
+    holes: IntervalSource | Sequence[IntervalSource], codes: str | Sequence[str], step: float | None = None
+) -> BodyData:
     """Return contacts and samples of the body that intervals of the given codes make.
 
     Intervals of other codes are outside. What is not logged is unknown: it gives neither samples nor a contact. Where
@@ -110,8 +113,9 @@ def from_intervals(holes: IntervalSource, codes: str | Sequence[str], step: floa
 
     Parameters
     ----------
-    holes : IntervalSource
-        Boreholes with logs; tables in which none of the codes occurs are left out.
+    holes : IntervalSource or sequence of IntervalSource
+        Boreholes with logs; tables in which none of the codes occurs are left out. Holes of different sources are
+        different holes: where they share a name, the later ones have the number of their source behind it.
     codes : str or sequence of str
         Codes inside the body.
     step : float, optional
@@ -124,8 +128,9 @@ def from_intervals(holes: IntervalSource, codes: str | Sequence[str], step: floa
         If a code does not occur.
     """
     wanted = {codes} if isinstance(codes, str) else set(codes)
+    sources = holes if isinstance(holes, Sequence) else (holes,)
     counts: Counter[str] = Counter()
-    for log in holes.logs:
+    for log in (log for source in sources for log in source.logs):
         counts.update(log.code.tolist())
     missing = sorted(wanted - set(counts))
     if missing or not wanted:
@@ -140,20 +145,24 @@ def from_intervals(holes: IntervalSource, codes: str | Sequence[str], step: floa
         )
     issues: list[BodyIssue] = []
     rows: dict[str, list[tuple[float, float, bool]]] = {}
-    for log in holes.logs:
-        if wanted.isdisjoint(log.code.tolist()):
-            continue
-        for hole, top, base, code in zip(
-            log.hole.tolist(), log.top.tolist(), log.base.tolist(), log.code.tolist(), strict=True
-        ):
-            if code:
-                rows.setdefault(hole, []).append((top, base, code in wanted))
+    paths: dict[str, _Path] = {}
+    for number, source in enumerate(sources, 1):
+        names = {hole: f"{hole} ({number})" if hole in paths else hole for hole in source.paths}
+        paths.update((names[hole], path) for hole, path in source.paths.items())
+        for log in source.logs:
+            if wanted.isdisjoint(log.code.tolist()):
+                continue
+            for hole, top, base, code in zip(
+                log.hole.tolist(), log.top.tolist(), log.base.tolist(), log.code.tolist(), strict=True
+            ):
+                if code:
+                    rows.setdefault(names[hole], []).append((top, base, code in wanted))
     found = {hole: stretches(rows[hole], hole, issues) for hole in sorted(rows)}
     lengths = [s.base - s.top for parts in found.values() for s in parts if s.inside]
     if step is None:
         total = sum(s.base - s.top for parts in found.values() for s in parts)
         step = max(float(np.median(lengths)) / 4 if lengths else 1.0, SHORTEST_STEP, total / SAMPLES)
-    return _sampled(found, holes.paths, step, issues)
+    return _sampled(found, paths, step, issues)
 
 
 def stretches(intervals: Sequence[tuple[float, float, bool]], hole: str, issues: list[BodyIssue]) -> list[Stretch]:

@@ -72,9 +72,9 @@ def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes
             "A site file names its own tables in [boreholes].",
             file=str(source),
         )
-    from geofit.io.site_file import read_site_boreholes
+    from geofit.io.site_file import load_site
 
-    return read_site_boreholes(source)
+    return load_site(source)
 
 
 def _print_issues(run: BodyRun) -> None:

@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.logs import LoggedHoles
 from geofit.data.messages import EMPTY, Message
 from geofit.data.picture import card, plan_svg
 from geofit.data.points import PointSet
@@ -140,6 +141,8 @@ class Site:
         Horizons that must not cross, from the top to the bottom; empty if the file states none.
     faults : mapping of str to tuple of str
         Horizons that are faults, and which horizons each of them cuts.
+    boreholes : tuple of LoggedHoles
+        Paths and interval tables of the boreholes, one entry a campaign.
     """
 
     name: str
@@ -156,6 +159,7 @@ class Site:
     orientations: Orientations | None = None
     order: tuple[str, ...] = ()
     faults: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    boreholes: tuple[LoggedHoles, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Site {self.name}: {', '.join(f'{key} {value}' for key, value in self._counted().items())}>"

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from geofit.bodies.data import BodyData, prepare
+from geofit.bodies.fit import fit_body
 from geofit.bodies.intervals import from_intervals
 from geofit.data.errors import SettingsError
+from geofit.data.site import Site
+from geofit.io.site_file import read_site
 
 
 class Vertical:
@@ -68,3 +72,38 @@ def test_samples_that_contradict_each_other_are_listed_and_left_out() -> None:
     assert found.inside_used.tolist() == [True, False]
     assert found.outside_used.tolist() == [False, True]
     assert [issue.kind for issue in found.issues] == ["contradiction"]
+
+
+def test_a_site_with_two_campaigns_that_share_a_hole_name() -> None:
+    first = holes(("A", 0, 10, "X"), ("A", 10, 20, "ORE"), ("B", 0, 20, "X"))
+    second = SimpleNamespace(logs=first.logs, paths={"A": Vertical(100.0), "B": Vertical(150.0)})
+    data = from_intervals((first, second), "ORE", step=5)
+    assert data.holes == ("A", "A (2)", "B", "B (2)")
+    np.testing.assert_allclose(data.contacts, [[0, 0, -10], [100, 0, -10]])
+
+
+def test_a_site_file_keeps_its_logs(tmp_path: Path) -> None:
+    collar = [(f"H{i}{j}", 500_000 + 20 * i, 3_000_000 + 20 * j) for i in range(5) for j in range(5)]
+    lines = ["hole,x,y,z,depth"] + [f"{name},{x},{y},100,60" for name, x, y in collar]
+    (tmp_path / "collar.csv").write_text("\n".join(lines) + "\n")
+    rows = ["hole,from,to,code"]
+    for name, x, y in collar:
+        half = 1 - ((x - 500_040) / 32) ** 2 - ((y - 3_000_040) / 32) ** 2
+        if half > 0:
+            top, base = 30 - 15 * half**0.5, 30 + 15 * half**0.5
+            rows += [f"{name},0,{top:.2f},ROCK", f"{name},{top:.2f},{base:.2f},ORE", f"{name},{base:.2f},60,ROCK"]
+        else:
+            rows.append(f"{name},0,60,ROCK")
+    (tmp_path / "lithology.csv").write_text("\n".join(rows) + "\n")
+    (tmp_path / "site.toml").write_text(
+        '[site]\nname = "Lens"\n[[horizon]]\nname = "ore top"\ntop = "ORE"\n'
+        '[boreholes]\ncollar = "collar.csv"\nintervals = "lithology.csv"\n'
+    )
+    site = read_site(tmp_path / "site.toml")
+    assert [sorted(set(log.code.tolist())) for campaign in site.boreholes for log in campaign.logs] == [["ORE", "ROCK"]]
+    body = fit_body(site, codes="ORE")
+    assert body.accuracy is not None
+    assert body.accuracy.wrong_side == 0
+    assert body.triangulate().volume == pytest.approx(4 / 3 * np.pi * 32 * 32 * 15, rel=0.05)
+    with pytest.raises(SettingsError, match="no logged intervals"):
+        fit_body(Site("empty", {}), codes="ORE")
