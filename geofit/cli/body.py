@@ -11,8 +11,10 @@ from geofit.cli.app import app
 from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
 from geofit.cli.options import Json, Out
 from geofit.data.errors import InputError
+from geofit.data.messages import message
 
 if TYPE_CHECKING:
+    from geofit.data.site import Site
     from geofit.io.boreholes import Boreholes
     from geofit.project.body_run import BodyRun
 
@@ -55,21 +57,21 @@ def body(
     return run.exit_code
 
 
-def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes:
+def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes | Site:
     if source.suffix.casefold() != ".toml":
         from geofit.io.boreholes import read_boreholes
 
         if not intervals:
             raise InputError(
-                "A table of collars alone has no logged intervals",
-                "Give the tables of intervals with --intervals.",
+                message("cli.table-collars-alone-logged", "A table of collars alone has no logged intervals"),
+                message("cli.give-tables-intervals-with", "Give the tables of intervals with --intervals."),
                 file=str(source),
             )
         return read_boreholes(source, survey, intervals)
     if survey is not None or intervals:
         raise InputError(
-            "--survey and --intervals are for a table of collars",
-            "A site file names its own tables in [boreholes].",
+            message("cli.survey-intervals-table-collars", "--survey and --intervals are for a table of collars"),
+            message("cli.site-file-names-tables", "A site file names its own tables in [boreholes]."),
             file=str(source),
         )
     from geofit.io.site_file import load_site

@@ -210,7 +210,8 @@ def pore_surface(
     construction : {"contact", "blend"}
         From contact points (keeps the volume; default), or from the blended balls.
     kappa : float
-        Sharpness of the blend (a weight in the exponent, without a unit): the surface lies outside the union of the balls by at most
+        Sharpness of the blend (a weight in the exponent, without a unit): the surface lies outside the union of the
+        balls by at most
         R (sqrt(1 + ln m / kappa) - 1) where m balls are in reach.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
