@@ -174,9 +174,9 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
                 "{count} of {total} approximated points beyond the interior tolerance",
                 **figures,
             )
-        explained = figures["count"] > 0 and tolerance < worst <= surface.fit.get("noise_limit", tolerance)
+        explained = figures["count"] > 0 and tolerance < worst <= surface.diagnostics.get("noise_limit", tolerance)
         if explained:
-            noise = float(surface.fit["noise"])
+            noise = float(surface.diagnostics["noise"])
             text = message(
                 "checks.approximated-points-beyond-interior",
                 "{count} of {total} approximated points beyond the interior tolerance, as noise of {noise:.3g} m "

@@ -11,7 +11,7 @@ from geofit.cli.app import app
 from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
 from geofit.cli.options import Json, Out
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
     from geofit.data.site import Site
@@ -80,7 +80,7 @@ def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes
 
 
 def _print_issues(run: BodyRun) -> None:
-    kinds: dict[tuple[str, bool], list[str]] = {}
+    kinds: dict[tuple[str, bool], list[Message]] = {}
     for issue in run.body.issues:
         kinds.setdefault((issue.kind, issue.used), []).append(issue.text)
     for (_, used), texts in sorted(kinds.items(), key=lambda kind: kind[0][1]):

@@ -9,6 +9,7 @@ import typer
 
 from geofit.data.errors import SettingsError
 from geofit.data.files import legible
+from geofit.data.messages import message
 
 if TYPE_CHECKING:
     from geofit.pores.volume import RockVolume
@@ -55,5 +56,12 @@ def _numbers(text: str, option: str) -> list[float]:
     except ValueError:
         numbers = []
     if len(numbers) not in (1, 3):
-        raise SettingsError(f"{option} '{text}' is not a number, or three with commas between them.")
+        raise SettingsError(
+            message(
+                "cli.one-or-three-numbers",
+                "{option} '{text}' is not a number, or three with commas between them.",
+                option=option,
+                text=text,
+            )
+        )
     return numbers

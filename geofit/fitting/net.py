@@ -209,7 +209,7 @@ class Beside:
     frozen: NDArray[np.bool_]
     rounds: int
     limit: float
-    notes: tuple[str, ...]
+    notes: tuple[Message, ...]
 
 
 @dataclass(frozen=True, eq=False)

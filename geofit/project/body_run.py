@@ -11,6 +11,7 @@ from geofit.bodies.fit import fit_body
 from geofit.bodies.settings import BodySettings
 from geofit.data.accuracy import plain
 from geofit.data.files import file_stems
+from geofit.data.messages import Message
 from geofit.data.progress import Progress, tell
 from geofit.project.body_files import folder_for, write_figures, write_triangles
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from geofit.bodies.data import BodyData
     from geofit.bodies.simulate import BodyVolumes
     from geofit.cad.solid import SolidReadBack
+    from geofit.data.site import Site
     from geofit.io.boreholes import Boreholes
 
 __all__ = ["BodyRun", "run_body"]
@@ -41,7 +43,7 @@ class BodyRun:
         return self.body.accuracy
 
     @property
-    def failed_checks(self) -> tuple[str, ...]:
+    def failed_checks(self) -> tuple[Message, ...]:
         """What each failed check of the body and of its file found."""
         checks = (*self.accuracy.checks, *self.read_back.checks)
         return tuple(check.text for check in checks if check.passed is False)
@@ -74,7 +76,7 @@ class BodyRun:
 
 
 def run_body(
-    source: Boreholes | BodyData,
+    source: Boreholes | Site | BodyData,
     out: Path,
     *,
     codes: str | Sequence[str] | None = None,

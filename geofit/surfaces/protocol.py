@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -90,6 +91,10 @@ class FittedSurface(Surface, Protocol):
     @property
     def core(self) -> NDArray[np.bool_]:
         """Which points it meets exactly, (n,)."""
+
+    @property
+    def diagnostics(self) -> Mapping[str, Any]:
+        """Figures of the fit."""
 
     @property
     def accuracy(self) -> Accuracy | None:
