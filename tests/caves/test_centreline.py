@@ -63,9 +63,9 @@ def test_a_negative_size_is_missing_and_a_repeated_station_is_listed(table):
     found = table("station,x,y,z,radius\na,0,0,0,2\na,0,0,0,2\nb,5,0,0,-1\nc,9,0,0,x\nd,12,0,0,2\n")
     assert found.stations == ("a", "b", "d")
     assert np.isnan(found.walls[found.stations.index("b")]).all()
-    reasons = [issue.reason for issue in found.issues if issue.severity != "note"]
-    assert any("repeats row 2" in reason for reason in reasons)
-    assert any("below 0" in reason for reason in reasons)
+    reasons = {issue.reason.code: issue.reason for issue in found.issues if issue.severity != "note"}
+    assert reasons["import.station-repeats-row"].params["row"] == 2
+    assert "import.taken-missing" in reasons
     assert found.counts[0].read == 5
     assert found.counts[0].listed == 2
 

@@ -309,7 +309,7 @@ def test_other_import_errors_are_not_hidden():
 def test_only_the_first_findings_are_told(capsys):
     issues = [
         ImportIssue(
-            "a.csv", i, "z", "?", "error", message("test.text", "no number"), message("test.text", "write metres")
+            "a.csv", i, "z", "?", "error", message(f"test.kind-{i}", "no number"), message("test.text", "write metres")
         )
         for i in range(9)
     ]

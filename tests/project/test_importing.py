@@ -217,8 +217,8 @@ def test_collars_are_found_by_the_name_of_their_holes(tmp_path, header):
 def test_a_table_of_degrees_names_the_remedy(tmp_path):
     done, _ = kinds_of(tmp_path, p="name,longitude,latitude,horizon\nB1,110.1,30.2,T2\nB2,110.2,30.3,T2\n")
     (issue,) = [issue for issue in done.issues if issue.severity == "error"]
-    assert "longitude and latitude" in issue.reason
-    assert "--crs" in issue.remedy
+    assert issue.reason.code == "import.file-not-used-places"
+    assert issue.remedy.code == "import.grid-site-crs"
 
 
 def test_warnings_are_shown_by_kind(capsys):
@@ -226,12 +226,12 @@ def test_warnings_are_shown_by_kind(capsys):
     from geofit.data.messages import message
     from geofit.data.site import ImportIssue
 
-    many = [ImportIssue("a.csv", k, "", "", "warning", message("test.text", "dull {k}", k=k)) for k in range(280)]
+    many = [ImportIssue("a.csv", k, "", "", "warning", message("test.dull", "dull {k}", k=k)) for k in range(280)]
     print_issues(
         [
             *many,
-            ImportIssue("a.csv", 7, "", "", "warning", message("test.text", "grave")),
-            ImportIssue("a.csv", 9, "", "", "error", message("test.text", "bad")),
+            ImportIssue("a.csv", 7, "", "", "warning", message("test.grave", "grave")),
+            ImportIssue("a.csv", 9, "", "", "error", message("test.bad", "bad")),
         ]
     )
     lines = capsys.readouterr().err.splitlines()
