@@ -141,6 +141,11 @@ def _fitted(
             if deviation <= tolerance and angle <= ANGLE:
                 return fit, deviation, angle
             best = min(best, (deviation, angle))
+    if not np.isfinite(best[0]):
+        raise FitError(
+            said("The body needs more than {most} patches: it has many parts, or a shape of many branches. Write "
+                 "triangles.", most=MOST)
+        )  # fmt: skip
     raise FitError(
         message(
             "bodies.patches-not-follow",

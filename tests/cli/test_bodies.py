@@ -1,0 +1,218 @@
+"""The commands for bodies, pores, metaballs and caves: tiny inputs of known truth, and cheap real ones."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from geofit.cli.main import main
+
+DATA = Path(os.environ.get("GEOFIT_DATA", Path(__file__).parents[2].parent / "shared" / "data"))
+EAST, NORTH = 500_000.0, 3_100_000.0
+
+
+def run(monkeypatch, capsys, *arguments) -> tuple[int, str, str]:
+    """Run the command in this process; return exit code, stdout, stderr."""
+    monkeypatch.setattr(sys, "argv", ["geofit", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    captured = capsys.readouterr()
+    return int(stop.value.code or 0), captured.out, captured.err
+
+
+def write(path: Path, header: str, rows) -> Path:
+    path.write_text("\n".join([header, *(",".join(map(str, row)) for row in rows)]) + "\n", encoding="utf-8")
+    return path
+
+
+def read(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8-sig", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+@pytest.fixture
+def drilled(tmp_path) -> Path:
+    """Vertical holes of 200 m every 20 m through an ellipsoid with semi-axes 60, 45 and 30 m, 100 m deep."""
+    collars, logs = [], []
+    for x in range(-80, 81, 20):
+        for y in range(-60, 61, 20):
+            hole = f"Z{x}_{y}"
+            collars.append((hole, EAST + x, NORTH + y, 1000.0, 200.0))
+            rest = 1 - (x / 60) ** 2 - (y / 45) ** 2
+            half = 30 * np.sqrt(rest) if rest > 0 else 0.0
+            cuts = [0.0, 100 - half, 100 + half, 200.0] if half > 1 else [0.0, 200.0]
+            codes = ["GRANITE", "ORE", "GRANITE"] if half > 1 else ["GRANITE"]
+            logs += [(hole, f"{a:.4f}", f"{b:.4f}", code) for a, b, code in zip(cuts, cuts[1:], codes, strict=False)]
+    write(tmp_path / "collar.csv", "hole,x,y,z,depth", collars)
+    write(tmp_path / "lithology.csv", "hole,from,to,code", logs)
+    return tmp_path
+
+
+def test_body_from_a_collar_table_is_the_ellipsoid_that_was_drilled(drilled, monkeypatch, capsys):
+    code, out, err = run(
+        monkeypatch, capsys, "body", drilled / "collar.csv", "--intervals", drilled / "lithology.csv",
+        "--code", "ORE", "--out", drilled / "o",
+    )  # fmt: skip
+    assert code == 0, err
+    assert "PASS" in out
+    assert sorted(path.name for path in (drilled / "o").iterdir()) == [
+        "ORE.json", "ORE.step", "ORE.stl", "ORE.stl.origin.txt", "ORE.vtp", "ORE_contacts.csv",
+    ]  # fmt: skip
+    figures = json.loads((drilled / "o" / "ORE.json").read_text(encoding="utf-8"))
+    truth = 4 / 3 * np.pi * 60 * 45 * 30
+    assert figures["volumes"]["best"] == pytest.approx(truth, rel=0.1)
+    assert figures["volumes"]["p10"] < figures["volumes"]["p50"] < figures["volumes"]["p90"]
+    assert figures["sigma"] < figures["epsilon"] == 0.5
+    rows = read(drilled / "o" / "ORE_contacts.csv")
+    xyz = np.array([[float(row[axis]) for axis in "xyz"] for row in rows])
+    level = ((xyz - [EAST, NORTH, 900.0]) / [60, 45, 30]) ** 2
+    np.testing.assert_allclose(level.sum(axis=1), 1.0, atol=1e-3)
+    assert figures["sigma"] == pytest.approx(
+        np.sqrt(sum(float(row["residual_m"]) ** 2 for row in rows) / (len(rows) - 1)), abs=1e-8
+    )
+
+
+def test_body_from_a_site_file_is_the_same(drilled, monkeypatch, capsys):
+    (drilled / "site.toml").write_text(
+        '[site]\nname = "Mine"\n[boreholes]\ncollar = "collar.csv"\nintervals = ["lithology.csv"]\n', encoding="utf-8"
+    )
+    tables = (drilled / "collar.csv", "--intervals", drilled / "lithology.csv")
+    results = []
+    for source in ((drilled / "site.toml",), tables):
+        code, out, err = run(monkeypatch, capsys, "body", *source, "--code", "ORE", "--out", drilled / "o", "--json")
+        assert code == 0, err
+        results.append(json.loads(out))
+    assert results[0] == results[1]
+
+
+def test_body_refuses_what_has_no_intervals_and_names_the_codes_that_occur(drilled, monkeypatch, capsys):
+    out = ("--out", drilled / "o")
+    code, _, err = run(monkeypatch, capsys, "body", drilled / "collar.csv", "--code", "ORE", *out)
+    assert (code, "--intervals" in err) == (2, True)
+    tables = (drilled / "collar.csv", "--intervals", drilled / "lithology.csv")
+    code, _, err = run(monkeypatch, capsys, "body", *tables, "--code", "GOLD", *out)
+    assert code == 2
+    assert "GOLD" in err
+    assert "GRANITE (" in err
+    (drilled / "site.toml").write_text('[boreholes]\ncollar = "collar.csv"\n', encoding="utf-8")
+    code, _, err = run(monkeypatch, capsys, "body", drilled / "site.toml", "--code", "ORE", *out)
+    assert (code, "no logged intervals" in err) == (2, True)
+    code, _, err = run(monkeypatch, capsys, "body", drilled / "site.toml", *tables[1:], "--code", "ORE", *out)
+    assert (code, "[boreholes]" in err) == (2, True)
+
+
+@pytest.fixture
+def rock(tmp_path) -> Path:
+    """Two chambers of 7 voxels, joined by a channel of one voxel; 1 is rock."""
+    grains = np.ones((9, 9, 20), np.uint8)
+    grains[1:8, 1:8, :7] = grains[1:8, 1:8, 13:] = grains[4, 4] = 0
+    grains.tofile(tmp_path / "rock_9x9x20.raw")
+    return tmp_path / "rock_9x9x20.raw"
+
+
+def test_pores_counts_two_chambers_and_their_throat(rock, tmp_path, monkeypatch, capsys):
+    options = ("--pore", "0", "--voxel", "1e-6", "--out", tmp_path / "o", "--json")
+    code, out, err = run(monkeypatch, capsys, "pores", rock, *options)
+    assert code == 0, err
+    figures = json.loads(out)
+    assert (figures["pores"], figures["throats"]) == (2, 1)
+    assert figures["percolates"] == [False, False, True]
+    assert figures["before"]["connectivity"]["porosity"] == pytest.approx((2 * 7**3 + 6) / (9 * 9 * 20))
+    assert len(read(tmp_path / "o" / "rock_9x9x20_pores.csv")) == 2
+    (throat,) = read(tmp_path / "o" / "rock_9x9x20_throats.csv")
+    assert float(throat["radius_m"]) == pytest.approx(0.5e-6)
+    assert all(Path(file).is_file() for file in figures["files"])
+    assert not any(path.name.startswith(".") for path in (tmp_path / "o").iterdir())
+
+
+def test_pores_never_guesses_the_voxel_or_the_label(rock, tmp_path, monkeypatch, capsys):
+    code, _, err = run(monkeypatch, capsys, "pores", rock, "--pore", "0", "--out", tmp_path / "o")
+    assert (code, "voxel" in err) == (2, True)
+    code, _, err = run(monkeypatch, capsys, "pores", rock, "--voxel", "1e-6", "--out", tmp_path / "o")
+    assert (code, "--pore" in err) == (2, True)
+    code, _, err = run(monkeypatch, capsys, "pores", rock, "--pore", "0", "--voxel", "1,2", "--out", tmp_path / "o")
+    assert (code, "1,2" in err) == (2, True)
+
+
+def test_metaballs_cover_a_ball(tmp_path, monkeypatch, capsys):
+    i, j, k = np.indices((21, 21, 21)) - 10
+    (i**2 + j**2 + k**2 <= 64).astype(np.uint8).tofile(tmp_path / "ball_21.raw")
+    options = ("--pore", "1", "--voxel", "0.5", "--balls", "1", "--out", tmp_path / "o", "--json")
+    code, out, err = run(monkeypatch, capsys, "metaballs", tmp_path / "ball_21.raw", *options)
+    assert code == 0, err
+    (ball,) = read(tmp_path / "o" / "ball_21_balls.csv")
+    assert [float(ball[f"axis{axis}_m"]) for axis in range(3)] == pytest.approx([5.25] * 3, abs=0.05)
+    assert float(ball["radius_m"]) == pytest.approx(4.0, abs=0.25)
+    assert json.loads(out)["dice"] > 0.97
+
+
+def test_cave_of_a_centre_line_is_a_cylinder_with_round_ends(tmp_path, monkeypatch, capsys):
+    # Oblique to the columns that the volume is integrated over: their ends fall anywhere on the walls.
+    rows = [("T", n, EAST + 8 * n, NORTH + 6 * n, 500.0, 2.0) for n in range(6)]
+    line = write(tmp_path / "tunnel.csv", "line,station,x,y,z,radius", rows)
+    code, out, err = run(monkeypatch, capsys, "cave", line, "--out", tmp_path / "o", "--json")
+    assert code == 0, err
+    figures = json.loads(out)
+    truth = np.pi * 4 * 50 + 4 / 3 * np.pi * 8
+    assert figures["volume"]["volume"] == pytest.approx(truth, rel=0.02)
+    assert figures["length"] == pytest.approx(50)
+    # Every station is fixed by its coordinates, so each shot closes between two of them, exactly.
+    assert max(loop["misclosure"] for loop in figures["loops"]) < 1e-9
+    assert figures["filled_walls"] == []
+    assert len(read(tmp_path / "o" / "tunnel_stations.csv")) == 6
+    assert (tmp_path / "o" / "tunnel.stl").stat().st_size > 10_000
+
+
+def test_cave_names_the_loop_with_a_blunder_and_the_walls_that_it_filled(tmp_path, monkeypatch, capsys):
+    (tmp_path / "loop.svx").write_text(
+        "*begin loop\n*fix a 0 0 0\n*data normal from to tape compass clino\n"
+        "a b 10 90 0\nb c 10 0 0\nc d 10 270 0\nd a 14 180 0\n"
+        "*data passage station left right up down\na 1 1 1 1\nb 1 1 1 1\nc 1 1 1 1\n*end loop\n",
+        encoding="utf-8",
+    )
+    code, out, err = run(monkeypatch, capsys, "cave", tmp_path / "loop.svx", "--out", tmp_path / "o")
+    assert code == 0, err
+    (loop,) = read(tmp_path / "o" / "loop_loops.csv")
+    assert float(loop["misclosure_m"]) == pytest.approx(4.0)
+    assert loop["suspicious"] == "yes"
+    assert "4.00" in out
+    filled = read(tmp_path / "o" / "loop_filled_walls.csv")
+    assert {row["station"] for row in filled} == {"loop.d"}
+    assert "loop.d" in err
+
+
+def test_cave_needs_a_radius_where_nothing_has_a_size(tmp_path, monkeypatch, capsys):
+    (tmp_path / "bare.svx").write_text("*data normal from to tape compass clino\na b 10 90 0\n", encoding="utf-8")
+    code, _, err = run(monkeypatch, capsys, "cave", tmp_path / "bare.svx", "--out", tmp_path / "o")
+    assert (code, "radius" in err) == (2, True)
+    options = ("--radius", "1", "--out", tmp_path / "o")
+    assert run(monkeypatch, capsys, "cave", tmp_path / "bare.svx", *options)[0] == 0
+
+
+@pytest.mark.skipif(not (DATA / "caves").is_dir(), reason="needs the real data sets (GEOFIT_DATA)")
+def test_cave_fulford(tmp_path, monkeypatch, capsys):
+    options = ("--spacing", "2", "--out", tmp_path, "--json")
+    code, out, err = run(monkeypatch, capsys, "cave", DATA / "caves" / "Fulford.dat", *options)
+    assert code == 0, err
+    figures = json.loads(out)
+    assert figures["length"] == pytest.approx(1622.8, abs=0.1)
+    assert len(figures["loops"]) == 14
+    assert 10_000 < figures["volume"]["volume"] < 20_000
+    assert "262 read = 262 used" in err
+
+
+@pytest.mark.skipif(not (DATA / "pores").is_dir(), reason="needs the real data sets (GEOFIT_DATA)")
+def test_metaballs_of_berea(tmp_path, monkeypatch, capsys):
+    options = ("--pore", "0", "--voxel", "5.345e-6", "--balls", "12", "--out", tmp_path, "--json")
+    code, out, err = run(monkeypatch, capsys, "metaballs", DATA / "pores" / "berea_110.raw.gz", *options)
+    assert code == 0, err
+    figures = json.loads(out)
+    assert (figures["balls"], figures["shape"]) == (12, [110, 110, 110])
+    assert figures["volume_of_voxels"] == pytest.approx(0.1779 * (110 * 5.345e-6) ** 3, rel=1e-3)
+    assert 0.5 < figures["dice"] < 1
