@@ -174,4 +174,4 @@ def test_a_box_drawn_in_to_one_section_is_no_core():
     beside = np.array([[30.0, 460.0], [330.0, 481.0]])
     split = split_auto(np.concatenate([section, beside, uniform(25, seed=1)]), AREA)
     assert split.core is None
-    assert "one section makes no core" in split.reason
+    assert "one section makes no core" in str(split.reason)
