@@ -143,7 +143,7 @@ def _fitted(
             best = min(best, (deviation, angle))
     if not np.isfinite(best[0]):
         raise FitError(
-            said("The body needs more than {most} patches: it has many parts, or a shape of many branches. Write "
+            message("bodies.body-needs-more-than", "The body needs more than {most} patches: it has many parts, or a shape of many branches. Write "
                  "triangles.", most=MOST)
         )  # fmt: skip
     raise FitError(
