@@ -1,0 +1,229 @@
+"""Closed outlines on sections to the contacts, inside and outside samples of a body."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.bodies.data import BodyData
+from geofit.data.errors import PointsError, SettingsError
+from geofit.data.messages import said
+from geofit.geometry.clip import inside
+
+__all__ = ["Outline", "SectionPlane", "from_outlines", "section_planes"]
+
+Floats = NDArray[np.float64]
+
+#: Distance from the plane of their section, as a share of the outlines' size, up to which corners count as flat.
+FLAT = 0.01
+#: Steps along the side of a square as large as the median outline; contacts on the smallest outline, at least.
+STEPS = 10
+FEWEST = 8
+#: Outside samples go this far beyond the outlines of a section, in sides of their box.
+MARGIN = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """A closed line that bounds one part of a body, or a hole in it, on one section.
+
+    Parameters
+    ----------
+    section : str
+        Name of the section; all outlines of one name lie on one plane. One within another is a hole.
+    xyz : (k, 3) array_like
+        Corners in map coordinates, metres; the last need not repeat the first.
+
+    Raises
+    ------
+    PointsError
+        If there are fewer than three corners, or one is not finite.
+    """
+
+    section: str
+    xyz: Floats
+
+    def __init__(self, section: str, xyz: ArrayLike) -> None:
+        corners = np.array(xyz, dtype=np.float64)
+        if corners.ndim == 2 and corners.shape[1] == 3 and len(corners) > 1:
+            corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
+        if corners.ndim != 2 or corners.shape[1:] != (3,) or len(corners) < 3 or not np.isfinite(corners).all():
+            raise PointsError(
+                said("An outline of section '{section}' has shape {shape}: give three or more different, finite "
+                     "corners, (k, 3), in metres.", section=section, shape=corners.shape)
+            )  # fmt: skip
+        corners.setflags(write=False)
+        object.__setattr__(self, "section", section)
+        object.__setattr__(self, "xyz", corners)
+
+
+@dataclass(frozen=True, eq=False)
+class SectionPlane:
+    """The plane of a section and its outlines on it.
+
+    ``origin`` (3,) is the middle of the corners, ``axes`` (2, 3) span the plane, ``rings`` are outlines (k, 2) along
+    the axes, anticlockwise, those of holes clockwise.
+    """
+
+    name: str
+    origin: Floats
+    axes: Floats
+    rings: tuple[Floats, ...]
+
+    @property
+    def normal(self) -> Floats:
+        """Unit normal (3,) of the plane."""
+        return np.cross(self.axes[0], self.axes[1])
+
+    @property
+    def parts(self) -> tuple[Floats, ...]:
+        """Outlines (k, 2) of parts of the body, without those of holes."""
+        return tuple(ring for ring in self.rings if _area(ring) > 0)
+
+    def to_map(self, plane: Floats) -> Floats:
+        """Return map coordinates (n, 3) of places (n, 2) on the plane."""
+        return np.asarray(self.origin + plane @ self.axes)
+
+    def inside(self, plane: Floats) -> NDArray[np.bool_]:
+        """Return whether (n, 2) places lie in the body: within an odd number of outlines."""
+        return _within(plane, self.rings)
+
+
+def section_planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
+    """Return the planes of sections, in the order in which their names occur.
+
+    Raises
+    ------
+    PointsError
+        If the outlines of a section do not lie on one plane, or bound no area.
+    """
+    planes = []
+    for name in dict.fromkeys(outline.section for outline in outlines):
+        rings = [outline.xyz for outline in outlines if outline.section == name]
+        corners = np.concatenate(rings)
+        origin = corners.mean(axis=0)
+        _, sizes, axes = np.linalg.svd(corners - origin, full_matrices=False)
+        off = float(np.abs((corners - origin) @ axes[2]).max())
+        if off > FLAT * sizes[0] / np.sqrt(len(corners)):
+            raise PointsError(
+                said("The outlines of section '{section}' lie up to {off:.2f} m off one plane. Give each plane a name "
+                     "of its own.", section=name, off=off)
+            )  # fmt: skip
+        flat = [(ring - origin) @ axes[:2].T for ring in rings]
+        if any(abs(_area(ring)) < 1e-9 * sizes[0] ** 2 for ring in flat):
+            raise PointsError(
+                said("An outline of section '{section}' bounds no area: its corners lie on one line.", section=name)
+            )
+        planes.append(SectionPlane(name, origin, axes[:2], tuple(_turned(flat))))
+    return tuple(planes)
+
+
+def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, margin: float | None = None) -> BodyData:
+    """Return contacts on outlines, and samples inside and outside them on their planes.
+
+    Parameters
+    ----------
+    outlines : sequence of Outline
+        Of two or more sections.
+    step : float, optional
+        Distance of contacts along outlines and of samples on the planes, metres; by default a tenth of the side of a
+        square as large as the median outline.
+    margin : float, optional
+        How far beyond its outlines each section is known to be outside, metres; by default half the longer side of
+        the box around them.
+
+    Returns
+    -------
+    BodyData
+        The names of sections take the place of those of holes. Its contacts have no normals: an outline shows only
+        their part in its plane, and a body fitted as if it crossed its sections at right angles was worse on every
+        planted body, left-out sections overlapping by 0.91 in place of 0.998.
+
+    Raises
+    ------
+    PointsError
+        If outlines are not flat, or bound no area.
+    SettingsError
+        If there is no outline, or a length is not above 0.
+    """
+    if not outlines:
+        raise SettingsError(said("There is no outline. Give the closed outlines of two or more sections."))
+    for name, length in (("step", step), ("margin", margin)):
+        if length is not None and not (np.isfinite(length) and length > 0):
+            raise SettingsError(
+                said("{setting} is {value}; a finite number of metres above 0 is needed.", setting=name,
+                     value=repr(length))
+            )  # fmt: skip
+    planes = section_planes(outlines)
+    areas = [abs(_area(ring)) for plane in planes for ring in plane.rings]
+    step = float(np.sqrt(np.median(areas))) / STEPS if step is None else step
+    contacts: list[Floats] = []
+    within: list[Floats] = []
+    outside: list[Floats] = []
+    names: list[list[str]] = [[], [], []]
+    for plane in planes:
+        on = _resampled(plane.rings, step)
+        samples = _samples(plane, on, step, margin)
+        side = plane.inside(samples)
+        for places, kept, name in zip((on, samples[side], samples[~side]), (contacts, within, outside), names,
+                                      strict=True):  # fmt: skip
+            kept.append(plane.to_map(places))
+            name += [plane.name] * len(places)
+    return BodyData(
+        np.concatenate(contacts), np.concatenate(within), np.concatenate(outside),
+        hole=names[0], inside_hole=names[1], outside_hole=names[2],
+    )  # fmt: skip
+
+
+def _area(ring: Floats) -> float:
+    """Signed area of (k, 2) corners, positive anticlockwise."""
+    x, y = ring.T
+    return float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum() / 2)
+
+
+def _within(places: Floats, rings: Sequence[Floats]) -> NDArray[np.bool_]:
+    """Return whether (n, 2) places lie within an odd number of rings."""
+    return np.asarray(sum((inside(ring, places) for ring in rings), np.zeros(len(places), int)) % 2 == 1)
+
+
+def _turned(rings: Sequence[Floats]) -> list[Floats]:
+    """Return the rings anticlockwise; those within an odd number of others clockwise."""
+    turned = []
+    for k, ring in enumerate(rings):
+        others = [other for m, other in enumerate(rings) if m != k]
+        hole = bool(_within(ring[:1], others)[0])
+        turned.append(ring if (_area(ring) > 0) != hole else ring[::-1])
+    return turned
+
+
+def _resampled(rings: Sequence[Floats], step: float) -> Floats:
+    """Return places (n, 2) evenly along rings."""
+    places = []
+    for ring in rings:
+        edge = np.roll(ring, -1, axis=0) - ring
+        length = np.linalg.norm(edge, axis=1)
+        ends = np.append(0.0, np.cumsum(length))
+        count = max(FEWEST, int(np.ceil(ends[-1] / step)))
+        at = (np.arange(count) + 0.5) * ends[-1] / count
+        k = np.clip(np.searchsorted(ends, at, side="right") - 1, 0, len(ring) - 1)
+        places.append(ring[k] + ((at - ends[k]) / length[k])[:, None] * edge[k])
+    return np.concatenate(places)
+
+
+def _samples(plane: SectionPlane, on: Floats, step: float, margin: float | None) -> Floats:
+    """Return places (n, 2) of a raster around the outlines, half a step or more off them."""
+    from scipy.spatial import cKDTree
+
+    corners = np.concatenate(plane.rings)
+    lower, upper = corners.min(axis=0), corners.max(axis=0)
+    beyond = MARGIN * float((upper - lower).max()) if margin is None else margin
+    axes = [np.arange(lower[a] - beyond, upper[a] + beyond + step / 2, step) for a in (0, 1)]
+    raster = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    # Each part has a sample of its own side, however small it is.
+    middles = np.array([ring.mean(axis=0) for ring in plane.rings])
+    raster = np.concatenate([raster, middles])
+    gap = cKDTree(on).query(raster)[0]
+    return np.asarray(raster[gap > np.minimum(step, np.sqrt(abs(min(map(_area, plane.parts))))) / 2])

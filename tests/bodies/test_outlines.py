@@ -1,0 +1,100 @@
+"""Bodies from section outlines: left-out sections, holes in outlines, questions about branches."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from bodies.planted import ORIGIN
+from geofit.bodies.fit import fit_body
+from geofit.bodies.outlines import Outline, from_outlines, section_planes
+from geofit.bodies.questions import section_questions
+from geofit.data.errors import PointsError, SettingsError
+
+Floats = NDArray[np.float64]
+AXES = np.array([60.0, 40.0, 30.0])
+
+
+def lens(name: str, x: float, turn: Floats, clockwise: bool = False) -> Outline:
+    """Return the outline of the ellipsoid on the plane x, turned in space."""
+    angle = np.linspace(0, 2 * np.pi, 90, endpoint=False) * (-1 if clockwise else 1)
+    size = np.sqrt(1 - (x / AXES[0]) ** 2)
+    y, z = AXES[1] * size * np.cos(angle), AXES[2] * size * np.sin(angle)
+    return Outline(name, np.column_stack([np.full(90, x), y, z]) @ turn.T + ORIGIN)
+
+
+def rotation(seed: int) -> Floats:
+    return np.linalg.qr(np.random.default_rng(seed).normal(size=(3, 3)))[0]
+
+
+@pytest.mark.parametrize(("count", "least"), [(5, 0.93), (9, 0.97), (17, 0.99)])
+def test_a_left_out_section_of_an_ellipsoid(count: int, least: float) -> None:
+    turn = rotation(count)
+    x = ((np.arange(count) + 0.5) / count * 2 - 1) * AXES[0]
+    left = count // 2
+    body = fit_body(from_outlines([lens(f"s{k}", v, turn, k % 2 == 1) for k, v in enumerate(x) if k != left]))
+    line = np.linspace(-60, 60, 121)
+    nodes = np.stack(np.meshgrid([x[left]], line, line, indexing="ij"), axis=-1).reshape(-1, 3)
+    truth = ((nodes / AXES) ** 2).sum(axis=1) < 1
+    got = body.value(nodes @ turn.T + ORIGIN) < 0
+    assert (truth & got).sum() / (truth | got).sum() > least
+    assert body.accuracy is not None
+    assert body.accuracy.wrong_side == 0
+
+
+def test_an_outline_within_another_is_a_hole() -> None:
+    square = np.array([[0, 0, 0], [40, 0, 0], [40, 0, 40], [0, 0, 40]], float)
+    outlines = [Outline("a", square), Outline("a", [20, 0, 20] + (square - [20, 0, 20]) / 2)]
+    (plane,) = section_planes(outlines)
+    assert [len(plane.rings), len(plane.parts)] == [2, 1]
+    data = from_outlines(outlines, 2.0)
+    middle = np.abs(data.inside - [20, 0, 20]).max(axis=1)
+    assert (middle > 10).all()
+    assert (middle < 20).all()
+    hole = np.abs(data.outside - [20, 0, 20]).max(axis=1)
+    assert (hole < 10).any()
+    assert ((hole < 10) | (hole > 20)).all()
+
+
+def tube(name: str, x: float, y: float, radius: float) -> Outline:
+    angle = np.linspace(0, 2 * np.pi, 60, endpoint=False)
+    return Outline(name, np.column_stack([np.full(60, x), y + radius * np.cos(angle), radius * np.sin(angle)]) + ORIGIN)
+
+
+def test_a_fork_is_a_question_and_the_body_says_where() -> None:
+    outlines = [tube("2", 20, 0, 15), tube("1", 0, 0, 15)]
+    outlines += [tube(name, x, y, 10) for name, x in (("3", 40), ("4", 60)) for y in (-18, 18)]
+    (open_question,) = section_questions(outlines)
+    assert (open_question.code, open_question.first, open_question.second) == ("branches", "2", "3")
+    assert open_question.parts == (1, 2)
+    assert open_question.place is None
+    body = fit_body(from_outlines(outlines))
+    (question,) = section_questions(outlines, body)
+    assert question.place is not None
+    x = question.place[0] - ORIGIN[0]
+    assert 20 < x < 40
+    # One part a metre before, two a metre after.
+    for shift, parts in ((-1.0, 1), (1.0, 2)):
+        y = np.linspace(-40, 40, 801)
+        z = np.linspace(-30, 30, 61)
+        nodes = np.stack(np.meshgrid([x + shift], y, z, indexing="ij"), axis=-1).reshape(-1, 3)
+        inside = (body.value(nodes + ORIGIN) < 0).reshape(801, 61).any(axis=1)
+        assert (np.diff(inside.astype(int)) == 1).sum() == parts
+
+
+def test_a_body_that_ends_between_two_sections_is_a_question() -> None:
+    outlines = [tube(str(k), x, 0, 8) for k, x in enumerate((0, 20, 320, 340))]
+    questions = section_questions(outlines, fit_body(from_outlines(outlines)))
+    assert [(q.code, q.first, q.second) for q in questions] == [("ends", "1", "2")]
+
+
+def test_outlines_that_cannot_be_used() -> None:
+    with pytest.raises(SettingsError, match="no outline"):
+        from_outlines([])
+    with pytest.raises(PointsError, match="three or more"):
+        Outline("a", [[0, 0, 0], [1, 0, 0], [1, 0, 0]])
+    with pytest.raises(PointsError, match="off one plane"):
+        from_outlines([Outline("a", [[0, 0, 0], [10, 0, 0], [10, 0, 10], [0, 4, 10]])])
+    with pytest.raises(PointsError, match="bounds no area"):
+        from_outlines([Outline("a", [[0, 0, 0], [10, 0, 0], [20, 0, 0]])])
