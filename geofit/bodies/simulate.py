@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.active import spread
-from geofit.bodies.posterior import Posterior
+from geofit.bodies.posterior import CALIBRATION, Posterior
 from geofit.bodies.rbf import Saddle
 
 if TYPE_CHECKING:
     from geofit.bodies.body import ImplicitBody
 
-__all__ = ["BodyVolumes", "simulate"]
+__all__ = ["BodyVolumes", "Draws", "changes", "draws", "simulate", "volumes_of"]
 
 Floats = NDArray[np.float64]
 
@@ -32,8 +32,6 @@ FAR = 3.5
 CORRECTIONS = 12
 #: Nodes of the raster, those nearest to the surface, that a draw may reach.
 REACHED = 15_000
-#: Factor of the standard deviation that calibrates the bands on planted bodies (benchmarks/bodies.py).
-CALIBRATION = 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,8 +51,25 @@ class BodyVolumes:
     values: Floats
 
 
+@dataclass(frozen=True, eq=False)
+class Draws:
+    """Conditional simulations of a body on the cells of a raster that they may reach.
+
+    ``places`` (n, 3) are the middles of the cells in map coordinates; ``changes`` (n, realizations) is what each
+    simulation adds to the volume in each cell, m3.
+    """
+
+    places: Floats
+    changes: Floats
+
+
 def simulate(body: ImplicitBody) -> BodyVolumes:
     """Return the volumes of ``settings.realizations`` conditional simulations of a body."""
+    return volumes_of(body.overview.volume, draws(body).changes.sum(axis=0))
+
+
+def draws(body: ImplicitBody) -> Draws:
+    """Return ``settings.realizations`` conditional simulations of a body."""
     posterior = Posterior(body)
     rng = np.random.default_rng(body.settings.seed)
     nodes, spacing = _nodes(body)
@@ -64,19 +79,23 @@ def simulate(body: ImplicitBody) -> BodyVolumes:
     nodes, value = nodes[order], value[order]
     deviation = CALIBRATION * posterior.deviation(nodes)
     near = np.abs(value) < FAR * deviation
-    best = body.overview.volume
     fitted = body.field.frame.to_fit(nodes[near])
-    change = _changes(body, posterior, fitted[_first_knots(fitted, value[near], deviation[near])], fitted, rng)
+    change = changes(body, posterior, fitted[_first_knots(fitted, value[near], deviation[near])], fitted, rng)
     slope = np.linalg.norm(body.field.gradient(nodes[near] - body.origin), axis=1)
     width = np.maximum(slope * spacing, 1e-300)
     base = np.clip(0.5 - value[near] / width, 0.0, 1.0)
-    values = np.empty(body.settings.realizations)
-    for k in range(len(values)):
+    # In place: with many cells the array is the largest one of a simulation.
+    for k in range(change.shape[1]):
         share = np.clip(0.5 - (value[near] + change[:, k]) / width, 0.0, 1.0)
-        values[k] = best + spacing**3 * (share - base).sum()
+        change[:, k] = spacing**3 * (share - base)
+    return Draws(nodes[near], change)
+
+
+def volumes_of(best: float, change: Floats) -> BodyVolumes:
+    """Return the volumes of a fitted volume and of what each simulation (n,) adds to it, m3."""
     # A draw that swells also adds islands far from data, so draws are larger than the fitted body on average. On
     # planted bodies the fitted body is the one without bias: it stays the middle.
-    values = np.maximum(values, 0.0)
+    values = np.maximum(best + change, 0.0)
     middle = float(np.median(values))
     if middle > 0:
         values *= best / middle
@@ -104,7 +123,7 @@ def _first_knots(fitted: Floats, value: Floats, deviation: Floats) -> NDArray[np
     return np.asarray(doubt[spread(fitted[doubt], min(KNOTS, len(doubt)))] if len(doubt) else doubt)
 
 
-def _changes(
+def changes(
     body: ImplicitBody, posterior: Posterior, knots: Floats, places: Floats, rng: np.random.Generator
 ) -> Floats:
     """Return what each realization adds to the field, (n, realizations), at (n, 3) fitted places."""

@@ -7,7 +7,8 @@ import pytest
 
 from bodies.planted import ORIGIN
 from geofit.bodies.body import ImplicitBody
-from geofit.data.errors import FitError
+from geofit.bodies.strata import strata_table
+from geofit.data.errors import FitError, SettingsError
 
 
 class Plane:
@@ -58,3 +59,23 @@ def test_a_surface_beyond_the_body_leaves_it_whole(ring: ImplicitBody) -> None:
 def test_a_surface_that_ends_within_the_body(ring: ImplicitBody) -> None:
     with pytest.raises(FitError, match="does not reach"):
         ring.cut([Plane("short", 0, 0, end=10)])
+
+
+def test_table_of_strata(ring: ImplicitBody) -> None:
+    horizons = {"base": Plane("", -8, 0.02), "top": Plane("", 6, 0.05, 2), "far": Plane("", -400, 0)}
+    table = strata_table(ring, horizons, 6.0)
+    assert [row.name for row in table] == ["above top", "top to base", "base to far"]
+    assert sum(row.volumes.best for row in table) == pytest.approx(ring.triangulate(6.0).volume, rel=1e-9)
+    pieces = ring.cut(horizons, 6.0)
+    above = sum(piece.volume for piece in pieces if piece.sides["top"] == "above")
+    assert table[0].volumes.best == pytest.approx(above, rel=1e-9)
+    for row in table:
+        assert row.volumes.p10 < row.volumes.best < row.volumes.p90
+    # Parts vary less than together, but not all the same way.
+    whole = ring.volumes().sd
+    assert whole < sum(row.volumes.sd for row in table) < 3 * whole
+
+
+def test_a_table_without_horizons(ring: ImplicitBody) -> None:
+    with pytest.raises(SettingsError, match="horizon"):
+        strata_table(ring, {})

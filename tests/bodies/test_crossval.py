@@ -1,0 +1,54 @@
+"""Leave one hole out, against brute force and two usual methods."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bodies.planted import ORIGIN, drilled, ellipsoid
+from geofit.bodies.body import ImplicitBody
+from geofit.bodies.crossval import leave_one_hole_out
+from geofit.bodies.data import BodyData
+from geofit.bodies.fit import fit_body
+from geofit.data.errors import FitError
+
+
+def test_a_hole_left_out_by_hand(ring: ImplicitBody) -> None:
+    found = leave_one_hole_out(ring, holes=4)
+    assert list(found.methods) == ["body", "linear RBF", "indicator kriging"]
+    assert not found.skipped
+    for score in found.methods["body"].holes:
+        again = fit_body(ring.data.without(score.hole))
+        inside, outside = ring.data.inside_hole == score.hole, ring.data.outside_hole == score.hole
+        wrong = (again.value(ring.data.inside[inside]) >= 0).sum() + (again.value(ring.data.outside[outside]) < 0).sum()
+        assert score.misclassified == pytest.approx(4.0 * wrong)
+        assert score.logged == pytest.approx(4.0 * (inside.sum() + outside.sum()))
+
+
+def test_the_body_predicts_better_than_the_usual_methods() -> None:
+    wrong = {"body": 0.0, "linear RBF": 0.0, "indicator kriging": 0.0}
+    for seed in (0, 1, 2):
+        body = fit_body(drilled(ellipsoid((0.65, 0.45, 0.35))[0], seed, named=True))
+        found = leave_one_hole_out(body, holes=12)
+        for name, method in found.methods.items():
+            wrong[name] += method.misclassified
+        assert found.methods["body"].contact_error < 10
+    assert wrong["body"] < wrong["linear RBF"]
+    assert wrong["body"] < wrong["indicator kriging"]
+
+
+def test_a_hole_that_the_body_needs_is_skipped_with_its_reason() -> None:
+    line = np.arange(-20.0, 21.0, 4.0)
+    xyz = np.array([(x, 0.0, z) for x in (0.0, 30.0, 60.0) for z in line]) + ORIGIN
+    hole = np.repeat(["A", "B", "C"], len(line))
+    inside = (np.abs(xyz[:, 2] - ORIGIN[2]) < 9) & (hole == "A")
+    contacts = np.array([(x, 0.0, z) for x in (0.0,) for z in (-10, 10)]) + ORIGIN
+    data = BodyData(contacts, xyz[inside], xyz[~inside], None, ["A", "A"], hole[inside], hole[~inside])
+    found = leave_one_hole_out(fit_body(data))
+    assert set(found.skipped) == {"A"}
+    assert "Nothing lies inside" in found.skipped["A"]
+
+
+def test_data_without_names() -> None:
+    with pytest.raises(FitError, match="three holes"):
+        leave_one_hole_out(fit_body(drilled(ellipsoid((0.6, 0.4, 0.3))[0], 0)))
