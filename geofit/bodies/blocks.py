@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.bodies.posterior import Posterior
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.lattice import Lattice
 
 if TYPE_CHECKING:
@@ -54,9 +54,16 @@ def block_lattice(body: ImplicitBody, spacing: float | None = None) -> Lattice:
     if not (np.isfinite(spacing) and spacing > 0) or float(np.prod((upper - lower) / spacing + 2)) > MOST:
         least = float(np.prod(upper - lower) / MOST) ** (1 / 3)
         raise SettingsError(
-            said("Blocks of {spacing} m cannot be used for a body {size:.1f} m long: at most {most} blocks are made, "
-                 "so give {least:.3g} m or more.", spacing=spacing, size=longest, most=MOST, least=1.1 * least)
-        )  # fmt: skip
+            message(
+                "bodies.blocks-cannot-used-body",
+                "Blocks of {spacing} m cannot be used for a body {size:.1f} m long: at most {most} blocks are made, "
+                "so give {least:.3g} m or more.",
+                spacing=spacing,
+                size=longest,
+                most=MOST,
+                least=1.1 * least,
+            )
+        )
     first = np.floor((lower + body.origin) / spacing) * spacing
     counts = np.maximum(np.ceil((upper + body.origin - first) / spacing).astype(int) + 1, 2)
     return Lattice(first - body.origin, spacing, (int(counts[0]), int(counts[1]), int(counts[2])))

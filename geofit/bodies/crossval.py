@@ -13,7 +13,7 @@ from geofit.bodies.active import spread
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_field
 from geofit.data.errors import FitError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.prediction.kriging import krige_left_out
 
 if TYPE_CHECKING:
@@ -127,9 +127,12 @@ def _chosen(body: ImplicitBody, most: int) -> tuple[str, ...]:
     xyz = np.concatenate([data.inside, data.outside])
     if len(set(names.tolist()) - {""}) < 3:
         raise FitError(
-            said("Leaving out one hole at a time needs three holes or more with samples, and their names in "
-                 "inside_hole and outside_hole.")
-        )  # fmt: skip
+            message(
+                "bodies.leaving-hole-time-needs",
+                "Leaving out one hole at a time needs three holes or more with samples, and their names in "
+                "inside_hole and outside_hole.",
+            )
+        )
     own = np.concatenate([data.contacts, data.inside]) - body.origin
     near = cKDTree(own).query(xyz - body.origin)[0] <= body.region.reach
     found = sorted(set(names[near].tolist()) - {""})

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from geofit.bodies.planned import PlannedHole, direction_of, predict_hole
 from geofit.bodies.simulate import draws
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 
 if TYPE_CHECKING:
     from geofit.bodies.body import ImplicitBody
@@ -70,9 +70,15 @@ def suggest_holes(
     """
     if count < 1 or not np.isfinite([azimuth, dip]).all():
         raise SettingsError(
-            said("{count} holes of azimuth {azimuth} and dip {dip} cannot be suggested: give a count of 1 or more and "
-                 "finite angles.", count=count, azimuth=azimuth, dip=dip)
-        )  # fmt: skip
+            message(
+                "bodies.holes-azimuth-cannot-suggested",
+                "{count} holes of azimuth {azimuth} and dip {dip} cannot be suggested: give a count of 1 or more and "
+                "finite angles.",
+                count=count,
+                azimuth=azimuth,
+                dip=dip,
+            )
+        )
     drawn = draws(body)
     if not len(drawn.places):
         return ()

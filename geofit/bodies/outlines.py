@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.data import BodyData
 from geofit.data.errors import PointsError, SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.geometry.clip import inside
 
 __all__ = ["Outline", "SectionPlane", "from_outlines", "section_planes"]
@@ -52,9 +52,14 @@ class Outline:
             corners = corners[(corners != np.roll(corners, 1, axis=0)).any(axis=1)]
         if corners.ndim != 2 or corners.shape[1:] != (3,) or len(corners) < 3 or not np.isfinite(corners).all():
             raise PointsError(
-                said("An outline of section '{section}' has shape {shape}: give three or more different, finite "
-                     "corners, (k, 3), in metres.", section=section, shape=corners.shape)
-            )  # fmt: skip
+                message(
+                    "bodies.outline-section-shape-give",
+                    "An outline of section '{section}' has shape {shape}: give three or more different, finite "
+                    "corners, (k, 3), in metres.",
+                    section=section,
+                    shape=corners.shape,
+                )
+            )
         corners.setflags(write=False)
         object.__setattr__(self, "section", section)
         object.__setattr__(self, "xyz", corners)
@@ -109,13 +114,22 @@ def section_planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
         off = float(np.abs((corners - origin) @ axes[2]).max())
         if off > FLAT * sizes[0] / np.sqrt(len(corners)):
             raise PointsError(
-                said("The outlines of section '{section}' lie up to {off:.2f} m off one plane. Give each plane a name "
-                     "of its own.", section=name, off=off)
-            )  # fmt: skip
+                message(
+                    "bodies.outlines-section-plane-give",
+                    "The outlines of section '{section}' lie up to {off:.2f} m off one plane. Give each plane a name "
+                    "of its own.",
+                    section=name,
+                    off=off,
+                )
+            )
         flat = [(ring - origin) @ axes[:2].T for ring in rings]
         if any(abs(_area(ring)) < 1e-9 * sizes[0] ** 2 for ring in flat):
             raise PointsError(
-                said("An outline of section '{section}' bounds no area: its corners lie on one line.", section=name)
+                message(
+                    "bodies.outline-section-bounds-area",
+                    "An outline of section '{section}' bounds no area: its corners lie on one line.",
+                    section=name,
+                )
             )
         planes.append(SectionPlane(name, origin, axes[:2], tuple(_turned(flat))))
     return tuple(planes)
@@ -150,13 +164,22 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
         If there is no outline, or a length is not above 0.
     """
     if not outlines:
-        raise SettingsError(said("There is no outline. Give the closed outlines of two or more sections."))
+        raise SettingsError(
+            message(
+                "bodies.there-outline-give-closed",
+                "There is no outline. Give the closed outlines of two or more sections.",
+            )
+        )
     for name, length in (("step", step), ("margin", margin)):
         if length is not None and not (np.isfinite(length) and length > 0):
             raise SettingsError(
-                said("{setting} is {value}; a finite number of metres above 0 is needed.", setting=name,
-                     value=repr(length))
-            )  # fmt: skip
+                message(
+                    "bodies.finite-number-metres-above",
+                    "{setting} is {value}; a finite number of metres above 0 is needed.",
+                    setting=name,
+                    value=repr(length),
+                )
+            )
     planes = section_planes(outlines)
     areas = [abs(_area(ring)) for plane in planes for ring in plane.rings]
     step = float(np.sqrt(np.median(areas))) / STEPS if step is None else step
@@ -168,14 +191,19 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
         on = _resampled(plane.rings, step)
         samples = _samples(plane, on, step, margin)
         side = plane.inside(samples)
-        for places, kept, name in zip((on, samples[side], samples[~side]), (contacts, within, outside), names,
-                                      strict=True):  # fmt: skip
+        for places, kept, owner in zip(
+            (on, samples[side], samples[~side]), (contacts, within, outside), names, strict=True
+        ):
             kept.append(plane.to_map(places))
-            name += [plane.name] * len(places)
+            owner += [plane.name] * len(places)
     return BodyData(
-        np.concatenate(contacts), np.concatenate(within), np.concatenate(outside),
-        hole=names[0], inside_hole=names[1], outside_hole=names[2],
-    )  # fmt: skip
+        np.concatenate(contacts),
+        np.concatenate(within),
+        np.concatenate(outside),
+        hole=names[0],
+        inside_hole=names[1],
+        outside_hole=names[2],
+    )
 
 
 def _area(ring: Floats) -> float:

@@ -13,7 +13,7 @@ from geofit.bodies.active import spread
 from geofit.bodies.posterior import CALIBRATION, Posterior
 from geofit.bodies.simulate import changes
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import message
 from geofit.implicit.trace import Crossing, hole_crossings
 
 if TYPE_CHECKING:
@@ -120,10 +120,16 @@ def predict_hole(
     start = np.array(collar, float)
     if start.shape != (3,) or not np.isfinite([*start, azimuth, dip, length]).all() or length <= 0:
         raise SettingsError(
-            said("A planned hole needs a collar x, y, z, finite angles and a length above 0 m, not {collar}, "
-                 "{azimuth}, {dip}, {length}.", collar=start.tolist(),
-                 azimuth=azimuth, dip=dip, length=length)
-        )  # fmt: skip
+            message(
+                "bodies.planned-hole-needs-collar",
+                "A planned hole needs a collar x, y, z, finite angles and a length above 0 m, not {collar}, "
+                "{azimuth}, {dip}, {length}.",
+                collar=start.tolist(),
+                azimuth=azimuth,
+                dip=dip,
+                length=length,
+            )
+        )
     way = direction_of(azimuth, dip)
     depth = np.linspace(0.0, length, NODES)
     xyz = start + depth[:, None] * way
@@ -141,9 +147,15 @@ def predict_hole(
             entry.append(ins[0])
             leave.append(outs[-1])
     return PlannedHole(
-        start, way, length, crossings, len(entry) / drawn.shape[1], _band(entry), _band(leave),
+        start,
+        way,
+        length,
+        crossings,
+        len(entry) / drawn.shape[1],
+        _band(entry),
+        _band(leave),
         Band(*np.quantile(inside, [0.1, 0.5, 0.9]).tolist()),
-    )  # fmt: skip
+    )
 
 
 def direction_of(azimuth: float, dip: float) -> Floats:

@@ -143,9 +143,13 @@ def _fitted(
             best = min(best, (deviation, angle))
     if not np.isfinite(best[0]):
         raise FitError(
-            message("bodies.body-needs-more-than", "The body needs more than {most} patches: it has many parts, or a shape of many branches. Write "
-                 "triangles.", most=MOST)
-        )  # fmt: skip
+            message(
+                "bodies.too-many-patches",
+                "The body needs more than {most} patches: it has many parts, or a shape of many branches. Write "
+                "triangles.",
+                most=MOST,
+            )
+        )
     raise FitError(
         message(
             "bodies.patches-not-follow",

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.outlines import Outline, SectionPlane, section_planes
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
     from geofit.bodies.body import ImplicitBody
@@ -45,7 +45,7 @@ class Question:
         Map coordinates of where the number of parts changes between them.
     share : float or None
         The same as a share of the way from the first section to the second.
-    text : str
+    text : Message
         The question.
     """
 
@@ -55,7 +55,7 @@ class Question:
     parts: tuple[int, int]
     place: tuple[float, float, float] | None
     share: float | None
-    text: str
+    text: Message
 
 
 def section_questions(outlines: Sequence[Outline], body: ImplicitBody | None = None) -> tuple[Question, ...]:
@@ -78,11 +78,15 @@ def section_questions(outlines: Sequence[Outline], body: ImplicitBody | None = N
             found.append(_branching(first, second, counts, path))
         elif path is not None and (least := min(path.counts[1:-1])) < counts[0]:
             share = float(path.shares[1 + int(np.argmin(path.counts[1:-1]))])
-            text = said(
+            text = message(
+                "bodies.sections-have-parts-each",
                 "Sections '{first}' and '{second}' have {parts} parts each; the body between them has only {least}. "
                 "Do the parts go on from one section to the other?",
-                first=first.name, second=second.name, parts=counts[0], least=least,
-            )  # fmt: skip
+                first=first.name,
+                second=second.name,
+                parts=counts[0],
+                least=least,
+            )
             code: Literal["ends", "not joined"] = "ends" if least == 0 else "not joined"
             found.append(Question(code, first.name, second.name, counts, path.place(share), share, text))
     return tuple(found)
@@ -91,16 +95,25 @@ def section_questions(outlines: Sequence[Outline], body: ImplicitBody | None = N
 def _branching(first: SectionPlane, second: SectionPlane, counts: tuple[int, int], path: _Between | None) -> Question:
     share = None if path is None else path.change(counts[0])
     if path is None or share is None:
-        text = said(
+        text = message(
+            "bodies.section-parts-section-which",
             "Section '{first}' has {one} parts, section '{second}' {two}: which of them are joined?",
-            first=first.name, one=counts[0], second=second.name, two=counts[1],
-        )  # fmt: skip
+            first=first.name,
+            one=counts[0],
+            second=second.name,
+            two=counts[1],
+        )
         return Question("branches", first.name, second.name, counts, None, None, text)
-    text = said(
+    text = message(
+        "bodies.section-parts-section-body",
         "Section '{first}' has {one} parts, section '{second}' {two}: the body changes {distance:.1f} m from the "
         "first. Is that right?",
-        first=first.name, one=counts[0], second=second.name, two=counts[1], distance=share * path.length,
-    )  # fmt: skip
+        first=first.name,
+        one=counts[0],
+        second=second.name,
+        two=counts[1],
+        distance=share * path.length,
+    )
     return Question("branches", first.name, second.name, counts, path.place(share), share, text)
 
 
@@ -125,8 +138,10 @@ class _Between:
         # The second section's axes, turned as those of the first.
         u, _, v = np.linalg.svd(second.axes @ first.axes.T)
         self.axes = (u @ v).T @ second.axes
-        both = [np.concatenate(first.rings), np.concatenate([(ring @ second.axes) @ self.axes.T
-                                                             for ring in second.rings])]  # fmt: skip
+        both = [
+            np.concatenate(first.rings),
+            np.concatenate([(ring @ second.axes) @ self.axes.T for ring in second.rings]),
+        ]
         self.reach = 0.75 * max(float(np.ptp(corners, axis=0).max()) for corners in both)
         self.length = float(np.linalg.norm(second.origin - first.origin))
         self.shares = np.linspace(0.0, 1.0, PLANES + 1)

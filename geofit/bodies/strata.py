@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from geofit.bodies.cut import CuttingSurface, cut_body
 from geofit.bodies.simulate import BodyVolumes, draws, volumes_of
 from geofit.data.errors import SettingsError
-from geofit.data.messages import said
+from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
     from geofit.bodies.body import ImplicitBody
@@ -29,7 +29,7 @@ class StratumVolume:
     ``pieces`` counts its closed pieces; ``volumes.best`` is their volume.
     """
 
-    name: str
+    name: Message
     upper: str
     lower: str
     pieces: int
@@ -65,7 +65,9 @@ def strata_table(
         If a horizon does not reach all over the body.
     """
     if not horizons:
-        raise SettingsError(said("A table of strata needs one horizon or more."))
+        raise SettingsError(
+            message("bodies.table-strata-needs-horizon", "A table of strata needs one horizon or more.")
+        )
     pieces = cut_body(body, horizons, spacing)
     x, y = (body.overview.vertices + body.origin)[:, :2].T
     height = {name: float(np.mean(surface.elevation(x, y))) for name, surface in horizons.items()}
@@ -92,7 +94,11 @@ def strata_table(
     return tuple(rows)
 
 
-def _label(upper: str, lower: str) -> str:
+def _label(upper: str, lower: str) -> Message:
     if upper and lower:
-        return said("{upper} to {lower}", upper=upper, lower=lower)
-    return said("below {surface}", surface=upper) if upper else said("above {surface}", surface=lower)
+        return message("bodies.between", "{upper} to {lower}", upper=upper, lower=lower)
+    return (
+        message("bodies.below", "below {surface}", surface=upper)
+        if upper
+        else message("bodies.above", "above {surface}", surface=lower)
+    )
