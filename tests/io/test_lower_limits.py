@@ -57,7 +57,7 @@ def listed(found):
 def test_upper_limits_come_from_the_row_above_and_that_is_said(write):
     found = reread(write, LAYERS)
     assert limits(found) == truth()
-    assert tuple(found) == []
+    assert listed(found) == []
     (note,) = [issue for issue in found.issues if issue.reason.code == "import.lower-limits-upper-limits"]
     assert (note.severity, note.column) == ("note", "to")
     assert "层顶取自同孔上一行的层底" in translate(note.reason, ZH)
@@ -87,7 +87,7 @@ def test_a_step_back_takes_both_rows_and_what_hangs_on_them_out(write):
     layers = list(LAYERS)
     layers[6] = ("B", 14, "T1")  # typed for 41
     found = reread(write, layers)
-    assert tuple(found) == [7, 8, 9]
+    assert listed(found) == [7, 8, 9]
     assert limits(found) == {key: value for key, value in truth().items() if key[0] != "B" or key[1] == "Q"}
     reasons = {issue.row: issue.reason for issue in found.issues if issue.severity == "error"}
     for row in (7, 8):
@@ -110,7 +110,7 @@ def test_a_step_back_takes_both_rows_and_what_hangs_on_them_out(write):
 )
 def test_planted_faults(write, fault, rows, words):
     found = reread(write, [LAYERS[0], fault, *LAYERS[2:]])
-    assert tuple(found) == rows
+    assert listed(found) == rows
     assert any(words in str(issue.reason) and issue.row == rows[0] for issue in found.issues)
     wanted = {key: value for key, value in truth().items() if key != ("A", "T2")}
     if fault[1] == 10:
@@ -123,10 +123,10 @@ def test_planted_faults(write, fault, rows, words):
 def test_rows_of_holes_without_a_collar_touch_no_other_hole(write):
     strangers = [("Y", 5, "Q"), ("Y", 9, "T2"), ("Z", 7, "Q")]
     found = reread(write, [*LAYERS[:4], *strangers, *LAYERS[4:]])
-    assert tuple(found) == [6, 7, 8]
+    assert listed(found) == [6, 7, 8]
     assert limits(found) == truth()
     among = reread(write, [*LAYERS[:2], *strangers[:2], *LAYERS[2:]])
-    assert tuple(among) == [4, 5]
+    assert listed(among) == [4, 5]
     assert limits(among) == truth()
 
 
@@ -134,7 +134,7 @@ def test_a_row_without_a_depth_hides_its_hole_where_rows_are_sorted(write):
     layers = [*LAYERS[::-1]]
     layers[6] = ("B", "", "T2")
     found = reread(write, layers)
-    assert tuple(found) == [6, 7, 8, 9]
+    assert listed(found) == [6, 7, 8, 9]
     assert limits(found) == {key: value for key, value in truth().items() if key[0] != "B"}
 
 
@@ -144,7 +144,7 @@ def test_lower_limits_as_elevations(write, head):
     layers = [(hole, mouth[hole] - base, code) for hole, base, code in LAYERS]
     layers[1] = (*layers[1][:2], "")
     found = reread(write, layers, head, measure="elevation" if head.startswith("hole,to") else None)
-    assert tuple(found) == [3]
+    assert listed(found) == [3]
     wanted = {key: value for key, value in truth().items() if key != ("A", "T2")}
     assert limits(found) == {key: pytest.approx(value, abs=1e-9) for key, value in wanted.items()}
     assert not [issue for issue in found.issues if issue.reason.code == "import.rows-not-order-depth"]

@@ -162,11 +162,12 @@ def test_findings_that_are_alike_are_counted(monkeypatch):
     monkeypatch.setattr("geofit.io.journal.MOST", 5)
     journal = Journal()
     for row in range(100):
-        journal.add("note", "a.csv", "alike", row=row)
+        journal.add("note", "a.csv", message("test.alike", "alike"), row=row)
         journal.add("note", "a.csv", message("test.text", "alike too {row}", row=row), row=row)
-    journal.add("note", "a.csv", "another", row=7)
+    journal.add("note", "a.csv", message("test.another", "another"), row=7)
     assert len(journal.issues) == 13
-    more = [issue for issue in journal.issues if "95 more of this kind" in issue.reason]
+    more = [issue for issue in journal.issues if issue.reason.code == "import.more-alike"]
+    assert [issue.reason.params["count"] for issue in more] == [95, 95]
     assert [issue.row for issue in more] == [99, 99]
 
 
@@ -175,7 +176,8 @@ def test_many_repeated_points_are_counted(tmp_path):
     picks = points_of(tmp_path / "p.csv")
     assert len(picks.horizons["p"]) == 30_001
     assert len(picks.issues) < 10_100
-    assert any("29999 points lie at the place of another" in issue.reason for issue in picks.issues)
+    (more,) = [issue.reason for issue in picks.issues if issue.reason.code == "import.horizon-points-place"]
+    assert more.params["count"] == 29_999
 
 
 def sheet(path, xml):
