@@ -22,7 +22,7 @@ from pathlib import Path
 sys.path.insert(0, {tests!r})
 import numpy as np
 from surfaces import horizon, nine
-from geofit.errors import InputError
+from geofit.data.errors import InputError
 from geofit.geometry.contours import Contour
 from geofit.geometry.sampling import triangulate
 from geofit.io.export import geoh5, geopackage, grids
