@@ -23,8 +23,8 @@ sys.path.insert(0, {tests!r})
 import numpy as np
 from surfaces import horizon, nine
 from geofit.data.errors import InputError
-from geofit.geometry.contours import Contour
-from geofit.geometry.sampling import triangulate
+from geofit.sampling.contours import Contour
+from geofit.geometry.mesh import triangulate
 from geofit.io.export import geoh5, geopackage, grids
 from geofit.io.export.cad import write_brep, write_iges
 from geofit.io.step import write_step
