@@ -26,9 +26,9 @@ from geofit.data.errors import InputError
 from geofit.sampling.contours import Contour
 from geofit.geometry.mesh import triangulate
 from geofit.io.export import geoh5, geopackage, grids
-from geofit.io.export.cad import write_brep, write_iges
-from geofit.io.step import write_step
-from geofit.site import Ground
+from geofit.cad.export import write_brep, write_iges
+from geofit.cad.step import write_step
+from geofit.data.site import Ground
 surface = horizon(nine()[1], name="a")
 mesh = triangulate(surface, 0.5)
 axis = np.arange(60.0)
