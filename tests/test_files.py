@@ -24,13 +24,12 @@ import numpy as np
 from surfaces import horizon, nine
 from geofit.data.errors import InputError
 from geofit.sampling.contours import Contour
-from geofit.geometry.mesh import triangulate
 from geofit.io.export import geoh5, geopackage, grids
 from geofit.cad.export import write_brep, write_iges
 from geofit.cad.step import write_step
 from geofit.data.site import Ground
 surface = horizon(nine()[1], name="a")
-mesh = triangulate(surface, 0.5)
+mesh = surface.triangulate(0.5)
 axis = np.arange(60.0)
 ground = Ground(axis, axis, np.random.default_rng(0).uniform(size=(60, 60)))
 line = np.random.default_rng(0).uniform(size=(900, 3))
