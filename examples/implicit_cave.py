@@ -1,13 +1,20 @@
-"""A cave from its survey line: a convolution surface is smooth at every joint, a union of cones has creases."""
+"""Model a cave from its survey line.
 
-from __future__ import annotations
+A convolution surface is smooth at every joint of the passages; a union of round cones has creases there. Both are
+implicit fields, negative inside, and become closed meshes.
+"""
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
-import geofit.implicit as implicit
+import geofit
+
+implicit = geofit.implicit
+out = Path(sys.argv[1] if len(sys.argv) > 1 else "examples_out")
+out.mkdir(parents=True, exist_ok=True)
 
 # Stations (x, y, z) of a main passage and two branches, and the width of the passage at each leg.
 main = np.array([[0, 0, 0], [14, 4, -2], [26, 14, -5], [42, 16, -6], [58, 8, -11], [76, 12, -18], [95, 10, -20.0]])
@@ -32,4 +39,4 @@ for column, (title, part) in enumerate((("convolution", mesh), ("union of round 
     for line in (main, north, south):
         plotter.add_mesh(pv.lines_from_points(line), color="#b03a2e", line_width=3)
     plotter.camera_position = [(40, -110, 150), (47, 16, -8), (0, 0, 1)]
-plotter.screenshot(sys.argv[1] if len(sys.argv) > 1 else "implicit_cave.png")
+plotter.screenshot(out / "implicit_cave.png")

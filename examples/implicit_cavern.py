@@ -1,13 +1,19 @@
-"""A cavern with two adits and an access ramp by CSG: volume, sections, and where a planned hole meets it."""
+"""Model a cavern with two adits and an access ramp by constructive solid geometry.
 
-from __future__ import annotations
+The field gives volume, sections, and the depths at which a planned hole enters and leaves.
+"""
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
-import geofit.implicit as implicit
+import geofit
+
+implicit = geofit.implicit
+out = Path(sys.argv[1] if len(sys.argv) > 1 else "examples_out")
+out.mkdir(parents=True, exist_ok=True)
 
 # A vaulted hall: a lying cylinder above the springing line, a box below it.
 floor, springing, half_width, half_length = 0.0, 12.0, 11.0, 45.0
@@ -38,4 +44,4 @@ for line in implicit.contours(cavern, [-72, -60, 4], [1, 0, 0], [0, 1, 0], size=
 along = np.array([0.25, 0.1, -1]) / np.linalg.norm([0.25, 0.1, -1])
 plotter.add_mesh(pv.Line([-15, -20, 60], np.array([-15, -20, 60]) + 90 * along), color="black", line_width=5)
 plotter.camera_position = [(-120, -140, 105), (0, 0, 8), (0, 0, 1)]
-plotter.screenshot(sys.argv[1] if len(sys.argv) > 1 else "implicit_cavern.png")
+plotter.screenshot(out / "implicit_cavern.png")

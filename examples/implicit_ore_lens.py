@@ -1,13 +1,19 @@
-"""An ore lens from points on its surface: ellipsoidal metaballs fitted by splitting, after Muraki."""
+"""Fit metaballs to an ore lens.
 
-from __future__ import annotations
+Points on the surface are enough: ellipsoidal balls are split, after Muraki, until they follow them.
+"""
 
 import sys
+from pathlib import Path
 
 import numpy as np
 import pyvista as pv
 
-import geofit.implicit as implicit
+import geofit
+
+implicit = geofit.implicit
+out = Path(sys.argv[1] if len(sys.argv) > 1 else "examples_out")
+out.mkdir(parents=True, exist_ok=True)
 
 # The truth: two flat lenses that have grown together, 120 m long, sampled with an error of 0.2 m.
 tilt = np.array([[0.94, 0, 0.342], [0, 1, 0], [-0.342, 0, 0.94]])
@@ -32,4 +38,4 @@ body = pv.PolyData(mesh.vertices, np.insert(mesh.triangles, 0, 3, axis=1).ravel(
 plotter.add_mesh(body, color="#8e6bb0", opacity=0.85, smooth_shading=True)
 plotter.add_points(points, color="#222222", point_size=6, render_points_as_spheres=True)
 plotter.camera_position = [(40, -190, 90), (20, 5, -5), (0, 0, 1)]
-plotter.screenshot(sys.argv[1] if len(sys.argv) > 1 else "implicit_ore_lens.png")
+plotter.screenshot(out / "implicit_ore_lens.png")

@@ -1,4 +1,5 @@
 # The names of `import geofit`, one line each: types for editors, and the table of what is imported when first used.
+from geofit import implicit as implicit
 from geofit import io as io
 from geofit.bodies.body import ImplicitBody as ImplicitBody
 from geofit.bodies.data import BodyData as BodyData

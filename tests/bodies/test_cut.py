@@ -64,7 +64,7 @@ def test_a_surface_that_ends_within_the_body(ring: ImplicitBody) -> None:
 def test_table_of_strata(ring: ImplicitBody) -> None:
     horizons = {"base": Plane("", -8, 0.02), "top": Plane("", 6, 0.05, 2), "far": Plane("", -400, 0)}
     table = strata_table(ring, horizons, 6.0)
-    assert [row.name for row in table] == ["above top", "top to base", "base to far"]
+    assert [str(row.name) for row in table] == ["above top", "top to base", "base to far"]
     assert sum(row.volumes.best for row in table) == pytest.approx(ring.triangulate(6.0).volume, rel=1e-9)
     pieces = ring.cut(horizons, 6.0)
     above = sum(piece.volume for piece in pieces if piece.sides["top"] == "above")

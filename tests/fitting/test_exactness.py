@@ -35,14 +35,18 @@ def test_points_of_a_fold_that_count_as_exact_are_met(between, offset, seed):
     assert surface.partition.core == surface.core.sum()
     missed = int((residuals > CORE_LIMIT).sum())
     assert surface.partition.periphery == missed
-    assert ("does not meet" in surface.partition.reason) == (missed > 0)
+    assert ("does not meet" in str(surface.partition.reason)) == (missed > 0)
 
 
-def test_a_fold_that_misses_a_point_says_so():
-    surface = fit_horizon(overturned(10, 0.02, 7), FitSettings(frame="sections"))
-    assert surface.partition.periphery == 1
-    checks = {check.name: check for check in surface.accuracy.checks}
-    assert checks["interior tolerance"].passed is False
+def test_points_that_a_fold_misses_count_as_approximated(monkeypatch):
+    # No fold is known that misses a point: a limit below rounding plants some.
+    monkeypatch.setattr("geofit.fitting.pipeline.CORE_LIMIT", 1e-16)
+    surface = fit_horizon(overturned(5, 0.02, 1), FitSettings(frame="sections"))
+    missed = int((np.abs(surface.accuracy.residuals) > 1e-16).sum())
+    assert missed > 0
+    assert surface.partition.periphery == missed
+    assert surface.core.sum() == len(surface.points) - missed
+    assert "does not meet" in str(surface.partition.reason)
 
 
 def cloud(shift=0.0):

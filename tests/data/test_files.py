@@ -56,7 +56,7 @@ def test_a_full_disk_is_told_with_the_files_name(tmp_path):
     pytest.importorskip("h5py")
     pytest.importorskip("pyogrio")
     pytest.importorskip("rasterio")
-    code = FULL.format(tests=str(Path(__file__).parent))
+    code = FULL.format(tests=str(Path(__file__).parents[1]))
     done = subprocess.run(
         [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False
     )
