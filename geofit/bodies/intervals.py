@@ -86,7 +86,7 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
         return source
     holes = source if hasattr(source, "logs") else getattr(source, "boreholes", None)
     campaigns = tuple(holes) if isinstance(holes, Sequence) else (holes,)
-    if not campaigns or not all(hasattr(campaign, "paths") for campaign in campaigns):
+    if not any(getattr(campaign, "logs", ()) for campaign in campaigns):
         raise SettingsError(
             message(
                 "bodies.holds-logged-intervals",

@@ -106,8 +106,7 @@ def check(
         n=len(d),
         sigma=value,
         epsilon=settings.epsilon,
-        # A surface that runs away from its data fails, however near its points it is.
-        passed=value < settings.epsilon and all(one.passed is not False for one in checks if one.name == RANGE),
+        passed=value < settings.epsilon and not _runs_away(surface, checks),
         max_abs=float(magnitude.max(initial=0.0)),
         mean=float(d.mean()) if len(d) else 0.0,
         residuals=d,
@@ -138,6 +137,11 @@ def _worst(magnitude: Floats) -> tuple[int, ...]:
     least = np.partition(magnitude, -WORST)[-WORST] if len(magnitude) > WORST else 0.0
     some = np.flatnonzero(magnitude >= least)
     return tuple(some[np.argsort(-magnitude[some], kind="stable")[:WORST]].tolist())
+
+
+def _runs_away(surface: FittedSurface, checks: Sequence[Check]) -> bool:
+    """Whether a fit runs far beyond its data, which no sigma shows; a surface of a file may reach beyond the points."""
+    return surface.frame != "" and any(one.passed is False for one in checks if one.name == RANGE)
 
 
 def _lost_core(surface: FittedSurface) -> list[Check]:

@@ -60,7 +60,7 @@ def test_a_ring_is_no_square(tmp_path):
     assert np.abs(surface.distance(target)) == pytest.approx(np.abs(found.distance))
     height = surface.elevation([0.07, 0.0, 0.098], [0.0, 0.01, 0.098])
     assert np.isnan(height).tolist() == [False, True, True]
-    assert untrimmed({"ring": surface}, "step")[0].startswith("ring: its faces end at holes")
+    assert str(untrimmed({"ring": surface}, "step")[0]).startswith("ring: its faces end at holes")
     assert untrimmed({"ring": surface}, "obj") == []
 
 
