@@ -1,4 +1,4 @@
-# make demo | report-demo | test | lint | real | bench | docs | screenshots | package | audit | system-packages | clean.
+# make demo | gui | report-demo | test | lint | real | bench | docs | screenshots | package | audit | system-packages | clean.
 # Python 3.11 or newer; everything goes into .venv.
 SHELL := /bin/sh
 # A name may stand on the path and still not run (version managers leave such shims), so each is tried.
@@ -9,7 +9,7 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint $(LOCK)
 
-.PHONY: demo report-demo test lint real bench docs screenshots package audit system-packages clean python
+.PHONY: demo gui report-demo test lint real bench docs screenshots package audit system-packages clean python
 
 demo: .venv/.installed
 	$(BIN)/geofit demo --out demo_out
@@ -17,6 +17,10 @@ demo: .venv/.installed
 report-demo: .venv/.installed
 	$(BIN)/geofit report sample_data/site.toml --lang en --out report_demo/en
 	$(BIN)/geofit report sample_data/site.toml --lang zh --out report_demo/zh
+
+gui: .venv/.installed
+	$(INSTALL) --editable '.[gui]'
+	$(BIN)/geofit-gui
 
 test: .venv/.installed-test
 	@bash tools/system_packages.sh missing || true

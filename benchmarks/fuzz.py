@@ -109,7 +109,7 @@ def fit_one(seed: int, folder: Path) -> str:
     if surface.diagnostics["frame"] == "sections" and np.abs(residuals[surface.core]).max(initial=0.0) > CORE_LIMIT:
         raise AssertionError("a point is called exact and is missed")
     notes = [*surface.accuracy.notes, *examine(surface).notes]
-    unforeseen = [note for note in notes if UNFORESEEN in note]
+    unforeseen = [note for note in notes if UNFORESEEN in str(note)]
     if unforeseen:
         raise AssertionError(f"{layout}: {unforeseen[0]}")
     return "fitted"
