@@ -278,7 +278,7 @@ def main() -> None:
         elif parts:
             parts[list(parts)[-1]].append(word)
         else:
-            sys.exit(f"There is no part '{word}'; the parts are: sites, scattered, real.")
+            sys.exit(f"Unknown part '{word}'. Parts: sites, scattered, real.")
     for part, more in (parts or {"sites": ["12"], "scattered": ["10000"]}).items():
         if part == "sites":
             low, high = (0, int(more[0])) if len(more) == 1 else (int(more[0]), int(more[1])) if more else (0, 24)

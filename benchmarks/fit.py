@@ -192,7 +192,7 @@ PARTS = {"small": small, "large": large, "storage": storage, "truths": truths}
 def main() -> None:
     unknown = [name for name in sys.argv[1:] if name not in PARTS]
     if unknown:
-        sys.exit(f"There is no part '{unknown[0]}'; the parts are: {', '.join(PARTS)}.")
+        sys.exit(f"Unknown part '{unknown[0]}'. Parts: {', '.join(PARTS)}.")
     for name in sys.argv[1:] or PARTS:
         PARTS[name]()
 

@@ -1,4 +1,4 @@
-"""Names of a package that are imported when they are first used, listed once: in the stub beside the package.
+"""Import a package's names on first use; the stub beside the package is their only list.
 
 The stub ``__init__.pyi`` is what editors and type checkers read; :func:`attach` makes the same names work at run
 time, as SPEC 1 of Scientific Python proposes. A new name is one line in the stub.

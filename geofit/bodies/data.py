@@ -8,6 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.columns import column, places
 from geofit.data.errors import FitError, PointsError
 from geofit.data.messages import Message, Verbatim, message
 
@@ -88,7 +89,7 @@ class BodyData:
         issues: tuple[BodyIssue, ...] = (),
     ) -> None:
         for name, given in (("contacts", contacts), ("inside", inside), ("outside", outside)):
-            self._set(name, _places(name, given))
+            self._set(name, _finite_places(name, given))
         n = len(self.contacts)
         known = np.full((n, 3), np.nan) if normals is None else np.array(normals, float)
         if known.size == 0:
@@ -108,9 +109,9 @@ class BodyData:
             ("inside_hole", inside_hole, len(self.inside)),
             ("outside_hole", outside_hole, len(self.outside)),
         ):
-            self._set(name, _column(name, values, count, np.str_))
-        self._set("inside_length", _column("inside_length", inside_length, len(self.inside), np.float64))
-        self._set("outside_length", _column("outside_length", outside_length, len(self.outside), np.float64))
+            self._set(name, column(name, values, count, np.str_))
+        self._set("inside_length", column("inside_length", inside_length, len(self.inside), np.float64))
+        self._set("outside_length", column("outside_length", outside_length, len(self.outside), np.float64))
         object.__setattr__(self, "issues", tuple(issues))
 
     def _set(self, name: str, array: NDArray[Any]) -> None:
@@ -136,29 +137,8 @@ class BodyData:
         return self.select(self.hole != hole, self.inside_hole != hole, self.outside_hole != hole)
 
 
-def _places(name: str, given: ArrayLike) -> Floats:
-    try:
-        xyz = np.array(given, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise PointsError(
-            message(
-                "bodies.hold-array",
-                "{name} must hold numbers: {error}. Give an (n, 3) array of metres.",
-                name=Verbatim(name),
-                error=error,
-            )
-        ) from None
-    if xyz.size == 0:
-        xyz = xyz.reshape(0, 3)
-    if xyz.ndim != 2 or xyz.shape[1] != 3:
-        raise PointsError(
-            message(
-                "bodies.shape-array-easting",
-                "{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.",
-                name=Verbatim(name),
-                shape=xyz.shape,
-            )
-        )
+def _finite_places(name: str, given: ArrayLike) -> Floats:
+    xyz = places(name, given)
     bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
     if bad.size:
         raise PointsError(
@@ -172,23 +152,6 @@ def _places(name: str, given: ArrayLike) -> Floats:
             )
         )
     return xyz
-
-
-def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
-    array: NDArray[Any] = np.asarray(values, dtype=dtype)
-    if array.ndim == 0:
-        return np.full(n, array, dtype=array.dtype)
-    if array.shape != (n,):
-        raise PointsError(
-            message(
-                "points.shape-points-need-shape",
-                "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
-                name=name,
-                shape=array.shape,
-                n=n,
-            )
-        )
-    return array.copy()
 
 
 @dataclass(frozen=True, eq=False)

@@ -161,7 +161,7 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
     PointsError
         If outlines are not flat, or bound no area.
     SettingsError
-        If there is no outline, or a length is not above 0.
+        If no outline is given, or a length is not positive.
     """
     if not outlines:
         raise SettingsError(

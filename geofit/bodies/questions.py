@@ -162,7 +162,7 @@ class _Between:
         return int(label(value.reshape(NODES, NODES) < 0)[1])
 
     def change(self, start: int) -> float | None:
-        """Return the share of the way at which the number of parts is no longer ``start``; None if it never changes."""
+        """Return where, from 0 to 1, the number of parts first differs from ``start``; None if it never does."""
         changed = [k for k, count in enumerate(self.counts) if count != start]
         if not changed or changed[0] == 0:
             return None

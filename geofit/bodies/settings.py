@@ -29,7 +29,7 @@ class BodySettings:
         0.1 m and a quarter of the distance between holes.
     closed : bool
         Whether ground farther than ``reach`` from the nearest contact or inside sample counts as outside. Without it
-        the body may go on through ground where there are no data.
+        the body may continue through ground without data.
     reach : float or None
         That distance in metres; None: 1.5 times the typical distance between holes, as the samples show it.
     box : pair of corners or None

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.columns import column, places, wrong_shape
 from geofit.data.errors import PointsError
 from geofit.data.labels import Labels
 from geofit.data.messages import Message, Verbatim, message, plural_message
@@ -110,26 +111,7 @@ class PointSet:
         row: ArrayLike = 0,
         file: ArrayLike | Labels = "",
     ) -> None:
-        try:
-            xyz = np.array(xyz, dtype=np.float64)
-        except (TypeError, ValueError) as error:
-            raise PointsError(
-                message(
-                    "points.xyz-hold-numbers-give",
-                    "xyz must hold numbers: {error}. Give an (n, 3) array of metres.",
-                    error=error,
-                )
-            ) from None
-        if xyz.size == 0:
-            xyz = xyz.reshape(0, 3)
-        if xyz.ndim != 2 or xyz.shape[1] != 3:
-            raise PointsError(
-                message(
-                    "points.xyz-shape-array-easting",
-                    "xyz has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.",
-                    shape=xyz.shape,
-                )
-            )
+        xyz = places("xyz", xyz)
         bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         if bad.size:
             raise PointsError(
@@ -147,8 +129,8 @@ class PointSet:
             )
         n = len(xyz)
         self._set("xyz", xyz)
-        self._set("accuracy", _column("accuracy", accuracy, n, np.float64))
-        self._set("row", _column("row", row, n, np.int64))
+        self._set("accuracy", column("accuracy", accuracy, n, np.float64))
+        self._set("row", column("row", row, n, np.int64))
         words = {"kind": kind, "hole": hole, "section": section, "file": file}
         object.__setattr__(self, "labels", {name: _labels(name, values, n) for name, values in words.items()})
         wrong = np.flatnonzero((self.accuracy <= 0) | np.isinf(self.accuracy))
@@ -237,37 +219,7 @@ def _labels(name: str, values: ArrayLike | Labels, n: int) -> Labels:
     if not isinstance(values, Labels):
         if np.ndim(values) == 0:
             return Labels.same(str(values), n)
-        values = Labels.of(_column(name, values, n, np.str_))
+        values = Labels.of(column(name, values, n, np.str_))
     if len(values) != n:
-        raise PointsError(_wrong_shape(name, (len(values),), n))
+        raise PointsError(wrong_shape(name, (len(values),), n))
     return values
-
-
-def _column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
-    try:
-        array: NDArray[Any] = np.asarray(values, dtype=dtype)
-    except (TypeError, ValueError) as error:
-        raise PointsError(
-            message(
-                "points.cannot-read",
-                "{name} cannot be read as {type}: {error}.",
-                name=name,
-                type=dtype.__name__,
-                error=error,
-            )
-        ) from None
-    if array.ndim == 0:
-        return np.full(n, array, dtype=array.dtype)
-    if array.shape != (n,):
-        raise PointsError(_wrong_shape(name, array.shape, n))
-    return array.copy()
-
-
-def _wrong_shape(name: str, shape: tuple[int, ...], n: int) -> Message:
-    return message(
-        "points.wrong-shape",
-        "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
-        name=name,
-        shape=shape,
-        n=n,
-    )

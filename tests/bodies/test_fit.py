@@ -12,7 +12,7 @@ from geofit.bodies.body import ImplicitBody
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
 from geofit.bodies.settings import BodySettings
-from geofit.data.errors import FitError, SettingsError
+from geofit.data.errors import FitError, PointsError, SettingsError
 
 
 @pytest.mark.parametrize(
@@ -136,3 +136,8 @@ def test_a_box_away_from_the_data() -> None:
 def test_codes_with_arrays() -> None:
     with pytest.raises(SettingsError, match="codes"):
         fit_body(drilled(pair()[0], 0), codes="ORE")
+
+
+def test_a_length_that_is_no_number_is_refused_by_name() -> None:
+    with pytest.raises(PointsError, match="inside_length cannot be read as float64"):
+        BodyData([[0.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]], [[2.0, 0.0, 0.0]], inside_length=["deep"])

@@ -47,11 +47,11 @@ def test_no_points_are_a_set_too(empty):
 @pytest.mark.parametrize(
     ("xyz", "code", "params"),
     [
-        ([[0, 0]], "points.xyz-shape-array-easting", {"shape": (1, 2)}),
-        ([1, 2, 3], "points.xyz-shape-array-easting", {"shape": (3,)}),
-        (np.zeros((2, 3, 3)), "points.xyz-shape-array-easting", {"shape": (2, 3, 3)}),
-        ([["a", 0, 0]], "points.xyz-hold-numbers-give", {}),
-        ([[0, 0, 0], [0, 0]], "points.xyz-hold-numbers-give", {}),
+        ([[0, 0]], "points.places-wrong-shape", {"name": "xyz", "shape": (1, 2)}),
+        ([1, 2, 3], "points.places-wrong-shape", {"name": "xyz", "shape": (3,)}),
+        (np.zeros((2, 3, 3)), "points.places-wrong-shape", {"name": "xyz", "shape": (2, 3, 3)}),
+        ([["a", 0, 0]], "points.places-not-numbers", {"name": "xyz"}),
+        ([[0, 0, 0], [0, 0]], "points.places-not-numbers", {"name": "xyz"}),
         (
             [[0, 0, 0], [1, np.nan, 2], [np.nan] * 3],
             "points.points-not-finite-first",

@@ -1,0 +1,84 @@
+"""Arrays as a caller gives them, checked: places (n, 3) and columns of n values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.data.errors import PointsError
+from geofit.data.messages import Message, Verbatim, message
+
+__all__ = ["column", "places", "wrong_shape"]
+
+
+def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
+    """Return a copy of easting, northing, elevation, (n, 3), metres; nothing given is (0, 3).
+
+    Raises
+    ------
+    PointsError
+        If the values are no numbers or no (n, 3) array.
+    """
+    try:
+        xyz = np.array(given, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise PointsError(
+            message(
+                "points.places-not-numbers",
+                "{name} must hold numbers: {error}. Give an (n, 3) array of metres.",
+                name=Verbatim(name),
+                error=error,
+            )
+        ) from None
+    if xyz.size == 0:
+        xyz = xyz.reshape(0, 3)
+    if xyz.ndim != 2 or xyz.shape[1] != 3:
+        raise PointsError(
+            message(
+                "points.places-wrong-shape",
+                "{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.",
+                name=Verbatim(name),
+                shape=xyz.shape,
+            )
+        )
+    return xyz
+
+
+def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
+    """Return a copy of ``values``, (n,), or one value repeated n times.
+
+    Raises
+    ------
+    PointsError
+        If the values cannot be read as ``dtype``, or are neither n nor one.
+    """
+    try:
+        array: NDArray[Any] = np.asarray(values, dtype=dtype)
+    except (TypeError, ValueError) as error:
+        raise PointsError(
+            message(
+                "points.cannot-read",
+                "{name} cannot be read as {type}: {error}.",
+                name=name,
+                type=dtype.__name__,
+                error=error,
+            )
+        ) from None
+    if array.ndim == 0:
+        return np.full(n, array, dtype=array.dtype)
+    if array.shape != (n,):
+        raise PointsError(wrong_shape(name, array.shape, n))
+    return array.copy()
+
+
+def wrong_shape(name: str, shape: tuple[int, ...], n: int) -> Message:
+    """Return the message of a column that is neither n values nor one."""
+    return message(
+        "points.wrong-shape",
+        "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
+        name=name,
+        shape=shape,
+        n=n,
+    )
