@@ -29,7 +29,8 @@ def main() -> int:
     size = sum(path.stat().st_size for path in folder.rglob("*") if path.is_file() and not path.is_symlink())
     print(f"{folder.name}: {size / 1e6:.0f} MB")
     line, window = folder / f"geofit{ending}", folder / f"geofit-gui{ending}"
-    with tempfile.TemporaryDirectory() as name, display():
+    display()
+    with tempfile.TemporaryDirectory() as name:
         place = Path(name)
         site = ROOT / "sample_data" / "site.toml"
         _timed([line, "--version"], place)

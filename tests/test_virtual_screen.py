@@ -6,6 +6,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -63,6 +64,35 @@ def test_a_library_of_the_system_that_is_missing_is_named(tmp_path):
     # pytest-qt would import the broken package itself.
     done = run(WINDOWS, PYTHONPATH=str(tmp_path), PYTEST_ADDOPTS="-p no:pytest-qt")
     assert "libEGL.so.1: cannot open shared object file" in skipped(done)
+
+
+#: Speaks to its screen at the very end, as VTK does.
+LAST_WORD = """
+import atexit, ctypes, os
+x11 = ctypes.CDLL("libX11.so.6")
+x11.XOpenDisplay.restype = ctypes.c_void_p
+atexit.register(lambda: x11.XSync(ctypes.c_void_p(connection), 0))
+import virtual_screen
+assert virtual_screen.start("640x480") is None
+print(os.environ["DISPLAY"], flush=True)
+connection = x11.XOpenDisplay(None)
+assert connection
+"""
+
+
+@linux
+@pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed")
+def test_the_screen_ends_after_the_process_and_not_before():
+    done = subprocess.run(
+        [sys.executable, "-c", LAST_WORD], env={**os.environ, "PYTHONPATH": str(ROOT / "tools")},
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr) == (0, "")
+    lock = Path(f"/tmp/.X{done.stdout.strip().removeprefix(':')}-lock")
+    deadline = time.monotonic() + 20
+    while lock.exists() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not lock.exists()
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux") or shutil.which("bash") is None, reason="a script for Linux")

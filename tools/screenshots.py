@@ -12,8 +12,6 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 import virtual_screen
@@ -41,12 +39,12 @@ def main() -> int:
         take(asked.out, asked.child, tuple(asked.states or ()))
         return 0
     status = 0
-    with display():
-        for scale in SCALES:
-            sets = [f"{language}-{theme}-{scale}x" for language, theme in LOOKS]
-            sets = [name for name in sets if not asked.only or name in asked.only]
-            if sets:
-                status |= _child(asked.out.resolve(), scale, sets, asked.states or [])
+    display()
+    for scale in SCALES:
+        sets = [f"{language}-{theme}-{scale}x" for language, theme in LOOKS]
+        sets = [name for name in sets if not asked.only or name in asked.only]
+        if sets:
+            status |= _child(asked.out.resolve(), scale, sets, asked.states or [])
     return status
 
 
@@ -58,21 +56,12 @@ def _child(out: Path, scale: str, sets: list[str], states: list[str]) -> int:
         return subprocess.run([*command, "--states", *states] if states else command, env=environment).returncode
 
 
-@contextmanager
-def display() -> Iterator[None]:
-    """Have a display: the one that there is, or an Xvfb of our own for as long as it is needed."""
+def display() -> None:
+    """Have a display: the one that there is, or an Xvfb of our own until the end of the process."""
     if not sys.platform.startswith("linux") or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
-        yield
         return
-    server = virtual_screen.start("2560x1600")
-    if isinstance(server, str):
-        sys.exit(f"No pictures: {server}.")
-    try:
-        yield
-    finally:
-        os.environ.pop("DISPLAY", None)
-        server.terminate()
-        server.wait()
+    if why := virtual_screen.start("2560x1600"):
+        sys.exit(f"No pictures: {why}.")
 
 
 if __name__ == "__main__":

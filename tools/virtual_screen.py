@@ -14,6 +14,8 @@ REMEDY = "install what is missing with: make system-packages"
 NO_PROGRAM = f"no display, and no Xvfb to make one; {REMEDY}"
 #: Seconds until the server must have said its number.
 PATIENCE = 20.0
+#: The shells that watch over the servers started here: kept, so that none is taken for forgotten.
+_SCREENS: list[subprocess.Popen[bytes]] = []
 
 
 #: Opens what the windows need. Qt and VTK abort the process where they cannot start, so a child tries it.
@@ -38,31 +40,40 @@ def why_no_window() -> str | None:
     return f"no window can open here ({why}); {REMEDY}"
 
 
-def start(size: str) -> subprocess.Popen[bytes] | str:
-    """Start Xvfb with a screen of ``size`` ("1600x1000") and set DISPLAY; return the server, or why there is none."""
+def start(size: str) -> str | None:
+    """Start Xvfb with a screen of ``size`` ("1600x1000") and set DISPLAY; return why there is none, None if there is.
+
+    The screen ends after this process, however that ends: Qt and Xlib abort where their screen goes before they do,
+    and VTK keeps connections until the very last.
+    """
     program = shutil.which("Xvfb")
     if program is None:
         return NO_PROGRAM
-    reading, writing = os.pipe()
-    # Xvfb chooses a free number itself and writes it, in pieces, when it is ready.
-    server = subprocess.Popen(
-        [program, "-displayfd", str(writing), "-screen", "0", f"{size}x24", "-nolisten", "tcp"],
-        pass_fds=[writing],
-        stdout=subprocess.DEVNULL,
+    guard, held = os.pipe()
+    # Only the end of the process closes ``held``; then the shell reads the end of its input, and ends the server.
+    # Xvfb chooses a free number itself and writes it when it is ready.
+    server = [program, "-displayfd", "1", "-screen", "0", f"{size}x24", "-nolisten", "tcp"]
+    shell = subprocess.Popen(
+        ["/bin/sh", "-c", '"$@" & exec >/dev/null; read _; kill $!', "sh", *server],
+        stdin=guard,
+        stdout=subprocess.PIPE,
         stderr=subprocess.DEVNULL,
+        start_new_session=True,
     )
-    os.close(writing)
+    os.close(guard)
+    assert shell.stdout is not None
     said = b""
-    # To the end of the line: a server that cannot write it all ends again.
-    while not said.endswith(b"\n") and select.select([reading], [], [], PATIENCE)[0]:
-        piece = os.read(reading, 16)
+    # In pieces, to the end of the line: a server that cannot write it all ends again.
+    while not said.endswith(b"\n") and select.select([shell.stdout], [], [], PATIENCE)[0]:
+        piece = os.read(shell.stdout.fileno(), 16)
         if not piece:
             break
         said += piece
-    os.close(reading)
+    shell.stdout.close()
     if not said.endswith(b"\n"):
-        server.kill()
-        server.wait()
+        os.close(held)
+        shell.wait()
         return f"no display, and Xvfb does not start; {REMEDY}"
+    _SCREENS.append(shell)
     os.environ["DISPLAY"] = f":{said.decode().strip()}"
-    return server
+    return None

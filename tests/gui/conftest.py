@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import atexit
 import os
-import subprocess
 import sys
 import threading
 
@@ -15,25 +13,11 @@ import virtual_screen
 def _display() -> str | None:
     """Return why no window can open here; where there is no display and Xvfb is installed, start it."""
     if sys.platform.startswith("linux") and not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        server = virtual_screen.start("1600x1000")
-        if isinstance(server, str):
-            return server
-        _SERVERS.append(server)
+        return virtual_screen.start("1600x1000") or virtual_screen.why_no_window()
     return virtual_screen.why_no_window()
 
 
-_SERVERS: list[subprocess.Popen[bytes]] = []
 _REASON = _display()
-
-
-def _end() -> None:
-    for server in _SERVERS:
-        server.terminate()
-        server.wait()
-
-
-# Not at the end of the tests: Qt aborts when its screen goes before it does. What is registered first is called last.
-atexit.register(_end)
 
 
 class _NoWindow(pytest.Module):
