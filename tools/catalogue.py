@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import string
 import sys
+from datetime import UTC, datetime
 from io import BytesIO
 from pathlib import Path
 
@@ -37,6 +38,8 @@ KEYWORDS = parse_keywords(
         "QT_TRANSLATE_NOOP:1c,2",
     ]
 )
+#: A fixed day in the header: the same messages make the same bytes.
+DAY = datetime(2026, 1, 1, tzinfo=UTC)
 #: The comma of lists (:mod:`geofit.data.messages`).
 LISTS = ("{first}, {second}",)
 
@@ -66,7 +69,7 @@ def main() -> int:
 
 def extracted(root: Path = ROOT) -> Catalog:
     """Return the messages of the sources, each with the files that it is in and the comments for translators."""
-    found = Catalog(project="geofit", charset="utf-8", fuzzy=False)
+    found = Catalog(project="geofit", charset="utf-8", fuzzy=False, creation_date=DAY)
     for folder in FOLDERS:
         for name, _, text, comments, context in extract_from_dir(
             root / folder, method_map=[("**.py", "python")], keywords=KEYWORDS, comment_tags=("Translators:",)
