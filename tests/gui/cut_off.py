@@ -138,11 +138,13 @@ def main(folder: Path, count: int, seed: int) -> None:
             os.close(reading)
             session(folder, seed + turn, writing)
         os.close(writing)
-        select.select([reading], [], [], 30)
-        time.sleep(rng.uniform(0, 0.05))
+        # So many steps first, then at any moment: steps take longer where the machine has other work.
+        told, least = 0, rng.randrange(1, 40)
+        while told < least and select.select([reading], [], [], 30)[0] and (said := os.read(reading, least - told)):
+            told += len(said)
+        time.sleep(rng.uniform(0, 0.01))
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
-        told = 0
         while data := os.read(reading, 65536):
             told += len(data)
         os.close(reading)
