@@ -1,13 +1,15 @@
 """A body as vertical intervals on a grid in plan: volumes, whole and cut by horizons, that add up exactly.
 
-Along each vertical line the walls are found by linear interpolation; in plan the rule of midpoints is used, whose error
-falls with the square of the spacing.
+The share of each lattice cell that lies inside follows from the mean of the field over the cell and its gradient, as
+for a plane wall (Scardovelli & Zaleski 2000). Counting cells, or lines through their middles, errs by 5 to 10 % where a
+passage runs along an axis of the lattice: its walls then cross all cells at the same place.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from functools import cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +23,7 @@ __all__ = ["Columns", "columns"]
 
 Floats = NDArray[np.float64]
 
-#: Nodes of a slab at most: three arrays of this size are held.
+#: Nodes of a slab at most: four arrays of this size are held.
 _NODES = 8_000_000
 
 
@@ -35,6 +37,8 @@ class Columns:
         Place of each interval, metres.
     low, high : (n,) array
         Its ends, metres.
+    share : (n,) array
+        Part of it that lies inside, above 0; 1 away from the walls.
     spacing : float
         Distance of the vertical lines, metres.
     """
@@ -43,12 +47,13 @@ class Columns:
     y: Floats
     low: Floats
     high: Floats
+    share: Floats
     spacing: float
 
     @property
     def volume(self) -> float:
         """Volume, cubic metres."""
-        return float((self.high - self.low).sum() * self.spacing**2)
+        return float((self.share * (self.high - self.low)).sum() * self.spacing**2)
 
 
 def columns(body: PassageBody, spacing: float) -> Columns:
@@ -56,29 +61,89 @@ def columns(body: PassageBody, spacing: float) -> Columns:
     low, high = body.bounds
     origin = low - 1.5 * spacing
     nx, ny, nz = (np.ceil((high - origin) / spacing) + 2).astype(int).tolist()
-    thick = max(1, _NODES // (ny * nz))
+    # Slabs overlap by two layers: a cell needs its neighbours.
+    thick = max(1, _NODES // (ny * nz) - 2)
     found: list[tuple[Floats, ...]] = []
-    for first in range(0, nx, thick):
-        corner = origin + np.array([first * spacing, 0.0, 0.0])
+    for first in range(1, nx - 1, thick):
         # Tall and wide caves: a slab of one layer is cut along y as well.
-        wide = max(1, _NODES // nz)
-        for side in range(0, ny, wide):
-            start = corner + np.array([0.0, side * spacing, 0.0])
-            shape = (min(thick, nx - first), min(wide, ny - side), nz)
-            found.append(_intervals(paint(body.sweeps, body.blend, body.boxes, start, spacing, shape), start, spacing))
-    x, y, bottom, top = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    return Columns(x, y, bottom, top, spacing)
+        wide = max(1, _NODES // (3 * nz) - 2)
+        for side in range(1, ny - 1, wide):
+            start = origin + spacing * np.array([first - 1.0, side - 1.0, 0.0])
+            shape = (min(thick, nx - 1 - first) + 2, min(wide, ny - 1 - side) + 2, nz)
+            share = _shares()(paint(body.sweeps, body.blend, body.boxes, start, spacing, shape), spacing)
+            found.append(_intervals(share, start, spacing))
+    x, y, bottom, top, part = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    return Columns(x, y, bottom, top, part, spacing)
 
 
-def _intervals(value: Floats, corner: Floats, spacing: float) -> tuple[Floats, ...]:
-    """Return place and ends of the intervals below zero along the last axis, which begins and ends above zero."""
-    inside = value < 0
-    enter = np.nonzero(~inside[..., :-1] & inside[..., 1:])
-    leave = np.nonzero(inside[..., :-1] & ~inside[..., 1:])
+def _intervals(share: Floats, corner: Floats, spacing: float) -> tuple[Floats, ...]:
+    """Return place, ends and share of runs of cells with the same share along the last axis."""
+    first = np.nonzero((share > 0) & (np.diff(share, axis=2, prepend=0.0) != 0))
+    last = np.nonzero((share > 0) & (np.diff(share, axis=2, append=0.0) != 0))
+    place = [corner[axis] + spacing * first[axis] for axis in range(2)]
+    bottom, top = corner[2] + spacing * (first[2] - 0.5), corner[2] + spacing * (last[2] + 0.5)
+    return place[0], place[1], bottom, top, share[first]
 
-    def wall(at: tuple[NDArray[np.int64], ...]) -> Floats:
-        i, j, k = at
-        before, after = value[i, j, k], value[i, j, k + 1]
-        return np.asarray(corner[2] + spacing * (k + before / (before - after)))
 
-    return corner[0] + spacing * enter[0], corner[1] + spacing * enter[1], wall(enter), wall(leave)
+@cache
+def _shares() -> Any:
+    """Return the compiled loop over the cells of a lattice."""
+    from numba import njit
+
+    @njit(cache=True)
+    def beyond(a, b, c, d):  # type: ignore[no-untyped-def]  # pragma: no cover
+        """Volume of the unit cube below a plane: a <= b <= c with sum 1 are its normal, d its height, at most 1/2."""
+        if d <= 0:
+            return 0.0
+        if d < a:
+            return d**3 / (6 * a * b * c)
+        if d < b:
+            return (3 * d * d - 3 * d * a + a * a) / (6 * b * c)
+        if d < min(a + b, c):
+            return (d * d * (3 * (a + b) - d) + a * a * (a - 3 * d) + b * b * (b - 3 * d)) / (6 * a * b * c)
+        if c <= a + b:
+            total = d * d * (3 - 2 * d) + a * a * (a - 3 * d) + b * b * (b - 3 * d) + c * c * (c - 3 * d)
+            return total / (6 * a * b * c)
+        return (2 * d - (a + b)) / (2 * c)
+
+    @njit(cache=True)
+    def shares(value, spacing):  # type: ignore[no-untyped-def]  # pragma: no cover
+        n0, n1, n2 = value.shape
+        out = np.zeros(value.shape)
+        for i in range(1, n0 - 1):
+            for j in range(1, n1 - 1):
+                for k in range(1, n2 - 1):
+                    here = value[i, j, k]
+                    low = high = here
+                    slope = np.empty(3)
+                    bend = 0.0
+                    for axis in range(3):
+                        p, q, r = axis == 0, axis == 1, axis == 2
+                        before, after = value[i - p, j - q, k - r], value[i + p, j + q, k + r]
+                        low, high = min(low, before, after), max(high, before, after)
+                        slope[axis] = abs(after - before) / 2
+                        bend += before + after - 2 * here
+                    if high < 0:
+                        out[i, j, k] = 1.0
+                        continue
+                    if np.isinf(high) or low > spacing:
+                        # Nodes next to walls have a value; others lie inside or outside as a whole.
+                        out[i, j, k] = 1.0 if here < 0 else 0.0
+                        continue
+                    # Along a ray from the axis the field rises by a metre a metre: where differences say less, they
+                    # straddle the axis or a seam.
+                    steep = np.sqrt((slope**2).sum())
+                    if steep < 0.1 * spacing:
+                        slope[:] = spacing / np.sqrt(3.0)
+                    elif steep < spacing:
+                        slope *= spacing / steep
+                    mean = here + bend / 24 if steep >= 0.5 * spacing else here
+                    slope.sort()
+                    total = slope.sum()
+                    a, b, c = slope / total
+                    d = 0.5 - mean / total
+                    a, b = max(a, 1e-9), max(b, 1e-9)
+                    out[i, j, k] = beyond(a, b, c, d) if d <= 0.5 else 1.0 - beyond(a, b, c, 1.0 - d)
+        return out
+
+    return shares

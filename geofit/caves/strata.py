@@ -84,8 +84,8 @@ def strata(body: PassageBody, horizons: Mapping[str, Horizon], *, spacing: float
     known = np.isfinite(heights).all(axis=0)
     cut = np.clip(heights[:, known], found.low[known], found.high[known])
     edges = np.vstack([found.high[known], cut, found.low[known]])
-    volume = (edges[:-1] - edges[1:]).sum(axis=1) * found.spacing**2
-    lost = float((found.high - found.low)[~known].sum() * found.spacing**2)
+    volume = ((edges[:-1] - edges[1:]) * found.share[known]).sum(axis=1) * found.spacing**2
+    lost = float((found.share * (found.high - found.low))[~known].sum() * found.spacing**2)
     length, lost_length = _lengths(body, horizons)
     names = ["", *horizons, ""]
     return (

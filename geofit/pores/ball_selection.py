@@ -14,22 +14,60 @@ from geofit.pores.distance import sums_of_squares
 __all__ = ["exact", "paper"]
 
 
+#: Edge of the blocks that share one bound of the balls around them, voxels.
+_BLOCK = 8
+
+
 def exact(reach2: NDArray[Any]) -> NDArray[np.int64]:
     """Return the flat indices of the maximal balls of a squared distance map of cubic voxels, in ascending order."""
     largest = int(reach2.max(initial=0))
-    # A ball up to F² can be included in a ball with a larger one, so the directions go by the largest ball present.
-    needed = [entry[:3] for entry in DIRECTIONS if entry[3] <= largest]
-    generators = np.array(needed or [(1, 0, 0)], dtype=np.int64)
+    # A ball can be included in a larger one, so the directions go by the largest ball that reaches a voxel.
+    needed = [entry for entry in DIRECTIONS if entry[3] <= largest] or [(1, 0, 0, 0)]
+    generators = np.array([entry[:3] for entry in needed], dtype=np.int64)
     tables = np.array([inclusion_table(g0, g1, g2, largest) for g0, g1, g2 in generators], dtype=np.int32)
     directions, source = signed_directions(generators)
-    # The nearest directions include a ball most often; asking them first ends most searches early.
-    order = np.argsort((directions**2).sum(axis=1), kind="stable")
-    return _maximal(reach2, directions[order], source[order], tables)
+    from_ = np.array([entry[3] for entry in needed])[source]
+    order = np.argsort(from_, kind="stable")
+    counts = np.searchsorted(from_[order], _covering_blocks(reach2), side="right")
+    return _maximal(reach2, directions[order], source[order], tables, counts)
+
+
+def _covering_blocks(reach2: NDArray[Any]) -> NDArray[np.int64]:
+    """Return for each block of voxels an upper bound of the F² of the balls that cover any of its voxels."""
+    shape = [-(-n // _BLOCK) for n in reach2.shape]
+    largest = np.zeros(shape, np.int64)
+    for i in range(shape[0]):
+        slab = reach2[i * _BLOCK : (i + 1) * _BLOCK].max(axis=0)
+        rows = np.maximum.reduceat(slab, np.arange(0, slab.shape[0], _BLOCK), axis=0)
+        largest[i] = np.maximum.reduceat(rows, np.arange(0, slab.shape[1], _BLOCK), axis=1)
+    return _spread(largest)
+
+
+@njit(cache=True)
+def _spread(largest: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the largest value of the blocks from which a ball of that value may reach each block."""
+    n0, n1, n2 = largest.shape
+    out = largest.copy()
+    for i in range(n0):
+        for j in range(n1):
+            for k in range(n2):
+                value = largest[i, j, k]
+                # Voxels of two blocks are nearer than their corners are by one block less a voxel.
+                reach = int((np.sqrt(value) - 1.0) / _BLOCK) + 1
+                for a in range(max(i - reach, 0), min(i + reach + 1, n0)):
+                    for b in range(max(j - reach, 0), min(j + reach + 1, n1)):
+                        for c in range(max(k - reach, 0), min(k + reach + 1, n2)):
+                            out[a, b, c] = max(out[a, b, c], value)
+    return out
 
 
 @njit(cache=True)
 def _maximal(
-    reach2: NDArray[Any], directions: NDArray[np.int64], source: NDArray[np.int64], tables: NDArray[np.int32]
+    reach2: NDArray[Any],
+    directions: NDArray[np.int64],
+    source: NDArray[np.int64],
+    tables: NDArray[np.int32],
+    counts: NDArray[np.int64],
 ) -> NDArray[np.int64]:
     n0, n1, n2 = reach2.shape
     flat = reach2.ravel()
@@ -47,7 +85,7 @@ def _maximal(
                     continue
                 inside = row_inside and margin <= k < n2 - margin
                 included = False
-                for d in range(len(steps)):
+                for d in range(counts[i // _BLOCK, j // _BLOCK, k // _BLOCK]):
                     if not inside:
                         a, b, c = i + directions[d, 0], j + directions[d, 1], k + directions[d, 2]
                         if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:

@@ -127,7 +127,7 @@ def pore_network(
         pore = merge_tree.merge(pairs - 1, radius_at[saddle], radius, r_min, tau)
     first = np.full(int(pore.max()) + 1, len(pore))
     np.minimum.at(first, pore, np.arange(len(pore)))
-    label[...] = np.concatenate([[0], pore + 1]).astype(np.int32)[label]
+    _renumber(label, np.concatenate([[0], pore + 1]))
     tell(progress, "throats", 0.8)
     settings = {"r_min": r_min, "tau": tau, "border": border, "hierarchy": hierarchy}
     return _assembled(volume, label, levels, radius_at, peaks[first], settings)
@@ -166,10 +166,11 @@ def _assembled(
 
     edges = np.array(volume.edges)
     centre = np.stack(np.unravel_index(peaks, volume.shape), axis=1).astype(np.int32)
-    size = np.bincount(pore_of.ravel(), minlength=count + 1)[1:] * edges.prod()
+    # Slice by slice: counting converts to eight bytes a voxel.
+    size = sum(np.bincount(slice_.ravel(), minlength=count + 1) for slice_ in pore_of)[1:] * edges.prod()
     radius = radius_at[levels.ravel()[peaks]]
     number = np.cumsum(kept) - 1
-    pore_of[...] = np.concatenate([[0], np.where(kept, number + 1, 0)]).astype(np.int32)[pore_of]
+    _renumber(pore_of, np.concatenate([[0], np.where(kept, number + 1, 0)]))
 
     free = np.zeros((count, 3))
     inscribed = np.maximum(widest_balls(peaks, free, volume.pore, edges, centre.astype(float)) - 0.5, radius)
@@ -216,6 +217,13 @@ def _assembled(
         settings,
         pore_of,
     )
+
+
+def _renumber(label: NDArray[np.int32], numbers: NDArray[np.int64]) -> None:
+    """Replace labels in place, slice by slice."""
+    new = numbers.astype(np.int32)
+    for slice_ in label:
+        slice_[...] = new[slice_]
 
 
 def _pores(columns: tuple[NDArray[Any], ...], kept: NDArray[np.bool_]) -> Pores:

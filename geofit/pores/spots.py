@@ -72,27 +72,34 @@ def widest_balls(
         if count == 0:
             out[row] = np.inf
             continue
-        place = np.array(
-            [(start_at[row, 0] - i) * edges[0], (start_at[row, 1] - j) * edges[1], (start_at[row, 2] - k) * edges[2]]
+        px, py, pz = (
+            (start_at[row, 0] - i) * edges[0],
+            (start_at[row, 1] - j) * edges[1],
+            (start_at[row, 2] - k) * edges[2],
         )
-        best = _nearest(rocks, count, place)
-        origin = _nearest(rocks, count, np.zeros(3))
-        if origin > best and not np.any(normal[row]):
-            place, best = np.zeros(3), origin
+        nx, ny, nz = normal[row]
+        best = _nearest(rocks, count, px, py, pz, 0.0)
+        origin = _nearest(rocks, count, 0.0, 0.0, 0.0, 0.0)
+        if origin > best and nx == 0 and ny == 0 and nz == 0:
+            px, py, pz, best = 0.0, 0.0, 0.0, origin
         stride = 0.5
         while stride > 0.02:
             moved = False
             for a in range(-1, 2):
                 for b in range(-1, 2):
                     for c in range(-1, 2):
-                        step_to = np.array([a * stride * edges[0], b * stride * edges[1], c * stride * edges[2]])
-                        step_to -= normal[row] * (step_to * normal[row]).sum()
-                        trial = place + step_to
-                        if np.any(np.abs(trial) > _MOVE * edges + 0.5 * edges):
+                        sx, sy, sz = a * stride * edges[0], b * stride * edges[1], c * stride * edges[2]
+                        across = sx * nx + sy * ny + sz * nz
+                        x, y, z = px + sx - across * nx, py + sy - across * ny, pz + sz - across * nz
+                        if (
+                            abs(x) > (_MOVE + 0.5) * edges[0]
+                            or abs(y) > (_MOVE + 0.5) * edges[1]
+                            or abs(z) > (_MOVE + 0.5) * edges[2]
+                        ):
                             continue
-                        distance = _nearest(rocks, count, trial)
+                        distance = _nearest(rocks, count, x, y, z, best)
                         if distance > best + 1e-9:
-                            best, place, moved = distance, trial, True
+                            best, px, py, pz, moved = distance, x, y, z, True
             if not moved:
                 stride *= 0.5
         out[row] = best
@@ -100,11 +107,16 @@ def widest_balls(
 
 
 @njit(cache=True)
-def _nearest(rocks: NDArray[np.float64], count: int, place: NDArray[np.float64]) -> float:
-    best = np.inf
+def _nearest(rocks: NDArray[np.float64], count: int, px: float, py: float, pz: float, least: float) -> float:
+    """Return the distance to the nearest rock, or any distance not above ``least`` if it is nearer than that."""
+    best, enough = np.inf, least * least
     for r in range(count):
-        x, y, z = rocks[r, 0] - place[0], rocks[r, 1] - place[1], rocks[r, 2] - place[2]
-        best = min(best, x * x + y * y + z * z)
+        x, y, z = rocks[r, 0] - px, rocks[r, 1] - py, rocks[r, 2] - pz
+        square = x * x + y * y + z * z
+        if square < best:
+            best = square
+            if best <= enough:
+                break
     return float(np.sqrt(best))
 
 

@@ -44,14 +44,15 @@ def inner_windows(pore_of: NDArray[np.int32], levels: NDArray[np.int32], pores: 
 def outer_windows(pore_of: NDArray[np.int32], levels: NDArray[np.int32]) -> Windows:
     """Return the windows of pores in the six faces of the sample."""
     keys, voxels, axes, signs, found = [], [], [], [], []
-    index = np.arange(pore_of.size, dtype=np.int64).reshape(pore_of.shape)
+    edge = np.array([pore_of.shape[1] * pore_of.shape[2], pore_of.shape[2], 1])
     for face in range(6):
         axis, high = divmod(face, 2)
-        end = -1 if high else 0
+        end = pore_of.shape[axis] - 1 if high else 0
         pores = np.asarray(pore_of.take(end, axis=axis))
         mask = pores > 0
         keys.append(pores[mask].astype(np.int64) * 8 + face)
-        voxels.append(np.asarray(index.take(end, axis=axis))[mask])
+        p, q = np.nonzero(mask)
+        voxels.append(end * edge[axis] + p * np.delete(edge, axis)[0] + q * np.delete(edge, axis)[1])
         axes.append(np.full(int(mask.sum()), axis, np.int8))
         signs.append(np.full(int(mask.sum()), 1 if high else -1, np.int8))
         found.append(np.asarray(levels.take(end, axis=axis))[mask])

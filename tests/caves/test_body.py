@@ -90,6 +90,46 @@ def test_a_straight_tube_has_its_volume(radius):
     assert mesh.volume == pytest.approx(capsule, rel=0.015)
 
 
+DIRECTIONS = [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (1, 0, 0.3), (0.5, 0.3, -0.2), (0.02, 1, 0.01)]
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+@pytest.mark.parametrize(("radius", "length"), [(2.0, 50.0), (1.37, 23.7)])
+def test_the_default_spacing_gives_the_volume_in_any_direction(direction, radius, length):
+    """A tunnel along an axis crosses all cells of the lattice at the same place, so errors do not cancel."""
+    end = length * np.array(direction) / np.linalg.norm(direction)
+    tube = np.pi * radius**2 * length
+    assert centreline_body(chain([[0, 0, 0], end], radius), ends="flat").volume() == pytest.approx(tube, rel=0.004)
+    capsule = tube + 4 / 3 * np.pi * radius**3
+    assert centreline_body(chain([[0, 0, 0], end], radius)).volume() == pytest.approx(capsule, rel=0.004)
+
+
+@pytest.mark.parametrize("direction", DIRECTIONS)
+def test_a_flat_or_eccentric_section_has_its_volume_in_any_direction(direction):
+    end = 40 * np.array(direction) / np.linalg.norm(direction)
+    for walls in ([4.0, 4.0, 0.8, 0.8], [1.0, 3.0, 2.0, 0.6]):
+        shots = ShotList(across=True, fixed={"a": (0.3, 0.1, 0.7)})
+        shot = shots.add("a", "b", end, 0)
+        shots.add_walls("a", shot, walls)
+        shots.add_walls("b", shot, walls)
+        body = centreline_body(shots.survey("section"), ends="flat")
+        assert body.volume() == pytest.approx(body.sweeps.volumes[0], rel=0.01)
+
+
+def test_slabs_of_any_size_add_up_to_the_same_volume(monkeypatch):
+    body = centreline_body(branching(3)[0])
+    whole = body.volume(0.5)
+    for nodes in (3_000, 200_000):
+        monkeypatch.setattr("geofit.caves.columns._NODES", nodes)
+        assert body.volume(0.5) == pytest.approx(whole, rel=1e-12)
+
+
+def test_coarse_and_fine_lattices_agree_on_branching_passages():
+    for seed in range(3):
+        body = centreline_body(branching(seed)[0])
+        assert body.volume(0.4) == pytest.approx(body.volume(0.15), rel=0.01)
+
+
 def test_the_distance_of_a_round_tube_is_exact():
     body = centreline_body(chain(LINE, 2.0))
     rng = np.random.default_rng(0)
