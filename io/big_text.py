@@ -5,7 +5,7 @@ from __future__ import annotations
 import codecs
 from collections.abc import Iterator, Sequence
 from functools import cached_property
-from typing import overload
+from typing import Any, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,11 +35,11 @@ class BigText(Sequence[str]):
         self.data = data if data.endswith(b"\n") else data + b"\n"
 
     @cached_property
-    def starts(self) -> NDArray[np.uint32] | NDArray[np.int64]:
+    def starts(self) -> NDArray[np.integer[Any]]:
         """First byte of each line, and of what would follow the last one."""
         data = np.frombuffer(self.data, np.uint8)
-        kind: type[np.uint32] | type[np.int64] = np.uint32 if len(data) < 2**32 - 1 else np.int64
-        starts: NDArray[np.uint32] | NDArray[np.int64] = np.zeros(self.data.count(b"\n") + 2, kind)
+        kind = np.uint32 if len(data) < 2**32 - 1 else np.int64
+        starts: NDArray[np.integer[Any]] = np.zeros(self.data.count(b"\n") + 2, kind)
         at = 1
         for k in range(0, len(data), PIECE):
             ends = np.flatnonzero(data[k : k + PIECE] == 10)
