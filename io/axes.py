@@ -45,24 +45,25 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
     InputError
         If most rows of the file look exchanged.
     """
-    used = np.flatnonzero(rows.ok)
-    if used.size == 0:
+    used = int(rows.ok.sum())
+    if used == 0:
         return
     known = region is not None
-    box = region if region is not None else _crowd(x[used], y[used])
+    box = region if region is not None else _crowd(x, y) if used == len(rows) else _crowd(x[rows.ok], y[rows.ok])
     if box is None:
         return
-    far = ~_inside(x[used], y[used], box)
-    swapped = far & _inside(y[used], x[used], box)
-    if known and 2 * swapped.sum() > used.size:
-        i = int(used[np.flatnonzero(swapped)[0]])
+    far = np.flatnonzero(~_inside(x, y, box) & rows.ok)
+    exchanged = _inside(y[far], x[far], box)
+    swapped, off = far[exchanged], far[~exchanged]
+    if known and 2 * len(swapped) > used:
+        i = int(swapped[0])
         raise InputError(
             message(
                 "import.look-exchanged-rows-lie",
                 "x and y look exchanged: {count} of {total} rows lie far outside the study area, and inside it "
                 "with x and y swapped, the first at x = {x:.15g}, y = {y:.15g}",
-                count=swapped.sum(),
-                total=used.size,
+                count=len(swapped),
+                total=used,
                 x=x[i],
                 y=y[i],
             ),
@@ -75,14 +76,13 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
             row=int(rows.line[i]),
             column=rows.table.header[rows.columns["x"]],
         )
-    for i in used[swapped].tolist():
+    for i in swapped.tolist():
         rows.reject(
             i,
             "x",
             message("import.look-exchanged-row", "x and y look exchanged in this row"),
             message("import.easting-northing", "x is the easting, y the northing."),
         )
-    off = used[far & ~swapped]
     if known and off.size:
         i = int(off[0])
         rows.warn(
@@ -103,7 +103,9 @@ def _crowd(x: Floats, y: Floats) -> Region | None:
     if x.size < 4:
         return None
     cx, cy = float(np.median(x)), float(np.median(y))
-    reach = 20.0 * float(np.median(np.hypot(x - cx, y - cy))) + 1.0
+    away = x - cx
+    np.hypot(away, y - cy, out=away)
+    reach = 20.0 * float(np.median(away, overwrite_input=True)) + 1.0
     return (cx - reach, cx + reach, cy - reach, cy + reach)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.labels import Labels
 from geofit.data.points import PointSet
 from geofit.io.rows import Rows
 
@@ -30,28 +31,44 @@ class HorizonNames:
 
     def of(self, rows: Rows, role: str = "horizon") -> list[str]:
         """Return the horizon of each row; rows without one, or with an unknown one, are rejected."""
-        cells = rows.text(role)
-        matched = {cell: self.match(cell) for cell in set(cells)}
-        named = [matched[cell] or cell for cell in cells]
-        if self._known:
-            rows.require_known(role, named, self.names, "site file's [[horizon]] list")
+        named = self.labels(rows, role)
+        return [named.table[code] for code in named.codes.tolist()]
+
+    def labels(self, rows: Rows, role: str = "horizon") -> Labels:
+        """Return the horizon of each row, as :meth:`of`, as codes."""
+        cells = rows.labels(role)
+        named = cells.renamed([self.match(cell) or cell for cell in cells.table])
+        if self._known and not set(self.names).issuperset(named.table):
+            texts = [named.table[code] for code in named.codes.tolist()]
+            rows.require_known(role, texts, self.names, "site file's [[horizon]] list")
         return named
 
     @staticmethod
-    def split(rows: Rows, horizon: Sequence[str], xyz: NDArray[np.float64], **columns: Any) -> dict[str, PointSet]:
+    def split(
+        rows: Rows, horizon: Sequence[str] | Labels, xyz: NDArray[np.float64], **columns: Any
+    ) -> dict[str, PointSet]:
         """Return the used rows as one set of points a horizon, in file order."""
-        used = np.flatnonzero(rows.ok)
-        names = np.array(horizon, dtype=np.str_)
-        arrays: Mapping[str, Any] = {
-            key: value if isinstance(value, str) else np.asarray(value) for key, value in columns.items()
+        everything = bool(rows.ok.all())
+        names = horizon if isinstance(horizon, Labels) else Labels.of(horizon)
+        given: Mapping[str, Any] = {
+            key: value if isinstance(value, (str, float, Labels)) else np.asarray(value)
+            for key, value in columns.items()
         }
+        used = names.codes if everything else names.codes[rows.ok]
+        first = np.full(len(names.table), len(used), np.int64)
+        first[used[::-1]] = np.arange(len(used))[::-1]  # the last one written is the first of its kind
         result = {}
-        for name in dict.fromkeys(names[used].tolist()):
-            chosen = used[names[used] == name]
-            result[name] = PointSet(
-                xyz[chosen],
-                row=rows.line[chosen],
-                file=rows.file,
-                **{key: value if isinstance(value, str) else value[chosen] for key, value in arrays.items()},
-            )
+        for code in np.argsort(first, kind="stable")[: int((first < len(used)).sum())].tolist():
+            alone = everything and int((first < len(used)).sum()) == 1
+
+            def chosen(values: Any, code: int = code, alone: bool = alone) -> Any:
+                if alone or isinstance(values, (str, float)):
+                    return values
+                return values[rows.ok & (names.codes == code)]
+
+            own = {key: chosen(value) for key, value in {"xyz": xyz, "row": rows.line, **given}.items()}
+            for value in own.values():
+                if isinstance(value, np.ndarray):
+                    value.setflags(write=False)
+            result[names.table[code]] = PointSet(**own, file=rows.file)
         return result

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.files import legible
+from geofit.data.labels import Labels
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
@@ -119,34 +120,36 @@ def load_picks(
         required = {"horizon": optional.pop("horizon"), **required}
     rows = read_rows(source, Schema("picks", required, optional), journal)
     tell(progress, "check rows", 0.4)
-    (x, y), z = rows.places(), rows.numbers("z", no_data=True)
+    xyz = np.empty((len(rows), 3))
+    xyz[:, 0], xyz[:, 1] = rows.places()
+    xyz[:, 2] = rows.numbers("z", no_data=True)
     if source.measure == "depth":
-        z = -z
+        np.negative(xyz[:, 2], out=xyz[:, 2])
         journal.add(
             "note",
             source.name,
             message("import.depth-below-turned-elevation", "z is a depth below 0; it is turned into an elevation"),
         )
     tell(progress, "check rows", 0.6)
-    accuracy = rows.numbers("accuracy", required=False)
-    for i in np.flatnonzero((accuracy <= 0) & rows.ok).tolist():
+    accuracy = rows.numbers("accuracy", required=False) if "accuracy" in rows.columns else np.nan
+    for i in np.flatnonzero((np.asarray(accuracy) <= 0) & rows.ok).tolist():
         rows.reject(
             i,
             "accuracy",
             message("import.accuracy-not-above", "The accuracy is not above 0"),
             message("import.give-standard-deviation-metres", "Give one standard deviation in metres."),
         )
-    names = horizons.of(rows) if "horizon" in rows.columns else [alone or ""] * len(rows)
-    check_axes(rows, x, y, region)
-    kinds = [cell.casefold() or kind for cell in rows.text("kind", required=False)]
+    names = horizons.labels(rows) if "horizon" in rows.columns else Labels.same(alone or "", len(rows))
+    check_axes(rows, xyz[:, 0], xyz[:, 1], region)
+    kinds = rows.labels("kind", required=False)
     rows.close()
     rows.require_any()
     return horizons.split(
         rows,
         names,
-        np.column_stack([x, y, z]),
-        kind=kinds,
-        hole=rows.text("hole", required=False),
-        section=rows.text("section", required=False),
+        xyz,
+        kind=kinds.renamed([cell.casefold() or kind for cell in kinds.table]),
+        hole=rows.labels("hole", required=False),
+        section=rows.labels("section", required=False),
         accuracy=accuracy,
     )

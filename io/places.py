@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.io.journal import MOST, Journal
 
 __all__ = ["list_places"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 def list_places(horizon: str, points: PointSet, journal: Journal, nearness: float = 0.01) -> None:
@@ -19,21 +23,18 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
     if len(points) == 1:
         journal.add(
             "warning",
-            str(points.file[0]),
+            points.labels["file"].word(0),
             message("import.horizon-point", "Horizon {horizon} has one point only", horizon=horizon),
             message("import.three-needed-surface", "Three or more are needed for a surface."),
             row=int(points.row[0]),
             value=horizon,
         )
-    cell = np.floor(points.xyz[:, :2] / nearness + 0.5)
-    order = np.lexsort((np.arange(len(points)), cell[:, 1], cell[:, 0]))
-    same = (np.diff(cell[order], axis=0) == 0).all(axis=1)
+    order, repeated = _repeated(points.xyz, nearness)
     # One word each of the first: a file may repeat one row millions of times.
-    repeated = np.flatnonzero(same)
     if len(repeated) > MOST:
         journal.add(
             "warning",
-            str(points.file[order[repeated[MOST]]]),
+            points.labels["file"].word(int(order[repeated[MOST]])),
             message(
                 "import.horizon-points-place",
                 "Horizon {horizon}: {count} points lie at the place of another; the first {most} are listed",
@@ -50,7 +51,7 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
         if abs(rise) <= nearness:
             journal.add(
                 "note",
-                str(points.file[j]),
+                points.labels["file"].word(j),
                 message(
                     "import.horizon-point-repeats",
                     "Horizon {horizon}: the point repeats {before}",
@@ -62,7 +63,7 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
         else:
             journal.add(
                 "warning",
-                str(points.file[j]),
+                points.labels["file"].word(j),
                 message(
                     "import.horizon-two-elevations-place",
                     "Horizon {horizon}: two elevations at one place, {rise:+.3f} m against {before}",
@@ -78,3 +79,20 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
                 column="z",
                 value=f"{points.xyz[j, 2]:.15g}",
             )
+
+
+def _repeated(xyz: Floats, nearness: float) -> tuple[Ints, Ints]:
+    """Return points by their cells of a grid, those of one cell in their order, and where one follows its like."""
+    keys = np.zeros(len(xyz), np.uint64)
+    for column in xyz[:, :2].T:
+        # Equal places have equal keys; the few others that have them too are told apart below.
+        keys *= np.uint64(0x9E3779B97F4A7C15)
+        keys ^= np.floor(column / nearness + 0.5).view(np.uint64) * np.uint64(0xC2B2AE3D27D4EB4F)
+        keys ^= keys >> np.uint64(29)
+    ordered = np.sort(keys)
+    met = ordered[1:][ordered[1:] == ordered[:-1]]
+    some = np.flatnonzero(np.isin(keys, met)) if len(met) else np.empty(0, np.int64)
+    cell = np.floor(xyz[some, :2] / nearness + 0.5)
+    order = np.lexsort((some, cell[:, 1], cell[:, 0]))
+    same = (np.diff(cell[order], axis=0) == 0).all(axis=1)
+    return some[order], np.flatnonzero(same)

@@ -12,11 +12,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.labels import Labels
 from geofit.data.messages import EMPTY, Message, Verbatim, message
+from geofit.io.big_columns import BigColumn
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
 from geofit.io.crs import WGS84, is_code, project, refuse_degrees
 from geofit.io.formats import read_any_table
-from geofit.io.guess import find_columns
+from geofit.io.guess import WORDS, find_columns
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.tables import Table, parse_numbers
@@ -44,21 +46,31 @@ class Rows:
         self.file = table.name
         self.line = table.lines
         self.ok: Mask = np.ones(len(table), dtype=bool)
+        words = [j for role, j in columns.items() if role in WORDS]
+        for column in table.columns[:1]:
+            if isinstance(column, BigColumn):
+                column.prepare([j for j in columns.values() if j not in words], words, table.decimal)
 
     def __len__(self) -> int:
         return len(self.table)
 
     def text(self, role: str, *, required: bool = True) -> list[str]:
         """Return the cells of a role without outer blanks; empty where there is no column."""
+        labels = self.labels(role, required=required)
+        return [labels.table[code] for code in labels.codes.tolist()]
+
+    def labels(self, role: str, *, required: bool = True) -> Labels:
+        """Return the cells of a role, as :meth:`text`, as codes."""
         if role not in self.columns:
-            return [""] * len(self)
+            return Labels.same("", len(self))
         cells = self.table.columns[self.columns[role]]
-        cleaned = {cell: unicodedata.normalize("NFKC", cell).strip() for cell in set(cells)}
-        if required and "" in cleaned.values():
+        written = cells.labels() if isinstance(cells, BigColumn) else Labels.of(cells)
+        found = written.renamed([_cleaned(cell) for cell in written.table])
+        if required and "" in found.table:
             empty = message("row.empty-cell", "The {role} is empty", role=role)
-            for i in [i for i, cell in enumerate(cells) if not cleaned[cell]]:
+            for i in np.flatnonzero(found.codes == found.table.index("")).tolist():
                 self.reject(i, role, empty, message("row.complete-cell", "Complete the cell."))
-        return [cleaned[cell] for cell in cells]
+        return found
 
     def numbers(self, role: str, *, required: bool = True, no_data: bool = False) -> Floats:
         """Return the numbers of a role; rows without a finite one are rejected, or nan where one is optional.
@@ -135,6 +147,8 @@ class Rows:
         """Reject the rows whose hole, adit or horizon is not known; ``where`` says what should name it."""
         present = list(known)
         lookup, hints = set(present), dict[str, Message]()
+        if lookup.issuperset(names):
+            return
         for i in np.flatnonzero(self.ok).tolist():
             name = names[i]
             if name in lookup:
@@ -217,6 +231,10 @@ def read_rows(source: Source | str | Path, schema: Schema, journal: Journal) -> 
     if table.crs and not source.crs:
         source = replace(source, crs=table.crs)
     return Rows(table, find_columns(table, schema, source, journal), source, journal)
+
+
+def _cleaned(cell: str) -> str:
+    return cell.strip() if cell.isascii() else unicodedata.normalize("NFKC", cell).strip()
 
 
 def _degrees(table: Table, columns: dict[str, int]) -> str | None:

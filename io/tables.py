@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.messages import Message, folded, message
+from geofit.io.big_columns import BLANK, ODD, TAKEN, BigColumn, big_columns, find_lines
+from geofit.io.big_text import BIG, BigText, big_text
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, quoted_cells, split_line
 from geofit.io.source import Source
@@ -37,7 +39,7 @@ class Table:
     name: str
     header: tuple[str, ...]
     units: tuple[str, ...]
-    columns: tuple[tuple[str, ...], ...]
+    columns: tuple[Sequence[str], ...]
     lines: NDArray[np.int64]
     read: int
     named: bool
@@ -65,9 +67,7 @@ def read_table(source: Source, journal: Journal) -> Table:
     InputError
         If the file is missing, empty, no text, or has a header only.
     """
-    text, encoding = decode(journal.read(source), source.name, source.encoding)
-    text = text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "")
-    lines = text.split("\n")
+    lines, encoding = _lines(journal.read(source), source)
     start = _skip_comments(lines, source.name, journal)
     sample = [line for line in lines[start : start + 4 * _SAMPLE] if line.strip()][:_SAMPLE]
     if not sample:
@@ -77,7 +77,9 @@ def read_table(source: Source, journal: Journal) -> Table:
             file=source.name,
         )
     sep = source.sep or find_separator(sample)
-    decimal = source.decimal or find_decimal(text, sep)
+    decimal = source.decimal or (
+        lines.decimal(sep) if isinstance(lines, BigText) else find_decimal("\n".join(lines), sep)
+    )
     start = _skip_titles(lines, start, sep, source.name, journal)
     first, taken = _quoted(lines, start, sep)
     below = [line for line in lines[start + taken : start + 4 * _SAMPLE] if line.strip(sep + " \t")][:_SAMPLE]
@@ -96,7 +98,7 @@ def read_table(source: Source, journal: Journal) -> Table:
             "note", source.name, message("import.row-holds-units", "This row holds the units"), row=body, value=below[0]
         )
     columns, numbers, malformed = _columns(lines, body, width, sep, source.name, journal)
-    if not numbers and not malformed:
+    if not len(numbers) and not malformed:
         raise InputError(
             message("import.file-header-no-rows", "The file has a header ({names}) but no rows", names=shown(header)),
             message("import.export-table-again-rows", "Export the table again with its rows."),
@@ -131,7 +133,15 @@ def read_table(source: Source, journal: Journal) -> Table:
     )
 
 
-def _skip_comments(lines: list[str], name: str, journal: Journal) -> int:
+def _lines(data: bytes, source: Source) -> tuple[Sequence[str], str]:
+    """Return the lines of a file and its encoding."""
+    if len(data) >= BIG:
+        return big_text(data, source.name, source.encoding)
+    text, encoding = decode(data, source.name, source.encoding)
+    return text.replace("\r\n", "\n").replace("\r", "\n").replace("\0", "").split("\n"), encoding
+
+
+def _skip_comments(lines: Sequence[str], name: str, journal: Journal) -> int:
     """Return the index of the first line that is no comment; later '#' are data (hole '#12')."""
     start = 0
     while start < len(lines) and (not lines[start].strip() or lines[start].lstrip().startswith("#")):
@@ -150,7 +160,7 @@ def _skip_comments(lines: list[str], name: str, journal: Journal) -> int:
     return start
 
 
-def _skip_titles(lines: list[str], start: int, sep: str, name: str, journal: Journal) -> int:
+def _skip_titles(lines: Sequence[str], start: int, sep: str, name: str, journal: Journal) -> int:
     """Return the index of the first line with as many cells as a table has: titles above it have one."""
     marks = sep + " \t"
     filled = [i for i in range(start, min(start + _SAMPLE, len(lines))) if lines[i].strip(marks)]
@@ -171,8 +181,8 @@ def _skip_titles(lines: list[str], start: int, sep: str, name: str, journal: Jou
 
 
 def _columns(
-    lines: list[str], start: int, width: int, sep: str, name: str, journal: Journal
-) -> tuple[tuple[tuple[str, ...], ...], list[int], int]:
+    lines: Sequence[str], start: int, width: int, sep: str, name: str, journal: Journal
+) -> tuple[tuple[Sequence[str], ...], Sequence[int] | NDArray[np.int64], int]:
     """Return the columns, the line of each row counted from 1, and how many rows do not fit the header.
 
     Rows with exactly the header's cells and no quotes are split all at once: a million small lists would keep
@@ -180,42 +190,34 @@ def _columns(
     """
     regular: list[str] = []
     numbers: list[int] = []
-    odd: list[tuple[int, list[str]]] = []
+    odd: dict[int, list[str]] = {}
     marks = sep + " \t"
     blank = malformed = 0
-    i = start
-    while i < len(lines):
-        line, number = lines[i], i + 1
-        i += 1
+    kinds = find_lines(lines, start, width, sep) if isinstance(lines, BigText) else None
+    looked_at = range(start, len(lines)) if kinds is None else np.flatnonzero(kinds == ODD).tolist()
+    below = start
+    for i in looked_at:
+        if i < below:
+            continue
+        line = lines[i]
         if not line.strip(marks):
             blank += bool(line.strip())
             continue
-        if sep != " " and '"' not in line and line.count(sep) == width - 1:
+        if kinds is None and sep != " " and '"' not in line and line.count(sep) == width - 1:
             regular.append(line)
-            numbers.append(number)
+            numbers.append(i + 1)
             continue
-        cells, taken = _quoted(lines, number - 1, sep)
-        i += taken - 1
+        cells, taken = _quoted(lines, i, sep)
+        below = i + taken
+        if kinds is not None:
+            kinds[i + 1 : below] = TAKEN
         if any(cell.strip() for cell in cells[width:]):
             malformed += 1
-            journal.add(
-                "error",
-                name,
-                message(
-                    "import.cells-row-header",
-                    "Cells of the row: {count}, of the header: {width}",
-                    count=len(cells),
-                    width=width,
-                ),
-                message(
-                    "import.quote-cells-hold-separator",
-                    "Quote cells that hold the separator, or use another separator than the decimal mark.",
-                ),
-                row=number,
-                value=line[:120],
-            )
+            _list_malformed(name, i + 1, line, len(cells), width, journal)
         else:
-            odd.append((number, (cells + [""] * width)[:width]))
+            odd[i] = (cells + [""] * width)[:width]
+    if kinds is not None:
+        blank += int((kinds == BLANK).sum())
     if blank:
         journal.add(
             "note",
@@ -226,9 +228,11 @@ def _columns(
                 count=blank,
             ),
         )
+    if kinds is not None and isinstance(lines, BigText):
+        return *big_columns(lines, kinds, odd, width, sep, _parse_cells), malformed
     cells = sep.join(regular).split(sep) if regular else []
-    columns = [cells[j::width] + [row[j] for _, row in odd] for j in range(width)]
-    numbers += [number for number, _ in odd]
+    columns = [cells[j::width] + [row[j] for row in odd.values()] for j in range(width)]
+    numbers += [i + 1 for i in odd]
     if odd:
         order = np.argsort(numbers).tolist()
         columns = [[column[k] for k in order] for column in columns]
@@ -236,7 +240,23 @@ def _columns(
     return tuple(map(tuple, columns)), numbers, malformed
 
 
-def _quoted(lines: list[str], i: int, sep: str) -> tuple[list[str], int]:
+def _list_malformed(name: str, number: int, line: str, count: int, width: int, journal: Journal) -> None:
+    journal.add(
+        "error",
+        name,
+        message(
+            "import.cells-row-header", "Cells of the row: {count}, of the header: {width}", count=count, width=width
+        ),
+        message(
+            "import.quote-cells-hold-separator",
+            "Quote cells that hold the separator, or use another separator than the decimal mark.",
+        ),
+        row=number,
+        value=line[:120],
+    )
+
+
+def _quoted(lines: Sequence[str], i: int, sep: str) -> tuple[list[str], int]:
     """Return the cells of a row that may have quotes, and over how many lines it runs.
 
     A cell may hold line breaks. A quote that is never closed would swallow the rows below it, so a cell ends
@@ -304,11 +324,15 @@ def _numbered(width: int) -> tuple[str, ...]:
     return tuple(f"column {j + 1}" for j in range(width))
 
 
-def parse_numbers(cells: tuple[str, ...], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
+def parse_numbers(cells: Sequence[str], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
     """Return the numbers of a column, nan where a cell holds none, and the indices of those cells.
 
     "nan" and "inf" are no numbers here, nor is "1_000", which Python would read.
     """
+    return cells.numbers(decimal) if isinstance(cells, BigColumn) else _parse_cells(tuple(cells), decimal)
+
+
+def _parse_cells(cells: tuple[str, ...], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
     joined = "".join(cells)
     if decimal == "," and ("," in joined or "." in joined):
         swap = str.maketrans(",.", ".,")

@@ -16,11 +16,15 @@ __all__ = ["column", "places", "wrong_shape"]
 def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     """Return a copy of easting, northing, elevation, (n, 3), metres; nothing given is (0, 3).
 
+    An array that nobody can change is not copied.
+
     Raises
     ------
     PointsError
         If the values are no numbers or no (n, 3) array.
     """
+    if isinstance(given, np.ndarray) and _fixed(given, np.float64) and given.ndim == 2 and given.shape[1] == 3:
+        return given
     try:
         xyz = np.array(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
@@ -49,6 +53,8 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
 def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     """Return a copy of ``values``, (n,), or one value repeated n times.
 
+    An array that nobody can change is not copied.
+
     Raises
     ------
     PointsError
@@ -70,7 +76,12 @@ def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
         return np.full(n, array, dtype=array.dtype)
     if array.shape != (n,):
         raise PointsError(wrong_shape(name, array.shape, n))
-    return array.copy()
+    return array if _fixed(array, dtype) else array.copy()
+
+
+def _fixed(array: NDArray[Any], dtype: type) -> bool:
+    """Whether an array owns its values, and nobody can change them."""
+    return array.base is None and not array.flags.writeable and array.dtype == dtype
 
 
 def wrong_shape(name: str, shape: tuple[int, ...], n: int) -> Message:

@@ -36,7 +36,9 @@ class Labels:
     def of(cls, words: ArrayLike) -> Labels:
         """Return the codes of (n,) words."""
         table: dict[str, int] = {}
-        texts = np.asarray(words, dtype=np.str_).tolist()
+        # One long word among many would make an array of them as long as all together.
+        plain = isinstance(words, (list, tuple)) and all(isinstance(word, str) for word in words)
+        texts: Sequence[str] = words if plain else np.asarray(words, dtype=np.str_).tolist()  # type: ignore[assignment]
         codes = np.fromiter((table.setdefault(word, len(table)) for word in texts), np.int32, len(texts))
         return cls(codes, tuple(table))
 
@@ -54,6 +56,18 @@ class Labels:
     def __getitem__(self, index: slice | NDArray[np.integer] | NDArray[np.bool_]) -> Labels:
         """Return the labels of some of the points."""
         return Labels(np.atleast_1d(self.codes[index]).copy(), self.table)
+
+    def word(self, index: int) -> str:
+        """Return the word of one point."""
+        return self.table[int(self.codes[index])]
+
+    def renamed(self, words: Sequence[str]) -> Labels:
+        """Return labels whose table has other words, equal ones as one."""
+        if list(words) == list(self.table):
+            return self
+        table: dict[str, int] = {}
+        codes = np.fromiter((table.setdefault(word, len(table)) for word in words), np.int32, len(words))
+        return Labels(codes[self.codes], tuple(table)) if len(words) else self
 
     def words(self) -> NDArray[np.str_]:
         """Return the words themselves, (n,)."""

@@ -176,8 +176,9 @@ class PointSet:
         return {"xyz": self.xyz, "accuracy": self.accuracy, "row": self.row, **self.labels}
 
     def __repr__(self) -> str:
-        kinds, counts = np.unique(self.kind, return_counts=True)
-        parts = [f"{len(self)} points", *(f"{n} {kind}" for kind, n in zip(kinds, counts, strict=True))]
+        counts = np.bincount(self.labels["kind"].codes, minlength=1)
+        kinds = sorted((kind, n) for kind, n in zip(self.labels["kind"].table, counts.tolist(), strict=False) if n)
+        parts = [f"{len(self)} points", *(f"{n} {kind}" for kind, n in kinds)]
         if len(self):
             low, high = self.xyz[:, 2].min(), self.xyz[:, 2].max()
             parts.append(f"z {low:.1f} to {high:.1f} m")
@@ -203,13 +204,14 @@ class PointSet:
 
     def describe(self, index: int) -> Message:
         """Name one point as a person would look it up: hole or section, file and row."""
-        name, kind = str(self.hole[index] or self.section[index]), str(self.kind[index])
+        word = {label: self.labels[label].word(index) for label in _WORDS}
+        name, kind = word["hole"] or word["section"], word["kind"]
         what = (
             message("point.kind-name", "{kind} {name}", kind=kind, name=Verbatim(name))
             if name
             else message("point.kind", "{kind}", kind=kind)
         )
-        file, row = str(self.file[index]), int(self.row[index])
+        file, row = word["file"], int(self.row[index])
         if file:
             return message("point.in-file", "{point}, {file} row {row}", point=what, file=file, row=row)
         return message("point.in-row", "{point}, row {row}", point=what, row=row) if row else what
