@@ -1,15 +1,17 @@
-# make demo | gui | report-demo | test | lint | real | bench | docs | screenshots | package | audit | system-packages | clean.
+# make demo | gui | report-demo | test | lint | real | bench | docs | screenshots | package | wheel | audit | system-packages | clean.
 # Python 3.11 or newer; everything goes into .venv.
 SHELL := /bin/sh
 # A name may stand on the path and still not run (version managers leave such shims), so each is tried.
 PYTHON ?= $(shell for p in python3.13 python3.12 python3.11 python3 python; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' >/dev/null 2>&1 && { echo $$p; break; }; done)
 LOCK := constraints/constraints.txt
+# The same versions with the SHA-256 of every file; pip takes no editable install while it checks hashes.
+HASHES := constraints/hashes.txt
 BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint $(LOCK)
 
-.PHONY: demo gui report-demo test lint real bench docs screenshots package audit system-packages clean python
+.PHONY: demo gui report-demo test lint real bench docs screenshots package wheel audit system-packages clean python
 
 demo: .venv/.installed
 	$(BIN)/geofit demo --out demo_out
@@ -22,17 +24,17 @@ gui: .venv/.installed
 	$(INSTALL) --editable '.[gui]'
 	$(BIN)/geofit-gui
 
-test: .venv/.installed-test
+test: .venv/.installed-all
 	@bash tools/system_packages.sh missing || true
 	$(BIN)/python -m pytest
 
-audit: .venv/.installed-test
+audit: .venv/.installed-all
 	$(BIN)/python tools/audit.py
 
 system-packages:
 	bash tools/system_packages.sh
 
-lint: .venv/.installed-lint
+lint: .venv/.installed-all
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/python tools/catalogue.py --check
@@ -40,31 +42,35 @@ lint: .venv/.installed-lint
 	$(PIP) install --quiet --no-deps --no-build-isolation --target build/typecheck .
 	cd build && MYPYPATH=typecheck ../$(BIN)/python -m mypy --config-file ../pyproject.toml -p geofit
 
-real: .venv/.installed-test
+real: .venv/.installed-all
 	$(BIN)/python benchmarks/real.py
 
-bench: .venv/.installed-test
+bench: .venv/.installed-all
 	@set -e; for script in benchmarks/fit.py benchmarks/distance.py; do $(BIN)/python $$script; done
 
-docs: .venv/.installed-docs
+docs: .venv/.installed-all
 	rm -rf build/docs
 	$(PIP) install --quiet --no-deps --no-build-isolation --target build/docs/package .
 	$(BIN)/python tools/build_docs.py pages
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict --quiet
 	$(BIN)/python tools/build_docs.py links
 
-screenshots: .venv/.installed-test
+screenshots: .venv/.installed-all
 	$(BIN)/python tools/screenshots.py
 
-package: .venv/.installed-test
-	$(INSTALL) 'pyinstaller>=6.10' 'setuptools>=77'
+package: .venv/.installed-all
+	$(INSTALL) 'pyinstaller>=6.10'
 	rm -rf build/package
 	$(PIP) install --quiet --no-deps --no-build-isolation --target build/package/site .
 	$(BIN)/pyinstaller --noconfirm --log-level WARN --workpath build/package --distpath dist packaging/geofit.spec
 	$(BIN)/python packaging/try_package.py dist/geofit
 
+# Both archives, the wheel from the unpacked sdist, tried in an environment of its own.
+wheel: .venv/.installed-all
+	$(BIN)/python tools/try_wheel.py
+
 clean:
-	rm -rf .venv build dist demo_out examples_out report_demo real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis geofit.egg-info
+	rm -rf .venv build dist demo_out examples_out report_demo real_out .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
 
 python:
 	@echo $(PYTHON)
@@ -77,14 +83,8 @@ python:
 	$(INSTALL) --editable .
 	@touch $@
 
-.venv/.installed-test: .venv/.installed
-	$(INSTALL) --editable '.[gui,gis,las,xlsx,ifc,geoh5,test]'
-	@touch $@
-
-.venv/.installed-lint: .venv/.installed-test
-	$(INSTALL) --editable '.[lint]' 'setuptools>=77'
-	@touch $@
-
-.venv/.installed-docs: .venv/.installed
-	$(INSTALL) --editable '.[docs]' 'setuptools>=77'
-	@touch $@
+# All extras, each file checked against its hash.
+.venv/.installed-all: .venv/bin/python pyproject.toml $(HASHES)
+	$(PIP) install --quiet --no-deps --require-hashes --requirement $(HASHES)
+	$(PIP) install --quiet --no-deps --no-build-isolation --editable .
+	@touch .venv/.installed $@

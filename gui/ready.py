@@ -7,12 +7,11 @@ import importlib.util
 import os
 import sys
 
+from geofit.data.distribution import install_line
 from geofit.data.errors import MissingDependencyError
 from geofit.data.messages import message, plural_message
 
-__all__ = ["INSTALL", "require_display", "require_packages"]
-
-INSTALL = 'pip install "geofit[gui]"'
+__all__ = ["require_display", "require_packages"]
 
 #: What Qt's xcb platform loads by itself and a fresh Linux machine may lack, with its Debian package.
 XCB = {
@@ -37,7 +36,7 @@ def require_packages() -> None:
                 "The windows need {names}, which are not installed. Install with: {install}",
                 count=len(missing),
                 names=" and ".join(missing),
-                install=INSTALL,
+                install=install_line("gui"),
             )
         )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from importlib import import_module
 from typing import Any
 
+from geofit.data.distribution import install_line
 from geofit.data.errors import MissingDependencyError
 from geofit.data.messages import Message, message
 
@@ -26,11 +27,10 @@ def need(module: str, extra: str, what: Message) -> Any:
         raise MissingDependencyError(
             message(
                 "import.needs-package-cannot-imported",
-                "{what} needs the package {package}, which cannot be imported ({error}). Install it: pip install "
-                "'geofit[{extra}]'",
+                "{what} needs the package {package}, which cannot be imported ({error}). Install it: {install}",
                 what=what,
                 package=package,
                 error=error,
-                extra=extra,
+                install=install_line(extra),
             )
         ) from None

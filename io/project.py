@@ -263,7 +263,7 @@ def open_project(path: str | PathLike[str]) -> Project:
                 program=__version__,
                 known=VERSION,
             ),
-            message("project.update-geofit-pip-install", "Update geofit: pip install -U geofit"),
+            message("project.newer-geofit-needed", "Open it with the geofit that saved it, or with a newer one."),
             file=str(source),
         )
     try:

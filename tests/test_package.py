@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import graphlib
+import itertools
 import re
 import shutil
 import subprocess
@@ -12,8 +13,10 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import try_wheel
 
 import geofit
+from geofit.data.distribution import DISTRIBUTION
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -134,7 +137,49 @@ def test_everything_but_the_windows_works_without_their_packages(tmp_path):
     )
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.stdout.split() == ["2"], done.stderr
-    assert 'pip install "geofit[gui]"' in done.stderr
+    assert f'pip install "{DISTRIBUTION}[gui]"' in done.stderr
+
+
+def test_no_text_installs_the_program_of_the_same_name():
+    """On the public index, the name geofit belongs to somebody else."""
+    foreign = re.compile(
+        r"""(?:install|download|index versions)(?: -\S+)*[ '"]+geofit(?![\w/\\-]|\.whl)|['"`]geofit\[\w"""
+    )
+    # What a pattern must find, written so that this file does not hold it.
+    for line in ("pip install {}", "pip install -U {}", "pip install '{}[gui]'", '"{}[gis]"'):
+        assert foreign.search(line.format("geofit"))
+    assert not foreign.search(f"pip install {DISTRIBUTION}")
+    wrong = []
+    for path in tracked():
+        if path.suffix in {".py", ".md", ".toml", ".po", ".txt", ".yml", ".spec", ".cff", ""}:
+            text = path.read_text(encoding="utf-8", errors="replace")
+            lines = enumerate(text.splitlines(), 1)
+            wrong += [f"{path.relative_to(ROOT)}:{k}: {line}" for k, line in lines if foreign.search(line)]
+    assert not [line for line in wrong if '"geofit[*]"' not in line], wrong
+
+
+def test_the_name_is_that_of_the_project_file():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert project["name"] == DISTRIBUTION != "geofit"
+    assert {**project["scripts"], **project["gui-scripts"]}.keys() == {"geofit", "geofit-gui"}
+    wheel = f"{DISTRIBUTION.replace('-', '_')}-{project['version']}-py3-none-any.whl[gui]"
+    for page in ("README.md", "docs/tutorial.md"):
+        text = (ROOT / page).read_text(encoding="utf-8")
+        assert wheel in text, page
+        assert "make gui" in text, page
+
+
+def test_install_lines_name_extras_that_exist():
+    extras = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"]
+    place = {"need": 1, "install_line": 0}
+    calls = [
+        (node.func.id, node.args)
+        for tree in sources().values()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in place
+    ]
+    named = {arg.value for name, args in calls if isinstance(arg := args[place[name]], ast.Constant)}
+    assert {"gui", "gis", "xlsx"} <= named <= set(extras)
 
 
 def test_every_module_stands_on_a_floor():
@@ -208,6 +253,32 @@ def test_every_dependency_is_explained_and_locked():
 def test_constraints_hold_names_versions_and_markers_only():
     for line in (ROOT / "constraints" / "constraints.txt").read_text(encoding="utf-8").splitlines():
         assert re.fullmatch(r"[\w.-]+==[\w.+!]+( ; [\w .<>=!'()-]+)?", line), line
+
+
+def test_hashes_are_those_of_the_constraints():
+    folder = ROOT / "constraints"
+    locked = (folder / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    hashed = (folder / "hashes.txt").read_text(encoding="utf-8").replace(" \\\n", "\n").splitlines()
+    assert [line for line in hashed if not line.startswith(" ")] == locked
+    for before, line in itertools.pairwise(hashed):
+        assert line.startswith(" ") or before.startswith(" "), f"{before} has no hash"
+        assert not line.startswith(" ") or re.fullmatch(r"    --hash=sha256:[0-9a-f]{64}", line), line
+    assert hashed[-1].startswith(" ")
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    assert "--require-hashes --requirement $(HASHES)" in makefile
+    for target in ("test", "lint", "docs", "package", "wheel"):
+        assert f"\n{target}: .venv/.installed-all\n" in makefile
+
+
+def test_the_trial_of_the_wheel_finds_what_is_missing():
+    modules = {p.relative_to(ROOT).as_posix() for r in ("geofit", "io", "gui") for p in (ROOT / r).rglob("*.py")}
+    sdist = modules | set(try_wheel.DATA) | set(try_wheel.SOURCES)
+    wheel = {name if name.startswith("geofit/") else f"geofit/{name}" for name in modules | set(try_wheel.DATA)}
+    assert try_wheel.missing(sdist, wheel) == []
+    gone = {"geofit/py.typed", "geofit/locale/zh_CN/LC_MESSAGES/geofit.mo", "geofit/io/__init__.pyi"}
+    assert try_wheel.missing(sdist, wheel - gone) == [f"wheel: {name}" for name in sorted(gone)]
+    assert try_wheel.missing(sdist - {"sample_data/site.toml"}, wheel) == ["sdist: sample_data/site.toml"]
+    assert "make wheel" in (ROOT / ".ci" / "run").read_text(encoding="utf-8")
 
 
 def test_no_machine_path_and_no_registry_host_in_the_repository():

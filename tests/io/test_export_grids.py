@@ -100,5 +100,5 @@ def test_cells_that_are_not_square_are_refused(tmp_path):
 
 def test_without_rasterio_the_install_line_is_told(monkeypatch, tmp_path):
     monkeypatch.setitem(__import__("sys").modules, "rasterio", None)
-    with pytest.raises(MissingDependencyError, match=r"pip install 'geofit\[gis\]'"):
+    with pytest.raises(MissingDependencyError, match=r"pip install \"geofit-geology\[gis\]\""):
         write_geotiff(sample(), tmp_path / "a.tif")

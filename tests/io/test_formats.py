@@ -305,5 +305,5 @@ def test_absent_packages_give_the_install_line(write, monkeypatch, name, extra):
         raise ImportError(f"No module named '{module}'")
 
     monkeypatch.setattr("geofit.io.extra.import_module", absent)
-    with pytest.raises(MissingDependencyError, match=rf"pip install 'geofit\[{extra}\]'"):
+    with pytest.raises(MissingDependencyError, match=rf"pip install \"geofit-geology\[{extra}\]\""):
         read_any_table(Source(path=write(LAS, name), table="CURVES"), Journal())

@@ -114,7 +114,7 @@ def test_longitude_and_latitude_are_refused_with_the_remedy(tmp_path, columns):
 
 @pytest.mark.parametrize("columns", [{}, {"x": "LONGITUDE", "y": "LATITUDE", "z": "z"}])
 def test_longitude_and_latitude_are_projected_to_the_grid_that_is_named(tmp_path, columns):
-    pyproj = pytest.importorskip("pyproj", reason="projecting needs geofit[gis]")
+    pyproj = pytest.importorskip("pyproj", reason="projecting needs the extra gis")
     (tmp_path / "p.csv").write_text(DEGREES)
     points = read_points(tmp_path / "p.csv", **columns, crs="EPSG:32650").horizons["p"]
     known = pyproj.Transformer.from_crs(4326, 32650, always_xy=True).transform(117.10, 28.20)

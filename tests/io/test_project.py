@@ -109,7 +109,7 @@ def test_version_0_opens(tmp_path):
 @pytest.mark.parametrize(
     ("text", "match"),
     [
-        ('{"format": "geofit project", "version": 99, "anything": 1}', "newer geofit.*99.*Update"),
+        ('{"format": "geofit project", "version": 99, "anything": 1}', "newer geofit.*99.*Open it with"),
         ('{"format": "geofit project"}', "no version"),
         ('{"format": "geofit project", "version": true}', "no version"),
         ('{"format": "other"}', "does not say"),

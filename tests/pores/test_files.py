@@ -62,6 +62,17 @@ def test_every_kind_gives_the_same_volume(kind, tmp_path):
     assert volume.voxel == (2e-6,) * 3
 
 
+def test_a_zarr_store_gives_the_same_volume(tmp_path):
+    zarr = pytest.importorskip("zarr", reason="zarr stores need the extra volumes")
+    group = zarr.open_group(tmp_path / "rock.zarr", mode="w")
+    group.create_array("0", data=ARRAY)
+    np.testing.assert_array_equal(read_volume(tmp_path / "rock.zarr", pore=1, voxel=2e-6).pore, ARRAY == 1)
+    group.create_array("1", data=ARRAY[::2])
+    with pytest.raises(InputError, match=r"2 arrays.*name="):
+        read_volume(tmp_path / "rock.zarr", pore=1, voxel=2e-6)
+    assert read_volume(tmp_path / "rock.zarr", pore=1, voxel=2e-6, name="1").shape == (2, 5, 6)
+
+
 def test_a_header_may_state_the_voxel(tmp_path):
     assert read_volume(written("mha", tmp_path), pore=1).voxel == pytest.approx((3e-6, 2e-6, 1e-6))
 
