@@ -11,6 +11,8 @@ from geofit.data.errors import GeofitError as GeofitError
 from geofit.data.points import PointSet as PointSet
 from geofit.data.settings import FitSettings as FitSettings
 from geofit.data.site import Site as Site
+from geofit.data.title_block import Revision as Revision
+from geofit.data.title_block import TitleBlock as TitleBlock
 from geofit.fitting.edit import adjust as adjust
 from geofit.fitting.edit import pull_to as pull_to
 from geofit.fitting.edit import weigh as weigh

@@ -38,6 +38,7 @@ from geofit.io.places import list_places
 from geofit.io.site_drawings import gather, read_sections
 from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
 from geofit.io.source import Source
+from geofit.io.title_block import read_title_block
 from geofit.io.traces import load_traces
 
 __all__ = ["build_site", "load_site", "read_site"]
@@ -145,6 +146,7 @@ def build_site(
             "name",
         )
 
+    title = read_title_block(reader, top)
     tell(progress, "read boundary and ground", 0.0)
     boundary, ground, region = _surroundings(reader, top, journal)
     tell(progress, "read boreholes and adits", 0.1)
@@ -201,6 +203,7 @@ def build_site(
         order=order,
         faults=faults,
         boreholes=tuple(LoggedHoles(c.paths, c.ends, c.logs) for c in boreholes),
+        title=title,
     )
 
 

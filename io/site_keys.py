@@ -24,6 +24,7 @@ TABLE = ("file", "table", "encoding", "sep", "decimal", "columns", "unit", "meas
 HORIZON = ("name", "top", "base", "accuracy", *SETTINGS)
 TOP = (
     "site",
+    "report",
     "boundary",
     "ground",
     "boreholes",

@@ -36,7 +36,7 @@ RESERVED = {
     "pyvista": ("geofit/report/scene.py", "gui/"),
     "vtkmodules": ("geofit/report/scene.py", "geofit/implicit/", "gui/"),
     "matplotlib": ("geofit/report/", "gui/"),
-    "fpdf": ("geofit/report/pdf.py", "geofit/report/pdf_table.py"),
+    "fpdf": ("geofit/report/pdf.py", "geofit/report/pdf_table.py", "geofit/report/pdf_text.py"),
     "typer": ("geofit/cli/",),
     "rich": ("geofit/cli/",),
 }

@@ -32,13 +32,15 @@ def run_site(
     from geofit.data.accuracy import plain
     from geofit.data.languages import EN
     from geofit.project.run import deliver
+    from geofit.project.side_by_side import available
     from geofit.report.result import horizon_data
 
     print_issues(site.issues, str(out / "import_issues.csv"))
     print_counts(site.counts)
     delivery = deliver(
-        site, out, horizons, changes, progress, language=language or EN, pdf=pdf, apart=apart, bands=bands
-    )
+        site, out, horizons, changes, progress, language=language or EN, pdf=pdf, apart=apart, bands=bands,
+        workers=available(),
+    )  # fmt: skip
     if as_json:
         print_json(
             {

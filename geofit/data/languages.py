@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache
 from gettext import NullTranslations, translation
@@ -12,7 +13,7 @@ from typing import Any
 from geofit.data.errors import SettingsError
 from geofit.data.messages import ENGLISH, Message, Verbatim, message, render
 
-__all__ = ["EN", "ZH", "Language", "catalogue", "language", "sentence", "translate"]
+__all__ = ["EN", "ZH", "Language", "catalogue", "language", "sentence", "together", "translate"]
 
 LOCALE = Path(__file__).resolve().parents[1] / "locale"
 
@@ -92,3 +93,14 @@ def sentence(value: Message | str, language: Language) -> str:
         return text[:1].upper() + text[1:]
     stop = "。" if unicodedata.east_asian_width(text[-1]) in "WF" else "."
     return text[:1].upper() + text[1:] + stop
+
+
+def together(sentences: Iterable[str], language: Language) -> str:
+    """Return sentences as one text: with a space between them, in Chinese without.
+
+    Examples
+    --------
+    >>> together(["One.", "", "Two."], EN), together(["一。", "二。"], ZH)
+    ('One. Two.', '一。二。')
+    """
+    return ("" if language.code == "zh" else " ").join(text for text in sentences if text)

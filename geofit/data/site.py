@@ -14,6 +14,7 @@ from geofit.data.messages import EMPTY, Message
 from geofit.data.picture import card, plan_svg
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
+from geofit.data.title_block import TitleBlock
 
 __all__ = ["Ground", "Hole", "ImportIssue", "Orientations", "Section", "Site", "TableCount"]
 
@@ -143,6 +144,8 @@ class Site:
         Horizons that are faults, and which horizons each of them cuts.
     boreholes : tuple of LoggedHoles
         Paths and interval tables of the boreholes, one entry a campaign.
+    title : TitleBlock
+        What the report's cover says: project, client, document, status, revisions.
     """
 
     name: str
@@ -160,6 +163,7 @@ class Site:
     order: tuple[str, ...] = ()
     faults: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     boreholes: tuple[LoggedHoles, ...] = ()
+    title: TitleBlock = field(default_factory=TitleBlock)
 
     def __repr__(self) -> str:
         return f"<Site {self.name}: {', '.join(f'{key} {value}' for key, value in self._counted().items())}>"

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -15,13 +13,12 @@ from geofit.data.guard import guarded
 from geofit.data.languages import EN, Language
 from geofit.data.messages import EMPTY, Message, message
 from geofit.data.progress import Progress, tell
-from geofit.data.site import Site
+from geofit.data.site import Section, Site
+from geofit.project.horizon_files import Made, compared, section_profiles, write_horizon
+from geofit.project.side_by_side import Crew, crew
 from geofit.report.result import HorizonResult
 
 if TYPE_CHECKING:
-    from geofit.checks.storage import Storage
-    from geofit.data.prediction import OffData
-    from geofit.fitting.horizon_fit import HorizonFit
     from geofit.report.accuracy_report import AccuracyReport
     from geofit.report.pictures import Pictures
     from geofit.site.fit_site import SiteFit
@@ -72,6 +69,7 @@ def deliver(
     pdf: bool = False,
     apart: bool = False,
     bands: bool = False,
+    workers: int = 1,
 ) -> Delivery:
     """Fit horizons of a site, examine them, and write everything that belongs to them.
 
@@ -100,6 +98,9 @@ def deliver(
         Whether horizons of the site's order that cross are separated (:func:`geofit.separate_horizons`).
     bands : bool
         Whether ``_upper90.step`` and ``_lower90.step`` are written: the rock lies between them with 90 %.
+    workers : int
+        Processes that examine and draw horizons side by side; 1: none, all is done here. A script that asks for more
+        needs the guard ``if __name__ == "__main__"``.
 
     Raises
     ------
@@ -110,8 +111,6 @@ def deliver(
     Cancelled
         If ``progress`` returned False; the files of the horizons that were ready stay.
     """
-    from geofit.report.gather import accuracy_report
-    from geofit.report.pictures import draw_site
     from geofit.site.fit_site import fit_site
 
     names = _chosen(site, horizons)
@@ -122,33 +121,37 @@ def deliver(
     # Also when there is nothing to list: a file of an earlier run would mislead.
     _make(out)
     _write_issues(site, out, language)
-    fits = fit_site(site, names, changes, _within(progress, 0.0, FITS), apart=apart)
-    stems = file_stems(fits.surfaces)
-    results: list[HorizonResult] = []
-    images: dict[str, bytes] = {}
+    with crew(min(workers, len(names))) as hands:
+        fits = fit_site(site, names, changes, _within(progress, 0.0, FITS), apart=apart)
+        return _deliver(site, fits, out, hands, progress, language, date, pdf, bands)
+
+
+def _deliver(
+    site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, date: str,
+    pdf: bool, bands: bool,
+) -> Delivery:  # fmt: skip
+    """Examine, draw and write what was fitted."""
+    from geofit.report.gather import accuracy_report
+    from geofit.report.pictures import draw_sections, draw_site
+    from geofit.report.profile import report_sections
+
     failures, warnings = dict(fits.failures), list(fits.warnings)
-    for i, (name, surface) in enumerate(fits.surfaces.items()):
-        share = (1.0 - FITS) / len(fits.surfaces)
-        part = _within(progress, FITS + i * share, FITS + (i + 1) * share, name)
-
-        def failed(reason: Message, name: str = name) -> None:
-            failures[name] = reason
-
-        stem, seconds = out / stems[name], fits.seconds[name]
-        made = guarded(partial(_written, surface, site, stem, part, language, seconds, bands), None, failed)
-        if made is not None:
-            results.append(made.result)
-            images |= made.images
-            warnings += made.warnings
+    sections = report_sections(site, [surface.points for surface in fits.surfaces.values()]) if fits.surfaces else ()
+    made = _examined(site, fits, out, hands, progress, language, bands, sections, failures)
+    results = [one.result for one in made]
+    images = {name: picture for one in made for name, picture in one.images.items()}
+    warnings += [text for one in made for text in one.warnings]
     orders: tuple[Order, ...] = ()
     if results:
-        tell(progress, "report", 1.0)
-        compared, unordered = _orders(site, fits)
-        orders = compared or ()
+        tell(progress, "report", 0.9)
+        ordered, unordered = _orders(site, fits)
+        orders = ordered or ()
         report = accuracy_report(
-            results, compared, cuts=fits.cuts, contradictions=fits.contradictions, failures=failures, date=date
-        )
+            results, ordered, cuts=fits.cuts, contradictions=fits.contradictions, failures=failures, date=date,
+            sections=sections,
+        )  # fmt: skip
         font, whole = _font_warning(results), draw_site(results, language)
+        images |= draw_sections(results, sections, language)
         for data in whole.images.values():
             with replacing(out / "site.png") as picture:
                 picture.write_bytes(data)
@@ -156,6 +159,32 @@ def deliver(
         _write_report(report, whole, images, out, language, font, forms)
         warnings = [text for text in (font, *warnings, unordered, whole.missing) if text]
     return Delivery(out, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions)
+
+
+def _examined(
+    site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, bands: bool,
+    sections: Sequence[Section], failures: dict[str, Message],
+) -> list[Made]:  # fmt: skip
+    """Examine every surface and write its files, side by side; note those that failed."""
+    stems = file_stems(fits.surfaces)
+    # What takes longest begins first: a folded surface is fitted anew without each of its sections.
+    order = sorted(fits.surfaces, key=lambda name: (fits.surfaces[name].frame != "sections", -_size(fits, name)))
+    tasks = [
+        (fits.surfaces[name], site, out / stems[name], language.code, fits.seconds[name], bands, sections)
+        for name in order
+    ]
+    found: dict[str, Made] = {}
+    for i, made in hands.do(write_horizon, tasks, _within(progress, FITS, 0.9), "examination"):
+        if isinstance(made, Message):
+            failures[order[i]] = made
+        else:
+            # Here the surface still has all that its process did not send back.
+            found[order[i]] = replace(made, result=replace(made.result, surface=fits.surfaces[order[i]], site=site))
+    return [found[name] for name in fits.surfaces if name in found]
+
+
+def _size(fits: SiteFit, name: str) -> int:
+    return fits.surfaces[name].control_points
 
 
 @dataclass(frozen=True, eq=False)
@@ -212,7 +241,8 @@ def write_reports(
     """
     from geofit.prediction.examine import examine
     from geofit.report.gather import accuracy_report
-    from geofit.report.pictures import Pictures, draw, draw_site
+    from geofit.report.pictures import Pictures, draw, draw_sections, draw_site
+    from geofit.report.profile import report_sections
     from geofit.site.fit_site import SiteFit
 
     pictured = any(form != "json" for form in forms)
@@ -222,8 +252,9 @@ def write_reports(
         pdf_fonts(chinese=True)
     _make(out)
     images: dict[str, bytes] = {}
-    made = []
+    made: list[HorizonResult] = []
     warnings: list[Message] = []
+    sections = report_sections(results[0].site, [result.surface.points for result in results]) if pictured else ()
     for i, result in enumerate(results):
         low, high = 0.9 * i / len(results), 0.9 * (i + 1) / len(results)
         part = _within(progress, low, high, result.name)
@@ -231,11 +262,14 @@ def write_reports(
         if examined and result.offdata is None:
             result = replace(result, offdata=examine(result.surface, _within(progress, low, 0.6 * high + 0.4 * low)))
         if result.storage is None:
-            storage, missing = _storage(result.surface)
+            storage, missing = compared(result.surface)
             result = replace(result, storage=storage)
             warnings += missing
         if pictured:
             part("pictures", 0.6)
+            profiles, uncut = section_profiles(result, sections)
+            result = replace(result, profiles=profiles)
+            warnings += uncut
             images |= draw(result, language).images
         made.append(result)
     tell(progress, "report", 0.9)
@@ -243,7 +277,8 @@ def write_reports(
         surfaces = {result.name: result.surface for result in made}
         fits = SiteFit(surfaces, {name: name for name in surfaces})
     orders, unordered = _orders(made[0].site, fits)
-    report = accuracy_report(made, orders, cuts=fits.cuts, date=date)
+    report = accuracy_report(made, orders, cuts=fits.cuts, date=date, sections=sections)
+    images |= draw_sections(made, sections, language)
     whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
     tell(progress, "report", 0.95)
     _write_report(report, whole, images, out, language, font, forms)
@@ -262,96 +297,6 @@ def _within(progress: Progress | None, low: float, high: float, name: str = "") 
         )
 
     return listen
-
-
-@dataclass(frozen=True)
-class _Made:
-    """One surface with its files: result, pictures by name, and what is to be told."""
-
-    result: HorizonResult
-    images: Mapping[str, bytes]
-    warnings: tuple[Message, ...]
-
-
-def _written(
-    surface: HorizonFit, site: Site, stem: Path, progress: Progress, language: Language, fit: float, bands: bool
-) -> _Made:
-    """Examine a surface, and write what belongs to it."""
-    from geofit.cad.step import write_step
-    from geofit.prediction.examine import examine
-    from geofit.report.pictures import draw, write_picture
-    from geofit.report.result import write_json
-    from geofit.report.tables import write_residuals
-
-    clock = _Clock(fit)
-    offdata = examine(surface, _within(progress, 0.0, 0.45))
-    clock.stop("examination")
-    progress("STEP and read-back", 0.45)
-    path = stem.with_name(stem.name + ".step")
-    back = write_step({surface.name: surface}, path)[surface.name]
-    warnings = _write_bands(surface, offdata, stem) if bands else ()
-    clock.stop("STEP and read-back")
-    progress("pictures", 0.7)
-    storage, missing = _storage(surface)
-    result = HorizonResult(surface, site, back, storage, path.stat().st_size, offdata=offdata)
-    pictures = draw(result, language)
-    write_picture(result, pictures, stem.with_name(stem.name + ".png"), language)
-    clock.stop("pictures")
-    result = replace(result, seconds=clock.seconds)
-    write_residuals(result, stem.with_name(stem.name + "_residuals.csv"), language)
-    write_json(result, stem.with_name(stem.name + ".json"))
-    return _Made(result, pictures.images, (*warnings, *missing))
-
-
-def _storage(surface: HorizonFit) -> tuple[Storage | None, tuple[Message, ...]]:
-    """Compare the storage of a surface with that of a TIN and a grid; say why where that fails."""
-    from geofit.checks.storage import equal_accuracy
-
-    missing: list[Message] = []
-    found = guarded(
-        lambda: equal_accuracy(surface, surface.settings.interior_tolerance),
-        None,
-        lambda reason: missing.append(
-            message(
-                "run.storage-not-compared",
-                "{name}: its storage was not compared: {reason}",
-                name=surface.name,
-                reason=reason,
-            )
-        ),
-    )
-    return found, tuple(missing)
-
-
-def _write_bands(surface: HorizonFit, offdata: OffData, stem: Path) -> tuple[Message, ...]:
-    """Write the surfaces between which the rock lies with 90 %; return why there are none."""
-    from geofit.cad.step import write_step
-    from geofit.prediction.bands import band
-
-    if offdata.uncertainty is None:
-        return (
-            message(
-                "run.no-90-surfaces-standard",
-                "{name}: no 90 % surfaces, its standard deviation is not known",
-                name=surface.name,
-            ),
-        )
-    for side, one in zip(("upper", "lower"), band(surface, offdata), strict=True):
-        write_step({one.name: one}, stem.with_name(f"{stem.name}_{side}90.step"))
-    return ()
-
-
-class _Clock:
-    """Seconds since the last stop, by name."""
-
-    def __init__(self, fit: float) -> None:
-        self.seconds: dict[str, float] = {"fit": round(fit, 3)}
-        self._since = time.perf_counter()
-
-    def stop(self, name: str) -> None:
-        now = time.perf_counter()
-        self.seconds[name] = round(now - self._since, 3)
-        self._since = now
 
 
 def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Message]:

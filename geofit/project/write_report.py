@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import Literal
@@ -11,6 +12,7 @@ from geofit.data.errors import InputError
 from geofit.data.languages import language as language_of
 from geofit.data.messages import message
 from geofit.data.site import Site
+from geofit.data.title_block import TitleBlock
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.run import Form, write_reports
 from geofit.report.result import HorizonResult
@@ -24,6 +26,7 @@ def write_report(
     folder: str | PathLike[str],
     *,
     site: Site | None = None,
+    title: TitleBlock | None = None,
     forms: Sequence[Literal["html", "pdf", "json"]] = ("html", "json"),
     language: Literal["en", "zh"] = "en",
     examined: bool = False,
@@ -39,6 +42,8 @@ def write_report(
     site : Site, optional
         The site of the fits: its title, study area, holes, sections and list of input files. Without it the report
         describes the points alone.
+    title : TitleBlock, optional
+        What the cover says: project, client, document number, status, author, revisions. By default the site's.
     forms : sequence of {"html", "pdf", "json"}
         Which files to write.
     language : {"en", "zh"}
@@ -79,6 +84,8 @@ def write_report(
             file=str(folder),
         )
     place = site or Site(name=", ".join(fit.name for fit in given), horizons={fit.name: fit.points for fit in given})
+    if title is not None:
+        place = replace(place, title=title)
     written = write_reports(
         [HorizonResult(fit, place) for fit in given],
         Path(folder),

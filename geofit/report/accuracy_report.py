@@ -7,12 +7,13 @@ part that was not examined at all is None as a whole, and the reader is told so.
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from geofit.data.accuracy import Exceedance, plain
 from geofit.data.files import replacing
 from geofit.data.messages import Message
+from geofit.data.title_block import TitleBlock
 
 __all__ = [
     "AccuracyReport",
@@ -30,9 +31,11 @@ __all__ = [
     "OrderLine",
     "OutlierLine",
     "PatchLine",
+    "PlanSheet",
     "PointLine",
     "RejectedRow",
     "SeamLine",
+    "SectionSheet",
     "SuggestionLine",
     "to_json",
     "write_json",
@@ -43,7 +46,7 @@ Words = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class PointLine:
-    """A data point and where it was read: coordinates and signed residual in metres."""
+    """A data point and where it was read: coordinates and signed residual in metres; None: it was left out."""
 
     file: str
     row: int
@@ -53,7 +56,7 @@ class PointLine:
     y: float
     z: float
     patch: str
-    residual: float
+    residual: float | None
 
 
 @dataclass(frozen=True)
@@ -258,12 +261,42 @@ class CutLine:
 
 
 @dataclass(frozen=True)
+class SectionSheet:
+    """A geological section to scale: its ends (x, y) and elevations in metres, and the name of its picture.
+
+    ``scale`` is the denominator, heights are ``exaggeration`` times larger. ``banded`` and ``grounded`` say whether
+    90 % bands and the ground are drawn.
+    """
+
+    name: str
+    start: tuple[float, float]
+    end: tuple[float, float]
+    length: float
+    low: float
+    high: float
+    scale: int
+    exaggeration: int
+    banded: bool
+    grounded: bool
+    picture: str
+
+
+@dataclass(frozen=True)
+class PlanSheet:
+    """A contour plan to scale: the denominator, and metres between contours."""
+
+    scale: int
+    interval: float
+
+
+@dataclass(frozen=True)
 class HorizonReport:
     """Everything said about one horizon; metres.
 
     ``verdict`` is PASS or FAIL by sigma against epsilon alone; ``sound`` tells whether every check holds too.
     ``over`` counts points beyond tolerances, by the name of the setting. ``pictures`` names those that
-    belong here, by what they show.
+    belong here, by what they show. ``plan`` is None for a folded surface, of which contours would cross.
+    ``excluded`` are points that a person left out, ``edits`` changes by hand.
     """
 
     name: str
@@ -299,6 +332,9 @@ class HorizonReport:
     settings: Words
     fit: Words
     pictures: Words
+    plan: PlanSheet | None = None
+    excluded: tuple[PointLine, ...] = ()
+    edits: tuple[Message, ...] = ()
 
     @property
     def control_points(self) -> int:
@@ -343,7 +379,8 @@ class AccuracyReport:
     no two horizons to compare. ``cuts`` are what faults displace, ``contradictions`` what a repair of crossings left.
     ``failures`` holds horizons that could not be fitted, with the reason. ``issues``
     counts errors, warnings and notes of the readers; ``rejected`` lists errors and warnings. ``versions`` names the
-    programs. ``picture`` names the picture of all horizons, empty if there is none.
+    programs. ``picture`` names the picture of all horizons, empty if there is none. ``title`` is what the cover says,
+    ``sections`` are the geological sections.
     """
 
     site: str
@@ -359,6 +396,8 @@ class AccuracyReport:
     rejected: tuple[RejectedRow, ...]
     versions: Words
     picture: str
+    title: TitleBlock = field(default_factory=TitleBlock)
+    sections: tuple[SectionSheet, ...] = ()
 
 
 def to_json(report: AccuracyReport) -> str:

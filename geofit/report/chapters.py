@@ -1,11 +1,13 @@
-"""The accuracy report as pages in a language: cover, the site as a whole, a chapter for each horizon."""
+"""The accuracy report as pages in a language: cover, summary, sections, a chapter for each horizon, annexes."""
 
 from __future__ import annotations
 
-from geofit.data.languages import Language, sentence, translate
+from geofit.data.languages import Language, translate
 from geofit.data.messages import Message
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport
+from geofit.report.annex import horizon_annex, inputs_annex
+from geofit.report.cover import cover, reference
 from geofit.report.document import (
     Block,
     Cell,
@@ -16,17 +18,16 @@ from geofit.report.document import (
     Mark,
     Paragraph,
     Picture,
-    Signatures,
     Table,
     Verdict,
 )
+from geofit.report.drawings_chapter import sections_chapter
 from geofit.report.horizon_chapter import horizon_chapter
+from geofit.report.interventions import interventions
+from geofit.report.limits import away_from_data, limits_of_use
 from geofit.report.structure_blocks import structure_blocks
 
 __all__ = ["document"]
-
-#: Rows of a list in the document; the JSON and the CSV hold all of them.
-LONGEST = 40
 
 
 def document(
@@ -46,28 +47,38 @@ def document(
         Something the reader must know about the report itself, a missing font for one.
     """
     site = report.site or t("Site")
-    whole = Chapter(t("The site as a whole"), (*structure_blocks(report, t), *_inputs(report, t)))
-    chapters = [_cover(report, t, missing_picture, warning), whole]
-    chapters += [horizon_chapter(horizon, t, missing_picture) for horizon in report.horizons]
+    title = report.title
+    version = "geofit " + dict(report.versions)["geofit"]
+    facts = ((t("Coordinate system"), report.crs or t("not stated")), (t("Program"), version))
+    picture = Paragraph(translate(missing_picture, t), "warning") if missing_picture else Picture(report.picture, "")
+    drawings = sections_chapter(report, t)
+    annexes = [inputs_annex(report, t), horizon_annex(report, t)]
+    chapters = [
+        cover(title, facts, picture, report.date, t, warning),
+        _summary(report, t),
+        *([drawings] if drawings else []),
+        *(horizon_chapter(horizon, t, missing_picture) for horizon in report.horizons),
+        Chapter(t("The site as a whole"), structure_blocks(report, t), follows=True),
+        interventions(report, t),
+        *annexes,
+    ]
+    unlisted = frozenset(block.text for one in annexes for block in one.blocks if isinstance(block, Heading))
     return Document(
         title=site,
         subject=t("Accuracy report of the geological surfaces"),
         site=site,
         date=report.date,
         language=t.html,
-        footer=f"geofit {dict(report.versions)['geofit']} · {report.date}",
+        footer=f"{version} · {report.date}",
         chapters=tuple(chapters),
+        contents=t("Contents"),
+        reference=reference(title, t),
+        unlisted=unlisted,
     )
 
 
-def _cover(report: AccuracyReport, t: Language, missing_picture: Message | None, warning: Message | None) -> Chapter:
-    blocks: list[Block] = []
-    facts = [t("Coordinate system: {crs}", crs=report.crs or t("not stated")), t("Date: {date}", date=report.date)]
-    facts.append("geofit " + dict(report.versions)["geofit"])
-    blocks.append(Paragraph(" · ".join(facts), "quiet"))
-    if warning:
-        blocks.append(Paragraph(translate(warning, t), "warning"))
-    blocks.append(Heading(t("Verdict")))
+def _summary(report: AccuracyReport, t: Language) -> Chapter:
+    blocks: list[Block] = [Heading(t("Verdict"))]
     columns = (
         Column(t("Horizon")),
         Column(t("Verdict")),
@@ -91,18 +102,8 @@ def _cover(report: AccuracyReport, t: Language, missing_picture: Message | None,
     )
     for name, reason in report.failures:
         blocks.append(Paragraph(t("{name} could not be fitted: {reason}", name=name, reason=reason), "warning"))
-    if missing_picture:
-        blocks.append(Paragraph(translate(missing_picture, t), "warning"))
-    else:
-        blocks.append(Picture(report.picture, t("All horizons and holes.")))
-    blocks.append(Heading(t("Signatures")))
-    blocks.append(
-        Signatures(
-            ("", t("Name"), t("Signature"), t("Date")),
-            (t("Prepared"), t("Checked"), t("Approved")),
-        )
-    )
-    return Chapter(t("Accuracy report"), tuple(blocks))
+    blocks += [*away_from_data(report, t), *limits_of_use(report, t)]
+    return Chapter(t("Summary"), tuple(blocks))
 
 
 def verdict_word(horizon: HorizonReport, t: Language) -> str:
@@ -130,75 +131,3 @@ def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
         t("not examined") if off is None else digits.metres(error),
         checks,
     )
-
-
-def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
-    counts = dict(report.issues)
-    blocks: list[Block] = [
-        Heading(t("Files")),
-        Paragraph(t("Rows read = rows used + rows listed. SHA-256 tells whether a file is the one that was read.")),
-        Table(
-            (
-                Column(t("File"), "wide"),
-                Column(t("Rows read"), "number"),
-                Column(t("Used"), "number"),
-                Column(t("Listed"), "number"),
-                Column("SHA-256", "hash"),
-            ),
-            tuple(
-                (f.file, digits.count(f.read), digits.count(f.used), digits.count(f.listed), f.sha256 or "–")
-                for f in report.inputs
-            ),
-        ),
-        Heading(t("Rejected rows and warnings")),
-        Paragraph(
-            t(
-                "Rows not used: {errors}; warnings: {warnings}; notes on how files were understood: {notes}. "
-                "import_issues.csv lists all of them.",
-                errors=counts["error"],
-                warnings=counts["warning"],
-                notes=counts["note"],
-            )
-        ),
-    ]
-    if report.rejected:
-        rows = tuple(
-            (
-                Mark(False, t("not used")) if r.severity == "error" else Mark(None, t("warning")),
-                r.file,
-                str(r.row) if r.row else "–",
-                r.column or "–",
-                r.value or "–",
-                f"{sentence(r.reason, t)} {translate(r.remedy, t)}".strip(),
-            )
-            for r in report.rejected[:LONGEST]
-        )
-        columns = (
-            Column(t("What")),
-            Column(t("File"), "wide"),
-            Column(t("Row"), "number"),
-            Column(t("Column")),
-            Column(t("Value")),
-            Column(t("Reason and remedy"), "wide"),
-        )
-        blocks.append(Table(columns, rows))
-        blocks += more(len(report.rejected), LONGEST, "import_issues.csv", t)
-    blocks.append(Heading(t("Versions")))
-    blocks.append(Table((Column(t("Program")), Column(t("Version"))), report.versions))
-    blocks.append(
-        Paragraph(
-            t(
-                "Method: Li, Miao, Liu, Wang (2011), interpolation–approximation fitting of complex geological "
-                "surfaces; checks and errors off the data as geofit documents them."
-            ),
-            "quiet",
-        )
-    )
-    return blocks
-
-
-def more(total: int, shown: int, where: str, t: Language) -> list[Block]:
-    """Say that a table is longer than what is shown, and where the rest stands; nothing if it is not."""
-    if total <= shown:
-        return []
-    return [Paragraph(t("{count} more stand in {file}.", count=total - shown, file=where), "quiet")]

@@ -12,6 +12,7 @@ __all__ = [
     "Column",
     "Document",
     "Facts",
+    "Fields",
     "Heading",
     "Mark",
     "Paragraph",
@@ -77,10 +78,11 @@ class Paragraph:
 
 @dataclass(frozen=True)
 class Table:
-    """A table; a row has a cell for each column."""
+    """A table; a row has a cell for each column. A ``dense`` one, of an annex, has less room between its rows."""
 
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
+    dense: bool = False
 
 
 @dataclass(frozen=True)
@@ -91,36 +93,52 @@ class Facts:
 
 
 @dataclass(frozen=True)
+class Fields:
+    """The title block: labels with what stands behind them, in ruled lines; an empty value is a line to fill in."""
+
+    items: tuple[tuple[str, str], ...]
+
+
+@dataclass(frozen=True)
 class Picture:
-    """A picture by its name, and what it shows."""
+    """A picture by its name, and what it shows; one ``to_scale`` keeps its width of 174 mm on paper."""
 
     name: str
     caption: str
+    to_scale: bool = False
 
 
 @dataclass(frozen=True)
 class Signatures:
-    """Empty lines to be filled in by hand: a row for each role, a column for each thing to write."""
+    """Lines to be filled in by hand: a row for each role, with the name where it is known."""
 
     columns: tuple[str, ...]
-    roles: tuple[str, ...]
+    roles: tuple[tuple[str, str], ...]
 
 
-Block = Heading | Paragraph | Table | Facts | Picture | Signatures
+Block = Heading | Paragraph | Table | Facts | Fields | Picture | Signatures
 
 
 @dataclass(frozen=True)
 class Chapter:
-    """A part that begins on a new page; ``verdict`` stands beside its title."""
+    """A part of the document; ``verdict`` stands beside its title.
+
+    A chapter begins on a new page unless it ``follows`` on: then it begins where there is room for a good part of it.
+    """
 
     title: str
     blocks: tuple[Block, ...]
     verdict: Verdict | None = None
+    follows: bool = False
 
 
 @dataclass(frozen=True)
 class Document:
-    """A whole report in one language: the first chapter is the cover."""
+    """A whole report in one language: the first chapter is the cover, ``contents`` titles the list of the others.
+
+    ``reference`` stands in the running head: document number and revision. ``unlisted`` are headings that the contents
+    leave out.
+    """
 
     title: str
     subject: str
@@ -129,3 +147,6 @@ class Document:
     language: str
     footer: str
     chapters: tuple[Chapter, ...]
+    contents: str = ""
+    reference: str = ""
+    unlisted: frozenset[str] = frozenset()

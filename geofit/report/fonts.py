@@ -53,9 +53,9 @@ def _chinese() -> str | None:
 
 
 def families() -> list[str]:
-    """Return the font families for matplotlib, in the order in which a character is looked for."""
+    """Return the font families for matplotlib, in the order in which a character is looked for: as in the PDF."""
     chinese = _chinese()
-    return ["DejaVu Sans", *([chinese] if chinese else [])]
+    return [*([chinese] if chinese else []), "DejaVu Sans"]
 
 
 def missing_font(texts: Iterable[str]) -> Message | None:

@@ -12,12 +12,14 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import geofit
 from geofit.data.accuracy import Check, Seam
 from geofit.data.messages import EMPTY, Message
+from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, OffData
-from geofit.data.site import Site
+from geofit.data.site import Section, Site
 from geofit.report.accuracy_report import (
     AccuracyReport,
     CheckLine,
@@ -39,14 +41,18 @@ from geofit.report.accuracy_report import (
     SeamLine,
     SuggestionLine,
 )
+from geofit.report.contour_plan import plan_sheet
+from geofit.report.histogram import NOISE
+from geofit.report.profile import Profile
 from geofit.report.result import HorizonResult, sigma_of
+from geofit.report.section_sheet import section_sheet
 
 if TYPE_CHECKING:
     from geofit.site.order import Order
     from geofit.site.separate import Contradiction
     from geofit.site.throw import FaultCut
 
-__all__ = ["PICTURES", "accuracy_report", "picture_name", "today"]
+__all__ = ["PICTURES", "accuracy_report", "cut_of", "picture_name", "section_picture", "today"]
 
 #: What the pictures of a horizon show, in the order of the report.
 PICTURES = ("plan", "view", "deviation", "residuals", "uncertainty")
@@ -58,6 +64,16 @@ _PROGRAMS = ("numpy", "scipy")
 def picture_name(what: str, horizon: str) -> str:
     """Return the name by which a report speaks of a picture of a horizon."""
     return f"{what}/{horizon}"
+
+
+def section_picture(section: Section) -> str:
+    """Return the name by which a report speaks of the drawing of a section."""
+    return f"section/{section.name}"
+
+
+def cut_of(results: Sequence[HorizonResult], section: Section) -> dict[str, tuple[Profile, ...]]:
+    """Return what a section cuts of each horizon."""
+    return {result.name: tuple(result.profiles.get(section.name, ())) for result in results}
 
 
 def today() -> str:
@@ -76,6 +92,7 @@ def accuracy_report(
     contradictions: Sequence[Contradiction] = (),
     failures: Mapping[str, Message] | None = None,
     date: str = "",
+    sections: Sequence[Section] = (),
 ) -> AccuracyReport:
     """Gather the report of a site.
 
@@ -93,6 +110,8 @@ def accuracy_report(
         Horizons that could not be fitted, and why.
     date : str
         ISO 8601; empty: :func:`today`.
+    sections : sequence of Section
+        Geological sections that the report shows; the results hold what they cut.
     """
     site = results[0].site
     severities = [issue.severity for issue in site.issues]
@@ -112,6 +131,8 @@ def accuracy_report(
         rejected=tuple(RejectedRow(**_issue(i)) for i in site.issues if i.severity in ("error", "warning")),
         versions=_versions(),
         picture=SITE_PICTURE,
+        title=site.title,
+        sections=tuple(section_sheet(one, site, cut_of(results, one), section_picture(one)) for one in sections),
     )
 
 
@@ -125,7 +146,7 @@ def _horizon(result: HorizonResult) -> HorizonReport:
     out, settings = d[~core], surface.settings
     points, storage = surface.points, result.storage
     groups = {"kind": a.by_kind, "section": a.by_section, "hole": a.by_hole, "patch": a.by_patch}
-    shown = [what for what in PICTURES if what != "uncertainty" or _has_uncertainty(result.offdata)]
+    shown = [what for what in PICTURES if _shown(what, result, out)]
     return HorizonReport(
         name=result.name,
         verdict=a.verdict,
@@ -167,7 +188,19 @@ def _horizon(result: HorizonResult) -> HorizonReport:
         settings=tuple((key, _word(value)) for key, value in asdict(settings).items()),
         fit=tuple((k, _word(v)) for k, v in surface.diagnostics.items() if isinstance(v, bool | int | float | str)),
         pictures=tuple((what, picture_name(what, result.name)) for what in shown),
+        plan=plan_sheet(result),
+        excluded=()
+        if result.excluded is None
+        else tuple(_excluded(result.excluded, i) for i in range(len(result.excluded))),
+        edits=result.edits,
     )
+
+
+def _shown(what: str, result: HorizonResult, approximated: NDArray[np.float64]) -> bool:
+    """Whether a picture has something to show: residuals where not every point is interpolated."""
+    if what == "residuals":
+        return bool(np.abs(approximated).max(initial=0.0) >= NOISE)
+    return what != "uncertainty" or _has_uncertainty(result.offdata)
 
 
 def _has_uncertainty(offdata: OffData | None) -> bool:
@@ -192,6 +225,12 @@ def _point(result: HorizonResult, i: int) -> PointLine:
     return PointLine(
         str(points.file[i]), int(points.row[i]), str(points.kind[i]), source, x, y, z, str(a.patch[i]), residual
     )
+
+
+def _excluded(points: PointSet, i: int) -> PointLine:
+    x, y, z = (float(value) for value in points.xyz[i])
+    source = str(points.hole[i] or points.section[i])
+    return PointLine(str(points.file[i]), int(points.row[i]), str(points.kind[i]), source, x, y, z, "", None)
 
 
 def _seams(seams: Sequence[Seam]) -> tuple[SeamLine, ...]:

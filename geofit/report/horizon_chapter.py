@@ -2,70 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import zip_longest
 from typing import Literal
 
-from geofit.data.languages import Language, sentence, translate
-from geofit.data.messages import Message, gravest_first, message
+from geofit.data.languages import Language, sentence, together, translate
+from geofit.data.messages import Message, gravest_first
 from geofit.report import digits
-from geofit.report.accuracy_report import CheckLine, FileCheck, GroupLine, HorizonReport
+from geofit.report.accuracy_report import FileCheck, HorizonReport
+from geofit.report.checks_table import check_table
+from geofit.report.contour_plan import plan_caption
 from geofit.report.document import (
     Block,
-    Cell,
     Chapter,
     Column,
     Facts,
     Heading,
-    Mark,
     Paragraph,
     Picture,
     Table,
     Verdict,
 )
+from geofit.report.group_tables import group_blocks
 from geofit.report.off_data_blocks import off_data_blocks
-from geofit.report.point_table import point_cells, point_columns
 
 __all__ = ["horizon_chapter"]
-
-#: Holes and sections beyond this number are in the JSON only, the largest residual first here.
-LONGEST_GROUPS = 20
-#: Of the places where a check does not hold, so many are named.
-MOST_PLACES = 3
-#: Longer tables of groups stand in two halves side by side.
-LONGEST_SINGLE = 6
-_GROUPS = {
-    "kind": (message("report.by-kind", "By kind of source"), message("report.kind", "Kind of source")),
-    "section": (message("report.by-section", "By section"), message("report.section", "Section")),
-    "hole": (message("report.by-hole", "By hole"), message("report.hole", "Hole")),
-    "patch": (message("report.by-patch", "By patch"), message("report.patch", "Patch")),
-}
-_SETTINGS = {
-    "epsilon": message("report.control-error", "Control error ε, m"),
-    "interior_tolerance": message("report.interior-tolerance", "Interior tolerance, m"),
-    "boundary_tolerance": message("report.boundary-tolerance", "Boundary tolerance, m"),
-    "across": message("report.interpolation-across-sections", "Interpolation across the sections"),
-    "seam": message("report.seams", "Seams"),
-    "core": message("report.core", "Core"),
-    "frame": message("report.frame", "Frame"),
-    "smoothing": message("report.smoothing", "Smoothing"),
-    "robust": message("report.outliers-take-no-part", "Outliers take no part"),
-    "max_iterations": message("report.max-iterations", "Most iterations"),
-    "max_control_points": message("report.max-control-points", "Most control points"),
-    "conflict_distance": message("report.conflict-distance", "Conflict distance, m"),
-}
-_FIT = {
-    "control_points": message("report.control-points", "Control points"),
-    "energy": message("report.bending-energy", "Bending energy"),
-    "smoothing": message("report.smoothing", "Smoothing"),
-    "iterations": message("report.iterations", "Iterations"),
-    "frame": message("report.frame", "Frame"),
-    "order": message("report.derivative-energy", "Derivative in the energy"),
-    "across": message("report.interpolation-across-sections", "Interpolation across the sections"),
-    "noise": message("report.noise", "Noise, m"),
-    "spacing": message("report.spacing", "Spacing, m"),
-    "rounds": message("report.rounds", "Rounds"),
-}
 
 
 def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | None = None) -> Chapter:
@@ -74,15 +33,13 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
         Paragraph(_sentence(h, t)),
         _facts(h, t),
         *_notes(h, t),
-        *_pictures(h, t, missing_picture),
+        *_plan(h, t),
+        *group_blocks(h, ("kind",), t),
+        *_view(h, t, missing_picture),
         *_deviations(h, t),
-        *_groups(h, t),
-        *_worst(h, t),
         *_checked(h, t),
         *_read_back(h.read_back, t),
         *off_data_blocks(h, t),
-        *_conflicts(h, t),
-        *_made(h, t),
     ]
     passed = h.verdict == "PASS"
     return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), Verdict(passed, t("PASS") if passed else t("FAIL")))
@@ -95,9 +52,7 @@ def _sentence(h: HorizonReport, t: Language) -> str:
     if h.verdict != "PASS":
         return t("σ {sigma} is not below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
     text = t("σ {sigma} is below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
-    if not h.sound:
-        text += " " + t("But a check does not hold: see below.")
-    return text
+    return together([text, "" if h.sound else t("But a check does not hold: see below.")], t)
 
 
 def _facts(h: HorizonReport, t: Language) -> Facts:
@@ -127,17 +82,21 @@ def _style(note: Message) -> Literal["plain", "warning"]:
     return "plain" if note.severity == "info" else "warning"
 
 
-def _pictures(h: HorizonReport, t: Language, missing_picture: Message | None) -> list[Block]:
-    pictures = dict(h.pictures)
-    blocks: list[Block] = [Heading(t("The surface"))]
-    if missing_picture:
-        blocks.append(Paragraph(translate(missing_picture, t), "warning"))
-    else:
-        caption = t("Dots: data points. Thick line: edge of the core. Thin lines: contours.")
-        blocks.append(Picture(pictures["view"], caption))
+def _plan(h: HorizonReport, t: Language) -> list[Block]:
+    """Lay out the contour plan; of a folded surface, whose contours would cross, the site plan."""
+    name = dict(h.pictures)["plan"]
+    if h.plan is not None:
+        return [Heading(t("The surface")), Picture(name, plan_caption(h.name, h.plan, t), to_scale=True)]
+    folded = t("The surface is folded over: its contours in plan would cross. See the geological sections.")
     caption = t("Site plan: points by kind of source, holes, core, patches of the periphery, study area.")
-    blocks.append(Picture(pictures["plan"], caption))
-    return blocks
+    return [Heading(t("The surface")), Paragraph(folded, "quiet"), Picture(name, caption)]
+
+
+def _view(h: HorizonReport, t: Language, missing_picture: Message | None) -> list[Block]:
+    if missing_picture:
+        return [Paragraph(translate(missing_picture, t), "warning")]
+    caption = t("Dots: data points. Thick line: edge of the core. Thin lines: contours.")
+    return [Picture(dict(h.pictures)["view"], caption)]
 
 
 def _deviations(h: HorizonReport, t: Language) -> list[Block]:
@@ -154,14 +113,12 @@ def _deviations(h: HorizonReport, t: Language) -> list[Block]:
         interior=interior,
         control=control,
     )
+    law = t("Left: residuals of the points that are not interpolated. Right: the same against a normal law.")
     return [
         Heading(t("Residuals at the data")),
         Picture(pictures["deviation"], bands),
-        Picture(
-            pictures["residuals"],
-            t("Left: residuals of the points that are not interpolated. Right: the same against a normal law."),
-        ),
         Table((Column(t("Points beyond")), Column(t("Count"), "number"), Column(t("Share"), "number")), rows),
+        *([Picture(pictures["residuals"], law)] if "residuals" in pictures else []),
     ]
 
 
@@ -172,111 +129,9 @@ def _bound(name: str, limit: float, t: Language) -> str:
     return t("interior tolerance {value:g} m", value=limit)
 
 
-def _groups(h: HorizonReport, t: Language) -> list[Block]:
-    blocks: list[Block] = []
-    for by, (title, word) in _GROUPS.items():
-        rows = [group for group in h.groups if group.by == by]
-        if not rows:
-            continue
-        shown = rows
-        if len(rows) > LONGEST_GROUPS:
-            shown = sorted(rows, key=lambda group: -group.max_abs)[:LONGEST_GROUPS]
-        columns = (
-            Column(translate(word, t)),
-            Column(t("Points"), "number"),
-            Column(t("σ, m"), "number"),
-            Column(t("Largest |d|, m"), "number"),
-            Column(t("Mean d, m"), "number"),
-        )
-        table = Table(columns, tuple(_group_row(group, t) for group in shown))
-        blocks += [Heading(translate(title, t), 3), _doubled(table) if len(shown) > LONGEST_SINGLE else table]
-        if len(rows) > LONGEST_GROUPS:
-            text = t(
-                "The {shown} with the largest residuals; {count} more stand in report.json.",
-                shown=LONGEST_GROUPS,
-                count=len(rows) - LONGEST_GROUPS,
-            )
-            blocks.append(Paragraph(text, "quiet"))
-    return blocks
-
-
-def _doubled(table: Table) -> Table:
-    """Put the second half of a long, narrow table beside its first."""
-    half = (len(table.rows) + 1) // 2
-    empty = ("",) * len(table.columns)
-    rows = zip_longest(table.rows[:half], table.rows[half:], fillvalue=empty)
-    return Table((*table.columns, Column(""), *table.columns), tuple((*a, "", *b) for a, b in rows))
-
-
-def _group_row(group: GroupLine, t: Language) -> tuple[Cell, ...]:
-    name = translate(group.name, t) if group.by in ("kind", "patch") else group.name
-    figures = (digits.metres(value) for value in (group.sigma, group.max_abs, group.mean))
-    return (name, digits.count(group.n), *figures)
-
-
-def _worst(h: HorizonReport, t: Language) -> list[Block]:
-    columns = (*point_columns(t), Column(t("Patch")), Column(t("d, m"), "number"))
-    rows = tuple((*point_cells(p, t), translate(p.patch, t), digits.metres(p.residual)) for p in h.worst)
-    return [Heading(t("The {count} largest residuals", count=len(h.worst)), 3), Table(columns, rows)]
-
-
 def _checked(h: HorizonReport, t: Language) -> list[Block]:
-    blocks: list[Block] = [Heading(t("Checks of the surface"))]
-    blocks.append(_check_table(h.checks, t) if h.checks else Paragraph(t("Not examined.")))
-    blocks.append(Heading(t("Seams"), 3))
-    blocks.append(_seam_table(h, t) if h.seams else Paragraph(t("One patch: no seams.")))
-    return blocks
-
-
-def _check_table(checks: Sequence[CheckLine], t: Language) -> Table:
-    columns = (
-        Column(t("Question")),
-        Column(t("Answer")),
-        Column(t("Value"), "number"),
-        Column(t("Limit"), "number"),
-        Column(t("Detail"), "wide"),
-    )
-    words = {True: t("holds"), False: t("does not hold"), None: t("not applicable")}
-    rows = tuple(
-        (
-            translate(c.name, t),
-            Mark(c.passed, words[c.passed]),
-            digits.measured(c.value, translate(c.unit, t)),
-            digits.measured(c.limit, translate(c.unit, t)),
-            _detail(c, t),
-        )
-        for c in checks
-    )
-    return Table(columns, rows)
-
-
-def _detail(check: CheckLine, t: Language) -> str:
-    """Return what a check says, and, where it does not hold, the worst places."""
-    text = sentence(check.text, t)
-    if check.passed is not False or not check.places:
-        return text
-    places = "; ".join(f"({', '.join(digits.place(value) for value in p)})" for p in check.places[:MOST_PLACES])
-    worst = t("Worst at {places} m.", places=places)
-    return f"{text} {worst}"
-
-
-def _seam_table(h: HorizonReport, t: Language) -> Table:
-    """Lay out the seams of the surface, and beside them what the reader found in the file."""
-    seams = {(s.first, s.second): s for s in h.seams}
-    back = {(s.first, s.second): s for s in (h.read_back.seams if h.read_back else ())}
-    columns = (
-        Column(t("Seam")),
-        Column(t("Largest gap, m"), "number"),
-        Column(t("Largest angle, °"), "number"),
-        Column(t("Gap in the file, m"), "number"),
-        Column(t("Angle in the file, °"), "number"),
-    )
-    rows = []
-    for a, b in dict.fromkeys([*seams, *(pair for pair in back if pair[::-1] not in seams)]):
-        found = (seams.get((a, b)), back.get((a, b)) or back.get((b, a)))
-        figures = [value for seam in found for value in ((seam.gap, seam.angle) if seam else (None, None))]
-        rows.append((f"{translate(a, t)} – {translate(b, t)}", *(digits.metres(value) for value in figures)))
-    return Table(columns, tuple(rows))
+    found = check_table(h.checks, t) if h.checks else Paragraph(t("Not examined."))
+    return [Heading(t("Checks of the surface")), found]
 
 
 def _read_back(back: FileCheck | None, t: Language) -> list[Block]:
@@ -294,71 +149,13 @@ def _read_back(back: FileCheck | None, t: Language) -> list[Block]:
         (t("Edge tolerance"), digits.length(back.edge_tolerance), ""),
         (t("Self-intersection"), crossing, digits.size(back.bytes) if back.bytes else ""),
     )
-    blocks += [
-        Paragraph(t("{file} was read back by OpenCASCADE and measured again.", file=back.file)),
-        Facts(facts),
-    ]
-    if back.checks:
-        blocks.append(_check_table(back.checks, t))
-    blocks.append(Paragraph(f"SHA-256 {back.sha256}", "quiet"))
-    return blocks
-
-
-def _conflicts(h: HorizonReport, t: Language) -> list[Block]:
-    blocks: list[Block] = [Heading(t("Points that contradict each other"))]
-    if not h.conflicts:
-        return [*blocks, Paragraph(t("None."))]
-    columns = (
-        Column(t("Kept"), "wide"),
-        Column(t("Gave way"), "wide"),
-        Column(t("Difference, m"), "number"),
-        Column(t("Why"), "wide"),
+    text = t("{file} was read back by OpenCASCADE and measured again.", file=back.file)
+    failed = [check for check in back.checks if check.passed is False]
+    held = sum(check.passed is True for check in back.checks)
+    verdict = (
+        t("{count} of its checks failed.", count=len(failed))
+        if failed
+        else t("All {count} checks of the file passed.", count=held)
     )
-    rows = tuple(
-        (translate(c.kept, t), translate(c.dropped, t), digits.metres(c.difference), translate(c.text, t))
-        for c in h.conflicts
-    )
-    return [*blocks, Table(columns, rows)]
-
-
-def _value(key: str, value: str, t: Language) -> str:
-    """Return the value of a setting; a map is a kind of source, too, and is another word then."""
-    return t("the map") if (key, value) == ("frame", "map") else translate(value, t)
-
-
-def _made(h: HorizonReport, t: Language) -> list[Block]:
-    settings = [(translate(_SETTINGS.get(key, key), t), _value(key, value, t)) for key, value in h.settings]
-    figures = [(translate(_FIT.get(key, key), t), _value(key, value, t)) for key, value in h.fit]
-    patches = tuple(
-        (
-            translate(p.name, t),
-            f"{p.degree[0]} × {p.degree[1]}",
-            f"{p.control[0]} × {p.control[1]} = {digits.count(p.control[0] * p.control[1])}",
-        )
-        for p in h.patches
-    )
-    blocks: list[Block] = [
-        Heading(t("How it was made")),
-        Table(
-            (
-                Column(t("Setting")),
-                Column(t("Value"), "wide"),
-                Column(t("Figure of the fit")),
-                Column(t("Value"), "wide"),
-            ),
-            tuple((*a, *b) for a, b in zip_longest(settings, figures, fillvalue=("", ""))),
-        ),
-    ]
-    if h.tin_points and h.equal_accuracy:
-        grid = digits.count(h.grid_points) if h.grid_points else t("more than 12 000")
-        text = t(
-            "To stay within {tolerance} m of this surface, a TIN needs {tin} points, a square grid {grid}; the surface "
-            "has {control} control points.",
-            tolerance=digits.given(h.equal_accuracy),
-            tin=digits.count(h.tin_points),
-            grid=grid,
-            control=digits.count(h.control_points),
-        )
-        blocks.append(Paragraph(text))
-    table = Table((Column(t("Patch")), Column(t("Degree"), "number"), Column(t("Control points"), "number")), patches)
-    return [*blocks, _doubled(table) if len(patches) > 2 else table]
+    blocks += [Paragraph(together([text, verdict if back.checks else ""], t)), Facts(facts)]
+    return [*blocks, check_table(failed, t)] if failed else blocks

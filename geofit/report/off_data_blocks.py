@@ -7,7 +7,6 @@ from geofit.data.messages import message
 from geofit.report import digits
 from geofit.report.accuracy_report import HorizonReport, LeftOutLine, OffDataReport
 from geofit.report.document import Block, Cell, Column, Facts, Heading, Mark, Paragraph, Picture, Table
-from geofit.report.point_table import point_cells, point_columns
 
 __all__ = ["CALIBRATED", "off_data_blocks"]
 
@@ -39,26 +38,6 @@ def off_data_blocks(h: HorizonReport, t: Language) -> list[Block]:
     blocks += _left_out(off, t)
     blocks += [Paragraph(sentence(note, t), "quiet") for note in off.notes]
     blocks += _uncertainty(h, off, t)
-    blocks.append(Heading(t("Outliers"), 3))
-    if off.outliers:
-        blocks.append(
-            Paragraph(
-                t("Points that their neighbours do not bear out. They were used all the same: look at them."), "quiet"
-            )
-        )
-        columns = (
-            *point_columns(t),
-            Column(t("Left-out error, m"), "number"),
-            Column(t("Standard deviation, m"), "number"),
-            Column(t("Ratio"), "number"),
-        )
-        rows = tuple(
-            (*point_cells(o.point, t), digits.metres(o.error), digits.metres(o.sd), f"{o.ratio:.1f}".replace("-", "−"))
-            for o in off.outliers
-        )
-        blocks.append(Table(columns, rows))
-    else:
-        blocks.append(Paragraph(t("None.")))
     return blocks
 
 
@@ -123,25 +102,4 @@ def _uncertainty(h: HorizonReport, off: OffDataReport, t: Language) -> list[Bloc
         )
         caption = t("Standard deviation of the surface. Numbered crosses: suggested holes, in the order of their use.")
         blocks += [Facts(facts), Picture(name, caption)]
-    if not off.suggestions:
-        return [*blocks, Paragraph(t("No holes are suggested."))]
-    columns = (
-        Column(t("No."), "number"),
-        Column("x, m", "number"),
-        Column("y, m", "number"),
-        Column("z, m", "number"),
-        Column(t("Standard deviation there, m"), "number"),
-        Column(t("Mean afterwards, m"), "number"),
-        Column(t("Largest afterwards, m"), "number"),
-        Column(t("Mean lower by"), "number"),
-    )
-    rows = tuple(
-        (
-            str(i),
-            *(digits.place(value) for value in (s.x, s.y, s.z)),
-            *(digits.metres(value) for value in (s.sd, s.mean_after, s.max_after)),
-            digits.share(1 - s.mean_after / off.sd_mean) if off.sd_mean else "–",
-        )
-        for i, s in enumerate(off.suggestions, 1)
-    )
-    return [*blocks, Table(columns, rows)]
+    return blocks

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from fpdf import FPDF
+from fpdf.outline import OutlineSection
 
 from geofit.data.files import replacing
 from geofit.report.document import (
@@ -16,6 +17,7 @@ from geofit.report.document import (
     Chapter,
     Document,
     Facts,
+    Fields,
     Heading,
     Paragraph,
     Picture,
@@ -24,18 +26,24 @@ from geofit.report.document import (
     Verdict,
 )
 from geofit.report.fonts import pdf_fonts
-from geofit.report.pdf_table import draw_table, least_height, rgb
+from geofit.report.pdf_table import draw_table, table_height
+from geofit.report.pdf_text import POINT, Pen, Typesetter, rgb
 from geofit.report.style import FAIL, INK, LINE, MUTED, PASS, WARNING
 
 __all__ = ["write_pdf"]
 
 #: Left and right, top, bottom, mm: the left has room for a binding.
 SIDE, TOP, BOTTOM = 18.0, 24.0, 20.0
-BODY, QUIET, SMALL = 8.6, 7.6, 7.0
+BODY, QUIET, SMALL, TINY = 8.6, 7.6, 7.0, 6.4
 LEADING = 1.45
-#: No picture is higher than this, mm: two fit on a page.
+#: No picture is higher than this, mm: two fit on a page. One to scale may be higher.
 HIGHEST = 104.0
-_POINT = 25.4 / 72
+#: Dots an inch of pictures to scale.
+DOTS = 200.0
+#: A chapter that follows on begins on a page if so much of it is left, mm.
+LEAST_START = 90.0
+#: A table up to this share of a page stands whole with its heading.
+WHOLE = 1 / 3
 
 
 def write_pdf(document: Document, images: Mapping[str, bytes], path: Path) -> None:
@@ -58,6 +66,9 @@ def write_pdf(document: Document, images: Mapping[str, bytes], path: Path) -> No
     pdf = _Pages(document)
     for i, chapter in enumerate(document.chapters):
         pdf.chapter(chapter, images, cover=i == 0)
+        if i == 0 and document.contents:
+            pdf.contents(document.chapters[1].title)
+    pdf.number()
     with replacing(path) as part:
         part.write_bytes(bytes(pdf.output()))
 
@@ -80,9 +91,9 @@ class _Pages(FPDF):
             ("mono", "", fonts.mono),
         ):
             self.add_font(family, style, font.path, collection_font_number=font.index)
-        self.set_fallback_fonts(["signs"], exact_match=False)
+        self.type = Typesetter(self)
         self.set_margins(SIDE, TOP, SIDE)
-        self.set_auto_page_break(True, BOTTOM)
+        self.set_auto_page_break(False, BOTTOM)
         self.c_margin = 0.0
         moment = datetime.datetime.fromisoformat(document.date).replace(tzinfo=datetime.UTC)
         self.set_creation_date(moment)
@@ -91,208 +102,284 @@ class _Pages(FPDF):
         self.set_creator(document.footer.split(" · ")[0])
         self.set_lang(document.language)
 
+    @property
+    def foot(self) -> float:
+        """Where the page ends, mm."""
+        return float(self.h - BOTTOM)
+
+    @property
+    def empty_page(self) -> float:
+        """Height of an empty page, mm."""
+        return self.foot - TOP
+
     def header(self) -> None:
-        """Site and chapter above a line; the cover has its own head."""
+        """Document and chapter above a line; the cover has its own head."""
         if self.page == 1:
             return
-        self._type(SMALL, MUTED)
-        self.set_xy(SIDE, 12)
-        self.cell(self.epw / 2, 4, self._fitting(self.document.site, self.epw / 2))
-        self.cell(self.epw / 2, 4, self._fitting(self.running, self.epw / 2), align="R")
+        pen, half = Pen(SMALL, MUTED), self.epw / 2 - 2
+        left = " · ".join(part for part in (self.document.site, self.document.reference) if part)
+        self.type.draw(SIDE, 14, self.type.cut(left, half, pen), pen)
+        self.type.draw(SIDE + half + 4, 14, self.type.cut(self.running, half, pen), pen, half, "right")
         self._rule(17.5)
         self.set_xy(SIDE, TOP)
 
     def footer(self) -> None:
-        """Program and date; page of pages."""
+        """Program and date; :meth:`number` adds the page."""
         self._rule(self.h - 14.5)
-        self._type(SMALL, MUTED)
-        self.set_xy(SIDE, self.h - 13)
-        self.cell(self.epw / 2, 4, self.document.footer)
-        self.set_x(self.w - SIDE - self.get_string_width("00 / 00"))
-        self.cell(0, 4, f"{self.page_no()} / {{nb}}")
+        self.type.draw(SIDE, self.h - 11, self.document.footer, Pen(SMALL, MUTED))
+
+    def number(self) -> None:
+        """Write page of pages at the foot of each page, when their number is known."""
+        last = len(self.pages)
+        pen = Pen(SMALL, MUTED)
+        for page in range(1, last + 1):
+            self.page = page
+            self.current_font_is_set_on_page = False
+            self.type.draw(SIDE, self.h - 11, f"{page} / {last}", pen, self.epw, "right")
+        self.page = last
 
     def chapter(self, chapter: Chapter, images: Mapping[str, bytes], *, cover: bool) -> None:
-        """Begin a page and fill it."""
+        """Begin a chapter and fill its pages."""
         self.running = chapter.title
-        self.add_page()
-        self.start_section(chapter.title)
-        if cover:
-            self._cover(chapter)
+        if cover or not chapter.follows or self.foot - self.y < LEAST_START:
+            self.add_page()
         else:
+            self.ln(6)
+        if cover:
+            self._cover()
+        else:
+            self.start_section(chapter.title)
             self._title(chapter.title, chapter.verdict)
         for i, block in enumerate(chapter.blocks):
-            if isinstance(block, Heading) and self.will_page_break(_least(self, chapter.blocks[i:], images)):
+            if isinstance(block, Heading) and self._least(chapter.blocks[i:], images) > self.foot - self.y:
                 self.add_page()
             self._block(block, images)
 
-    def _cover(self, chapter: Chapter) -> None:
+    def contents(self, following: str) -> None:
+        """Keep a page for the list of chapters, which is drawn when their pages are known."""
+        self.running = self.document.contents
+        self.add_page()
+        self._title(self.document.contents, None)
+        self.running = following
+        self.insert_toc_placeholder(_draw_contents, reset_page_indices=False)
+        # The page that the placeholder has begun is the next chapter's.
+        self._begun = True
+
+    def add_page(self, *args: object, **kwargs: object) -> None:
+        """Begin a page, unless an empty one is there."""
+        if getattr(self, "_begun", False):
+            self._begun = False
+            return
+        super().add_page(*args, **kwargs)  # type: ignore[arg-type]
+
+    def _cover(self) -> None:
         self.set_xy(SIDE, 16)
-        self._type(10, MUTED)
-        self.multi_cell(self.epw, 5, self.document.subject, align="L", new_x="LMARGIN", new_y="NEXT")
-        self._type(21, INK, "B")
-        self.multi_cell(self.epw, 10, self.document.title, align="L", new_x="LMARGIN", new_y="NEXT")
+        for text, pen, height in (
+            (self.document.subject, Pen(10.5, MUTED), 5.5),
+            (self.document.title, Pen(22, INK, bold=True), 10.5),
+        ):
+            self._lines(text, pen, height)
         self._rule(self.y + 1)
-        self.ln(4)
+        self.set_xy(SIDE, self.y + 5)
 
     def _title(self, text: str, verdict: Verdict | None) -> None:
         top = self.y
-        self._type(15, INK, "B")
-        self.multi_cell(self.epw - 36, 8, text, align="L", new_x="LMARGIN", new_y="NEXT")
-        after = self.y
+        pen = Pen(15, INK, bold=True)
+        for k, line in enumerate(self.type.lines(text, self.epw - 36, pen)):
+            self.type.draw(SIDE, top + 8 * k + 4, line, pen)
+            self.set_y(top + 8 * (k + 1))
         if verdict is not None:
-            word = verdict.text
-            self._type(11, "#ffffff" if verdict.passed else FAIL, "B")
-            wide = self.get_string_width(word) + 8
-            self.set_xy(self.w - SIDE - wide, top)
+            mark = Pen(11, "#ffffff" if verdict.passed else FAIL, bold=True)
+            wide = self.type.width(verdict.text, mark) + 8
             self.set_fill_color(*rgb(PASS))
             self.set_draw_color(*rgb(FAIL))
             self.set_line_width(0.9)
-            self.rect(self.x, top, wide, 8, style="F" if verdict.passed else "D")
-            self.cell(wide, 8, word, align="C")
-        self.set_xy(SIDE, after + 1.5)
+            self.rect(self.w - SIDE - wide, top, wide, 8, style="F" if verdict.passed else "D")
+            self.type.draw(self.w - SIDE - wide, top + 4, verdict.text, mark, wide, "centre")
+        self.set_xy(SIDE, self.y + 2)
 
     def _block(self, block: Block, images: Mapping[str, bytes]) -> None:
         if isinstance(block, Heading):
-            self.ln(3.5 if block.level == 2 else 2)
-            self._type(11.5 if block.level == 2 else 9, INK, "B")
-            if block.level == 2:
-                self.start_section(block.text, level=1)
-            self.multi_cell(self.epw, 5.5, block.text, align="L", new_x="LMARGIN", new_y="NEXT")
-            self.ln(1)
+            self._heading(block)
         elif isinstance(block, Paragraph):
             self._paragraph(block)
         elif isinstance(block, Table):
-            draw_table(self, block)
-            self.ln(2.5)
+            draw_table(self, self.type, block, lambda: self.foot, self.add_page, self.empty_page)
+            self.set_y(self.y + 2.5)
         elif isinstance(block, Facts):
             self._facts(block)
+        elif isinstance(block, Fields):
+            self._fields(block)
         elif isinstance(block, Picture):
             self._picture(block, images)
         else:
             self._signatures(block)
 
+    def _heading(self, block: Heading) -> None:
+        if self.y > TOP + 12:
+            self.set_y(self.y + (3.5 if block.level == 2 else 2))
+        if block.level == 2:
+            self.start_section(block.text, level=1)
+        self._lines(block.text, Pen(11.5 if block.level == 2 else 9, INK, bold=True), 5.5)
+        self.set_y(self.y + 1)
+
+    def _lines(self, text: str, pen: Pen, height: float, indent: float = 0.0) -> None:
+        """Draw a text over the page's width, line by line."""
+        for line in self.type.lines(text, self.epw - indent, pen):
+            if self.y + height > self.foot:
+                self.add_page()
+            self.type.draw(SIDE + indent, self.y + height / 2, line, pen)
+            self.set_xy(SIDE, self.y + height)
+
     def _paragraph(self, block: Paragraph) -> None:
-        size = QUIET if block.style == "quiet" else BODY
-        self._type(size, MUTED if block.style == "quiet" else INK)
-        height = size * _POINT * LEADING
+        pen = Pen(QUIET, MUTED) if block.style == "quiet" else Pen(BODY)
+        height = pen.size * POINT * LEADING
         indent = 4.0 if block.style == "warning" else 0.0
-        lines = self._lines(block.text, self.epw - indent)
-        if self.will_page_break(height * min(len(lines), 3)):
+        lines = len(self.type.lines(block.text, self.epw - indent, pen))
+        # No line stands alone at the foot or at the head of a page.
+        if self.y + height * min(lines, 3) > self.foot or (lines <= 4 and self.y + height * lines > self.foot):
             self.add_page()
-        if block.style == "warning" and not self.will_page_break(height * len(lines)):
+        if block.style == "warning" and self.y + height * lines <= self.foot:
             self.set_fill_color(*rgb(WARNING))
-            self.rect(SIDE, self.y, 1.2, height * len(lines), style="F")
-        self.set_x(SIDE + indent)
-        self.multi_cell(self.epw - indent, height, block.text, align="L", new_x="LMARGIN", new_y="NEXT")
-        self.ln(1.8)
+            self.rect(SIDE, self.y, 1.2, height * lines, style="F")
+        self._lines(block.text, pen, height, indent)
+        self.set_y(self.y + 1.8)
 
     def _facts(self, block: Facts) -> None:
-        gap = 3.0
+        gap, small = 3.0, Pen(TINY, MUTED)
         wide = (self.epw - gap * (len(block.items) - 1)) / len(block.items)
-        self._type(6.4, MUTED)
-        below = max(len(self._lines(small, wide)) for _, _, small in block.items)
-        above = max(len(self._lines(label, wide)) for label, _, _ in block.items)
-        height = 1.2 + 3 * above + 5.5 + 3 * below
-        if self.will_page_break(height + 2):
+        above = [self.type.lines(label, wide, small) for label, _, _ in block.items]
+        below = [self.type.lines(text, wide, small) if text else [] for _, _, text in block.items]
+        high = max(map(len, above))
+        height = 1.2 + 3 * high + 5.5 + 3 * max(map(len, below))
+        if self.y + height + 2 > self.foot:
             self.add_page()
         top = self.y
-        for i, (label, value, small) in enumerate(block.items):
+        for i, (_, value, _) in enumerate(block.items):
             left = SIDE + i * (wide + gap)
             self.set_draw_color(*rgb(INK))
             self.set_line_width(0.35)
             self.line(left, top, left + wide, top)
-            self._type(6.4, MUTED)
-            self._text(left, top + 1.2, wide, 3, label)
-            self._type(10.5, INK, "B")
-            while self.get_string_width(value) > wide and self.font_size_pt > 6:
-                self.set_font_size(self.font_size_pt - 0.5)
-            self._text(left, top + 1.2 + 3 * above, wide, 5.5, value)
-            self._type(6.4, MUTED)
-            self._text(left, top + 6.7 + 3 * above, wide, 3, small)
+            pen = Pen(10.5, INK, bold=True)
+            while self.type.width(value, pen) > wide and pen.size > 6:
+                pen = Pen(pen.size - 0.5, INK, bold=True)
+            self.type.draw(left, top + 1.2 + 3 * high + 2.75, value, pen)
+            for lines, start in ((above[i], 1.2), (below[i], 6.7 + 3 * high)):
+                for k, line in enumerate(lines):
+                    self.type.draw(left, top + start + 3 * (k + 0.5), line, small)
         self.set_xy(SIDE, top + height + 2.5)
+
+    def _fields(self, block: Fields) -> None:
+        """Draw the title block: two fields a row, label above value."""
+        wide, height, value = self.epw / 2, 8.6, Pen(BODY + 0.6, INK, bold=True)
+        self.set_draw_color(*rgb(MUTED))
+        self.set_line_width(0.2)
+        for i, (label, text) in enumerate(block.items):
+            x = SIDE + (i % 2) * wide
+            if i % 2 == 0 and self.y + height > self.foot:
+                self.add_page()
+            self.rect(x, self.y, wide, height)
+            self.type.draw(x + 1.5, self.y + 2.2, label, Pen(TINY, MUTED))
+            self.type.draw(x + 1.5, self.y + 5.9, self.type.cut(text, wide - 3, value), value)
+            if i % 2 == 1 or i + 1 == len(block.items):
+                self.set_y(self.y + height)
+        self.set_y(self.y + 2.5)
 
     def _picture(self, block: Picture, images: Mapping[str, bytes]) -> None:
         data = images.get(block.name)
         if data is None:
             return
-        wide, tall = _size(data, self.epw)
-        self._type(QUIET, MUTED)
-        line = QUIET * _POINT * LEADING
-        caption = len(self._lines(block.caption, self.epw)) * line
-        if self.will_page_break(tall + caption + 3):
+        wide, tall = _size(data, self.epw, to_scale=block.to_scale)
+        pen = Pen(QUIET, MUTED)
+        line = QUIET * POINT * LEADING
+        caption = len(self.type.lines(block.caption, self.epw, pen)) * line
+        if self.y + tall + caption + 3 > self.foot:
             self.add_page()
         self.image(io.BytesIO(data), SIDE, self.y, wide, tall, alt_text=block.caption)
         self.set_xy(SIDE, self.y + tall + 1.8)
-        self._type(QUIET, MUTED)
-        self.multi_cell(self.epw, line, block.caption, align="L", new_x="LMARGIN", new_y="NEXT")
-        self.ln(3)
+        self._lines(block.caption, pen, line)
+        self.set_y(self.y + 3)
 
     def _signatures(self, block: Signatures) -> None:
-        first, height = 26.0, 10.0
+        first, height = 26.0, 9.0
         wide = (self.epw - first) / (len(block.columns) - 1)
+        if self.y + 5 + height * len(block.roles) > self.foot:
+            self.add_page()
         self.set_draw_color(*rgb(MUTED))
         self.set_line_width(0.2)
-        self._type(QUIET, MUTED)
-        self.c_margin = 1.5
-        for i, title in enumerate(block.columns):
-            self.cell(first if i == 0 else wide, 5, title)
-        self.ln(5)
-        for role in block.roles:
-            self._type(BODY, INK)
-            self.cell(first, height, role, border=1)
-            for _ in block.columns[1:]:
-                self.cell(wide, height, "", border=1)
-            self.ln(height)
-        self.c_margin = 0.0
-
-    def _type(self, size: float, colour: str, style: str = "") -> None:
-        self.set_font("text", style=style, size=size)
-        self.set_text_color(*rgb(colour))
-
-    def _text(self, x: float, y: float, wide: float, line: float, text: str) -> None:
-        self.set_xy(x, y)
-        self.multi_cell(wide, line, text, align="L", padding=0)
-
-    def _lines(self, text: str, wide: float) -> list[str]:
-        lines = self.multi_cell(wide, 3, text, align="L", dry_run=True, output="LINES")
-        assert isinstance(lines, list)
-        return lines
-
-    def _fitting(self, text: str, wide: float) -> str:
-        """Cut a text that is too long for its place."""
-        if self.get_string_width(text) <= wide - 3:
-            return text
-        while text and self.get_string_width(text + "…") > wide - 3:
-            text = text[:-1]
-        return text + "…"
+        places = [SIDE, *(SIDE + first + k * wide for k in range(len(block.columns) - 1))]
+        for x, title in zip(places, block.columns, strict=True):
+            self.type.draw(x + 1.5, self.y + 2.5, title, Pen(QUIET, MUTED))
+        self.set_y(self.y + 5)
+        for role, name in block.roles:
+            for k, x in enumerate(places):
+                self.rect(x, self.y, first if k == 0 else wide, height)
+                words = (role, name)[k] if k < 2 else ""
+                self.type.draw(x + 1.5, self.y + height / 2, words, Pen(BODY))
+            self.set_y(self.y + height)
 
     def _rule(self, y: float) -> None:
         self.set_draw_color(*rgb(LINE))
         self.set_line_width(0.25)
         self.line(SIDE, y, self.w - SIDE, y)
 
+    def _least(self, blocks: Sequence[Block], images: Mapping[str, bytes]) -> float:
+        """Return what must stand on the page with a heading: itself and the beginning of what follows, mm."""
+        height = 0.0
+        for block in blocks:
+            if isinstance(block, Heading):
+                height += 11 if block.level == 2 else 8
+            elif isinstance(block, Picture):
+                tall = _size(images[block.name], self.epw, to_scale=block.to_scale)[1] if block.name in images else 0.0
+                return height + tall + 10
+            elif isinstance(block, Table):
+                whole = table_height(block, self.epw, self.type)
+                return height + (whole if whole <= WHOLE * self.empty_page else 38.0)
+            elif isinstance(block, Signatures):
+                return height + 5 + 9 * len(block.roles)
+            elif isinstance(block, Facts | Fields):
+                height += 20
+            else:
+                height += 4 * len(self.type.lines(block.text, self.epw, Pen(BODY))) + 2
+                if height > 40:
+                    return height
+        return height
 
-def _size(data: bytes, room: float) -> tuple[float, float]:
+
+def _size(data: bytes, room: float, *, to_scale: bool) -> tuple[float, float]:
     """Return width and height of a picture on the page, mm: the whole width unless it would be too high."""
     wide, tall = (int.from_bytes(data[k : k + 4], "big") for k in (16, 20))
+    if to_scale:
+        return wide / DOTS * 25.4, tall / DOTS * 25.4
     scale = min(room / wide, HIGHEST / tall)
     return wide * scale, tall * scale
 
 
-def _least(pdf: _Pages, blocks: Sequence[Block], images: Mapping[str, bytes]) -> float:
-    """Return what must stand on the page with a heading: itself and the beginning of what follows, mm."""
-    height = 0.0
-    for block in blocks:
-        if isinstance(block, Heading):
-            height += 11
-        elif isinstance(block, Picture):
-            return height + (_size(images[block.name], pdf.epw)[1] + 8 if block.name in images else 0)
-        elif isinstance(block, Table):
-            return height + least_height(block)
-        elif isinstance(block, Facts):
-            height += 20
-        elif isinstance(block, Signatures):
-            return height + 5 + 10 * len(block.roles)
-        else:
-            height += 10
-    return height
+#: Height of a line of the contents by its level, mm.
+_ENTRIES = (6.2, 3.75)
+
+
+def _draw_contents(pdf: FPDF, outline: list[OutlineSection]) -> None:
+    """List chapters, and as many of their headings as there is room for, with their pages."""
+    assert isinstance(pdf, _Pages)
+    y, room = TOP + 12.0, pdf.foot - TOP - 14.0
+    entries = [one for one in outline if one.level == 0 or one.name not in pdf.document.unlisted]
+    if sum(_ENTRIES[one.level] for one in entries) > room:
+        entries = [one for one in outline if one.level == 0]
+    for one in entries:
+        main = one.level == 0
+        pen = Pen(BODY + 0.4, INK, bold=True) if main else Pen(QUIET, MUTED)
+        y += _ENTRIES[one.level]
+        if y > pdf.foot:
+            break
+        x = SIDE + (0 if main else 5)
+        name = pdf.type.cut(one.name, pdf.epw - 20, pen)
+        pdf.type.draw(x, y, name, pen)
+        number = str(one.page_number)
+        pdf.type.draw(pdf.w - SIDE - 12, y, number, pen, 12, "right")
+        begin, end = x + pdf.type.width(name, pen) + 2, pdf.w - SIDE - pdf.type.width(number, pen) - 2
+        pdf.set_draw_color(*rgb(LINE))
+        pdf.set_line_width(0.2)
+        pdf.line(begin, y + 1.0, end, y + 1.0)
+        link = pdf.add_link(page=one.page_number)
+        pdf.link(x, y - 1.8, pdf.epw - (x - SIDE), 3.6, link)

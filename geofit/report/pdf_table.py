@@ -1,30 +1,31 @@
-"""Tables of a PDF: columns as wide as they need, heads repeated on every page."""
+"""Tables of a PDF: columns as wide as they need, heads repeated, never a row or two alone on a page."""
 
 from __future__ import annotations
 
-import unicodedata
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import pairwise
 
-from fpdf import FPDF, FontFace
-from fpdf.enums import CellBordersLayout, VAlign
+from fpdf import FPDF
 
 from geofit.report.document import Cell, Column, Mark, Table, Verdict
-from geofit.report.style import FAIL, INK, MUTED, PASS
+from geofit.report.pdf_text import Pen, Typesetter, rgb
+from geofit.report.style import FAIL, MUTED, PASS
 
-__all__ = ["draw_table", "least_height", "plain_text", "rgb"]
+__all__ = ["draw_table", "plain_text", "table_height"]
 
 SIZE, HASH_SIZE = 7.4, 5.2
 LINE = 3.9
-#: Room left and right, and above and below, of the text of a cell, mm.
-PADDING = (0.9, 1.1)
+#: Room left and right, and above and below, of the text of a cell, mm; above and below in a dense table.
+PADDING, DENSE = (0.9, 1.1), 0.45
 #: What a wide column gets at least, and a text column at most unless there is room, mm.
 NARROWEST, WIDEST = 17.0, 44.0
 #: A table without a wide column gives each column at most this much more than it needs, mm.
 AIRIEST = 9.0
-#: So many rows stand together at the foot of a page, or none.
-FEWEST, HEAD_LINES = 4, 3
+#: So many rows stand together at the foot and at the head of a page, or none.
+FEWEST = 4
 #: A longer cell would not fit on a page.
 LONGEST = 700
+RULE = "#c3cad2"
 
 
 def plain_text(cell: Cell) -> str:
@@ -33,50 +34,135 @@ def plain_text(cell: Cell) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
 
-def rgb(colour: str) -> tuple[int, int, int]:
-    """Return red, green and blue of #rrggbb."""
-    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
+class _Laid:
+    """A table whose cells are broken into lines: widths of the columns, lines and height of each row."""
+
+    def __init__(self, table: Table, room: float, type_: Typesetter) -> None:
+        self.table = table
+        self.widths = _widths(table, room, type_)
+        inner = [width - 2 * PADDING[0] for width in self.widths]
+        self.head = [
+            type_.lines(_title(column), wide, _HEAD) for column, wide in zip(table.columns, inner, strict=True)
+        ]
+        self.rows = [
+            [
+                type_.lines(plain_text(cell), wide, _pen(column, cell))
+                for column, cell, wide in zip(table.columns, cells, inner, strict=True)
+            ]
+            for cells in table.rows
+        ]
+        self.padding = DENSE if table.dense else PADDING[1]
+        self.head_height = _height(self.head, self.padding)
+        self.heights = [_height(row, self.padding) for row in self.rows]
 
 
-def draw_table(pdf: FPDF, table: Table) -> None:
-    """Draw a table from where the page stands, over the whole width if a column wraps."""
-    pdf.set_font("text", size=SIZE)
-    pdf.set_draw_color(*rgb("#c3cad2"))
-    pdf.set_fill_color(255, 255, 255)
+def table_height(table: Table, room: float, type_: Typesetter) -> float:
+    """Return the height of a table over a width, mm."""
+    laid = _Laid(table, room, type_)
+    return laid.head_height + sum(laid.heights)
+
+
+def draw_table(
+    pdf: FPDF, type_: Typesetter, table: Table, bottom: Callable[[], float], turn: Callable[[], None], page: float
+) -> None:
+    """Draw a table from where the page stands.
+
+    Parameters
+    ----------
+    pdf : FPDF
+        At the place where the table begins.
+    type_ : Typesetter
+        Draws the words.
+    table : Table
+        The table.
+    bottom : callable
+        Returns where the page ends, mm.
+    turn : callable
+        Begins a new page.
+    page : float
+        Height of an empty page, mm.
+    """
+    laid = _Laid(table, pdf.epw, type_)
+    first = 0
+    for last in _parts(laid, bottom() - pdf.y, page):
+        if last == 0 or first > 0:
+            turn()
+        if last > first or not laid.rows:
+            _draw_part(pdf, type_, laid, first, last)
+        first = last
+
+
+def _parts(laid: _Laid, room: float, page: float) -> list[int]:
+    """Return the rows at which pages end; a leading 0 turns the page before the first row."""
+    total = laid.head_height + sum(laid.heights)
+    if total <= room:
+        return [len(laid.rows)]
+    ends: list[int] = []
+    if total <= page / 3 or _fitting(laid, 0, room) < min(FEWEST, len(laid.rows)):
+        ends, room = [0], page
+    first = 0
+    while first < len(laid.rows):
+        last = max(_fitting(laid, first, room), first + 1)
+        left = len(laid.rows) - last
+        if 0 < left < FEWEST and last - first > 2 * FEWEST:
+            last = len(laid.rows) - FEWEST
+        ends.append(last)
+        first, room = last, page
+    return ends or [0]
+
+
+def _fitting(laid: _Laid, first: int, room: float) -> int:
+    height, last = laid.head_height, first
+    while last < len(laid.rows) and height + laid.heights[last] <= room:
+        height += laid.heights[last]
+        last += 1
+    return last
+
+
+def _draw_part(pdf: FPDF, type_: Typesetter, laid: _Laid, first: int, last: int) -> None:
+    x, y = pdf.l_margin, pdf.y
+    pdf.set_draw_color(*rgb(RULE))
     pdf.set_line_width(0.15)
-    aligns = tuple("RIGHT" if column.kind == "number" else "LEFT" for column in table.columns)
-    head = FontFace(emphasis="BOLD", color=rgb(MUTED), size_pt=SIZE)
-    widths = _widths(pdf, table)
-    if pdf.will_page_break(least_height(table)):
-        pdf.add_page()
-    with pdf.table(
-        align="LEFT",
-        width=min(sum(widths), pdf.epw),
-        borders_layout="HORIZONTAL_LINES",
-        col_widths=widths,
-        headings_style=head,
-        line_height=LINE,
-        padding=(PADDING[1], PADDING[0], PADDING[1], PADDING[0]),
-        text_align=aligns,
-        v_align=VAlign.T,
-        repeat_headings=1,
-    ) as drawn:
-        row = drawn.row()
-        for column in table.columns:
-            row.cell(_title(column), v_align=VAlign.B)
-        for cells in table.rows:
-            row = drawn.row()
-            for column, cell in zip(table.columns, cells, strict=True):
-                if isinstance(cell, Verdict):
-                    row.cell(plain_text(cell), style=_badge(cell), align="CENTER", border=CellBordersLayout.ALL)
-                else:
-                    row.cell(plain_text(cell), style=_style(column, cell))
+    columns = laid.table.columns
+    _draw_row(type_, x, y, laid, laid.head, [_HEAD] * len(columns), laid.head_height, foot=True)
+    y += laid.head_height
+    right = x + sum(laid.widths)
+    pdf.line(x, y, right, y)
+    for k in range(first, last):
+        cells, height = laid.table.rows[k], laid.heights[k]
+        for i, cell in enumerate(cells):
+            if isinstance(cell, Verdict):
+                _badge(pdf, cell, x + sum(laid.widths[:i]), y, laid.widths[i], height)
+        pens = [_pen(column, cell) for column, cell in zip(columns, cells, strict=True)]
+        _draw_row(type_, x, y, laid, laid.rows[k], pens, height)
+        y += height
+        pdf.set_draw_color(*rgb(RULE))
+        pdf.set_line_width(0.15)
+        pdf.line(x, y, right, y)
+    pdf.set_xy(x, y)
 
 
-def least_height(table: Table) -> float:
-    """Return the height of the head and of the rows that stand together with it, mm."""
-    rows = min(len(table.rows), FEWEST)
-    return rows * (LINE + 2 * PADDING[1]) + HEAD_LINES * LINE + 2 * PADDING[1]
+def _draw_row(
+    type_: Typesetter, x: float, y: float, laid: _Laid, row: Sequence[Sequence[str]], pens: Sequence[Pen],
+    height: float, *, foot: bool = False,
+) -> None:  # fmt: skip
+    for column, lines, wide, pen in zip(laid.table.columns, row, laid.widths, pens, strict=True):
+        top = y + (height - len(lines) * LINE - laid.padding if foot else laid.padding)
+        align = "right" if column.kind == "number" else "left"
+        for k, line in enumerate(lines):
+            type_.draw(x + PADDING[0], top + (k + 0.5) * LINE, line, pen, wide - 2 * PADDING[0], align)  # type: ignore[arg-type]
+        x += wide
+
+
+def _badge(pdf: FPDF, verdict: Verdict, x: float, y: float, wide: float, height: float) -> None:
+    pdf.set_fill_color(*rgb(PASS))
+    pdf.set_draw_color(*rgb(FAIL))
+    pdf.set_line_width(0.4)
+    pdf.rect(x + 0.2, y + 0.5, wide - 0.8, height - 1.0, style="F" if verdict.passed else "D")
+
+
+def _height(row: Sequence[Sequence[str]], padding: float) -> float:
+    return max((len(lines) for lines in row), default=1) * LINE + 2 * padding
 
 
 def _title(column: Column) -> str:
@@ -84,26 +170,25 @@ def _title(column: Column) -> str:
     return column.title.replace(", ", ",\N{NO-BREAK SPACE}")
 
 
-def _badge(verdict: Verdict) -> FontFace:
-    if verdict.passed:
-        return FontFace(emphasis="BOLD", color=(255, 255, 255), fill_color=rgb(PASS))
-    return FontFace(emphasis="BOLD", color=rgb(FAIL), fill_color=(255, 255, 255))
+_HEAD = Pen(SIZE, MUTED, bold=True)
+_PLAIN = Pen(SIZE)
+_HASH = Pen(HASH_SIZE, family="mono")
+_BADGES = {True: Pen(SIZE, "#ffffff", bold=True), False: Pen(SIZE, FAIL, bold=True)}
+_MARKS = {True: Pen(SIZE, PASS), False: Pen(SIZE, FAIL, bold=True), None: Pen(SIZE, MUTED)}
 
 
-def _style(column: Column, cell: Cell) -> FontFace:
+def _pen(column: Column, cell: Cell) -> Pen:
+    if isinstance(cell, Verdict):
+        return _BADGES[cell.passed]
     if isinstance(cell, Mark):
-        colour = {True: PASS, False: FAIL, None: MUTED}[cell.passed]
-        return FontFace(color=rgb(colour), emphasis="BOLD" if cell.passed is False else None)
-    if column.kind == "hash":
-        return FontFace(family="mono", size_pt=HASH_SIZE, color=rgb(INK))
-    return FontFace(color=rgb(INK))
+        return _MARKS[cell.passed]
+    return _HASH if column.kind == "hash" else _PLAIN
 
 
-def _widths(pdf: FPDF, table: Table) -> tuple[float, ...]:
+def _widths(table: Table, room: float, type_: Typesetter) -> tuple[float, ...]:
     """Share the page's width: numbers and words get what they need, wide columns the rest."""
-    need = [_need(pdf, i, table) for i in range(len(table.columns))]
+    need = [_need(i, table, type_) for i in range(len(table.columns))]
     wide = [i for i, column in enumerate(table.columns) if column.kind == "wide"]
-    room = float(pdf.epw)
     fixed = sum(width for i, (_, width) in enumerate(need) if i not in wide)
     if wide and room - fixed >= NARROWEST * len(wide):
         rest = _shared(room - fixed, [need[i] for i in wide])
@@ -129,23 +214,18 @@ def _shared(room: float, need: Sequence[tuple[float, float]]) -> list[float]:
     return [b + (room - sum(natural)) * b / sum(natural) for b in natural]
 
 
-def _need(pdf: FPDF, index: int, table: Table) -> tuple[float, float]:
+def _need(index: int, table: Table, type_: Typesetter) -> tuple[float, float]:
     """Return the least and the natural width of a column, mm."""
     column = table.columns[index]
-    cells = [plain_text(row[index]) for row in table.rows]
+    cells = [(plain_text(row[index]), _pen(column, row[index])) for row in table.rows]
     spare = 2 * PADDING[0] + 0.6
+    natural = max((type_.width(text, pen) for text, pen in cells), default=0.0) + spare
     if column.kind == "hash":
-        pdf.set_font("mono", size=HASH_SIZE)
-        width = max((pdf.get_string_width(text) for text in cells), default=0.0) + spare
-        pdf.set_font("text", size=SIZE)
-        return width, width
-    pdf.set_font("text", style="B", size=SIZE)
-    head = max(pdf.get_string_width(word) for word in _words(_title(column))) + spare
-    bold = any(isinstance(row[index], Mark | Verdict) for row in table.rows)
-    pdf.set_font("text", style="B" if bold else "", size=SIZE)
-    natural = max((pdf.get_string_width(text) for text in cells), default=0.0) + spare
-    longest = max((pdf.get_string_width(word) for text in cells for word in _words(text)), default=0.0) + spare
-    pdf.set_font("text", size=SIZE)
+        return natural, natural
+    head = max(type_.width(word, _HEAD) for word in _words(_title(column))) + spare
+    longest = max((type_.width(word, pen) for text, pen in cells for word in _words(text)), default=0.0) + spare
+    if any(isinstance(row[index], Verdict) for row in table.rows):
+        return max(head, natural + 2), max(head, natural + 2)
     if column.kind == "wide":
         return max(head, min(longest, WIDEST), NARROWEST), max(natural, head)
     if column.kind == "text":
@@ -154,10 +234,10 @@ def _need(pdf: FPDF, index: int, table: Table) -> tuple[float, float]:
 
 
 def _words(text: str) -> list[str]:
-    """Part a text where it may break: at spaces, and a Chinese word of more than eight characters in the middle."""
-    words = []
+    """Part a text where a column may break it: at spaces, and a Chinese word of more than eight characters."""
+    words: list[str] = []
     for word in text.split(" "):
-        chinese = any(unicodedata.east_asian_width(c) in "WF" for c in word)
         middle = (len(word) + 1) // 2
+        chinese = any(ord(a) > 0x2E80 for a, _ in pairwise(word + " "))
         words += [word[:middle], word[middle:]] if chinese and len(word) > 8 else [word]
     return words or [""]

@@ -12,12 +12,16 @@ import numpy as np
 
 from geofit.data.errors import MissingDependencyError
 from geofit.data.files import replacing
-from geofit.data.languages import EN, Language, translate
+from geofit.data.languages import EN, Language, together, translate
 from geofit.data.messages import Message
+from geofit.data.site import Section
 from geofit.report import digits, plots, scene
-from geofit.report.gather import SITE_PICTURE, picture_name
+from geofit.report.box import draw_boxed
+from geofit.report.contour_plan import draw_contour_plan, plan_sheet
+from geofit.report.gather import SITE_PICTURE, cut_of, picture_name, section_picture
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
+from geofit.report.section_sheet import draw_section, section_sheet
 from geofit.report.style import FAIL, HORIZONS, INK, MUTED, PASS, drawing
 from geofit.report.uncertainty import uncertainty_map
 
@@ -27,10 +31,11 @@ if TYPE_CHECKING:
 
     from geofit.report.scene import Scene
 
-__all__ = ["Pictures", "draw", "draw_site", "write_picture"]
+__all__ = ["Pictures", "draw", "draw_sections", "draw_site", "write_picture"]
 
-#: Width of the report's pictures, inches: what an A4 page has between its margins; and their dots an inch.
-WIDTH, DOTS = 6.85, 200
+#: Width of the report's pictures, inches: what an A4 page has between its margins; their dots an inch; height of the
+#: picture of the cover, inches.
+WIDTH, DOTS, COVER = 6.85, 200, 4.15
 #: Type of those pictures, points: that of the page around them.
 TYPE = 8.0
 
@@ -51,8 +56,11 @@ def draw(result: HorizonResult, t: Language = EN) -> Pictures:
         missing: Message | None = None
     except MissingDependencyError as error:
         view, missing = None, error.message
+    sheet = plan_sheet(result)
     flat = {
-        "plan": _map(plots.site_plan, result, t, plots.map_shape(result, plan=True)),
+        "plan": _map(plots.site_plan, result, t, plots.map_shape(result, plan=True))
+        if sheet is None
+        else _png(draw_contour_plan(sheet, result, t)),
         "deviation": _map(plots.deviation_map, result, t, plots.map_shape(result, plan=False)),
         "residuals": _residuals(result, t),
     }
@@ -74,19 +82,29 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
     except MissingDependencyError as error:
         return Pictures({}, None, error.message)
     with drawing(TYPE):
-        tall = min(WIDTH * view.image.shape[0] / view.image.shape[1], 3.7)
-        height = tall + 0.45
-        figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
-        axes = figure.add_axes((0, 0.45 / height, 1, tall / height))
-        axes.imshow(view.image, interpolation="antialiased")
-        axes.set_axis_off()
+        figure = Figure(figsize=(WIDTH, COVER), dpi=DOTS)
+        axes = figure.add_axes((0.085, 0.115, 0.83, 0.865))
+        draw_boxed(axes, view, t)
         swatches = [Swatch(facecolor=HORIZONS[i % len(HORIZONS)], label=r.name) for i, r in enumerate(results)]
         figure.legend(
             handles=swatches, loc="lower left", ncols=min(len(swatches), 6), handlelength=1.2, borderaxespad=0,
-            bbox_to_anchor=(0, 0.2 / height), columnspacing=1.4,
+            bbox_to_anchor=(0, 0.045), columnspacing=1.4,
         )  # fmt: skip
-        figure.text(0, 0.02 / height, translate(view.caption, t), size=7.5, color=MUTED)
+        figure.text(
+            0, 0.004, together([t("All horizons and holes."), translate(view.caption, t)], t), size=7.5, color=MUTED
+        )
         return Pictures({SITE_PICTURE: _png(figure)}, view, None)
+
+
+def draw_sections(results: Sequence[HorizonResult], sections: Sequence[Section], t: Language = EN) -> dict[str, bytes]:
+    """Draw the geological sections of a report, by their names in it."""
+    site, points = results[0].site, {result.name: result.surface.points for result in results}
+    drawn = {}
+    for section in sections:
+        cut, name = cut_of(results, section), section_picture(section)
+        sheet = section_sheet(section, site, cut, name)
+        drawn[name] = _png(draw_section(sheet, section, site, cut, points, t))
+    return drawn
 
 
 def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Language = EN) -> None:

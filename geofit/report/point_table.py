@@ -17,9 +17,9 @@ def point_columns(t: Language) -> tuple[Column, ...]:
         Column(t("Row"), "number"),
         Column(t("Kind")),
         Column(t("Hole or section")),
-        Column("x, m", "number"),
-        Column("y, m", "number"),
-        Column("z, m", "number"),
+        Column(t("x, m"), "number"),
+        Column(t("y, m"), "number"),
+        Column(t("z, m"), "number"),
     )
 
 

@@ -16,9 +16,11 @@ from geofit.checks.storage import Storage
 from geofit.data.accuracy import Accuracy, ReadBack, Seam, plain
 from geofit.data.files import replacing
 from geofit.data.messages import Message
+from geofit.data.points import PointSet
 from geofit.data.prediction import OffData
 from geofit.data.site import ImportIssue, Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.report.profile import Profile
 
 __all__ = ["HorizonResult", "horizon_data", "sigma_of", "write_json"]
 
@@ -43,6 +45,12 @@ class HorizonResult:
         Time of each stage.
     offdata : OffData or None
         The surface away from its data; None: not examined.
+    profiles : mapping of str to tuple of Profile
+        What the sections of the report cut, by the section's name.
+    excluded : PointSet or None
+        Points that a person left out of the fit.
+    edits : tuple of Message
+        Changes by hand after the fit, in their order.
     """
 
     surface: HorizonFit
@@ -52,6 +60,9 @@ class HorizonResult:
     step_bytes: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
     offdata: OffData | None = None
+    profiles: Mapping[str, tuple[Profile, ...]] = field(default_factory=dict, repr=False)
+    excluded: PointSet | None = None
+    edits: tuple[Message, ...] = ()
 
     @property
     def name(self) -> str:

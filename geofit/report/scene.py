@@ -36,7 +36,7 @@ NO_OPENGL = message(
 #: Steps of a patch's mesh on each side.
 STEPS = 90
 #: Opacity of horizons that stand behind each other.
-SHEER = 0.72
+SHEER = 0.55
 #: Relief is raised by a whole number, at most MOST_RAISED, until it is this share of the width.
 RELIEF, MOST_RAISED = 0.14, 5
 #: Where the eye is: from the south-west, above.
@@ -47,12 +47,20 @@ EYE = (-0.5, -0.8, 0.62)
 class Scene:
     """A picture in space: ``image`` (height, width, 3) pixels without a margin, heights times ``raised``.
 
-    ``limits`` are the elevations at the ends of the colours, metres.
+    ``limits`` are the elevations at the ends of the colours, metres. ``low`` and ``high`` are the corners of the box
+    around what is drawn, map coordinates; ``to_pixels`` (2, 4) turns map coordinates and 1 into columns and rows.
     """
 
     image: NDArray[np.uint8]
     raised: int
     limits: tuple[float, float]
+    low: Floats
+    high: Floats
+    to_pixels: Floats
+
+    def pixels(self, xyz: Floats) -> Floats:
+        """Return columns and rows (n, 2) of (n, 3) map coordinates."""
+        return np.asarray(np.column_stack([xyz, np.ones(len(xyz))]) @ self.to_pixels.T)
 
     @property
     def caption(self) -> Message:
@@ -86,7 +94,7 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
     if core is not None and len(surface.patches) > 1:
         _add_rim(plotter, surface, core, place, color="#0b2f4a", line_width=6)
     _add_points(plotter, place(surface.points.xyz))
-    return Scene(_shoot(plotter), raised, limits)
+    return _shoot(plotter, place, raised, limits)
 
 
 def site_scene(
@@ -103,15 +111,16 @@ def site_scene(
     plotter.enable_depth_peeling(8)
     raised = _raised(surfaces)
     place = _Place(surfaces[0].origin, raised)
+    sheer = _opacities(surfaces)
     for i, surface in enumerate(surfaces):
         for k in range(len(surface.patches)):
             mesh = _mesh(surface, k, place)
-            _add_surface(plotter, mesh, color=HORIZONS[i % len(HORIZONS)], opacity=SHEER)
+            _add_surface(plotter, mesh, color=HORIZONS[i % len(HORIZONS)], opacity=sheer[i])
         for rim in rims(surface, steps=400).values():
             _add_rim(plotter, surface, rim, place, color="#1c2733", line_width=2, opacity=0.35)
     for hole in holes:
         plotter.add_mesh(_line(place(hole.xyz)), color=kind_style(hole.kind)[1], line_width=4)
-    return Scene(_shoot(plotter), raised, (0.0, 0.0))
+    return _shoot(plotter, place, raised, (0.0, 0.0), boxed=True)
 
 
 def elevation_colours() -> Any:
@@ -119,6 +128,13 @@ def elevation_colours() -> Any:
     from matplotlib.colors import LinearSegmentedColormap
 
     return LinearSegmentedColormap.from_list("ground", ["#23506b", "#55877f", "#9dba8c", "#e2d9a4", "#f3e6c8"])
+
+
+def _opacities(surfaces: Sequence[HorizonFit]) -> list[float]:
+    """Return how opaque each horizon is: what stands steep and the lowest whole, what hides others sheer."""
+    heights = [float(np.mean([rim[:, 2].mean() for rim in rims(surface).values()])) for surface in surfaces]
+    steep = [surface.frame in ("best-plane", "sections") for surface in surfaces]
+    return [1.0 if stands or z <= min(heights) else SHEER for z, stands in zip(heights, steep, strict=True)]
 
 
 class _Place:
@@ -221,17 +237,44 @@ def _line(local: NDArray[np.float32]) -> pyvista.PolyData:
     return pyvista.lines_from_points(local)
 
 
-def _shoot(plotter: pyvista.Plotter) -> NDArray[np.uint8]:
-    """Take the picture, and cut its margin off."""
+def _shoot(
+    plotter: pyvista.Plotter, place: _Place, raised: int, limits: tuple[float, float], *, boxed: bool = False
+) -> Scene:
+    """Take the picture, and cut its margin off; ``boxed``: keep room for the box around what is drawn."""
+    low, high = np.reshape(plotter.bounds, (3, 2)).T / place.scale + place.centre
     plotter.camera_position = [EYE, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
     plotter.enable_parallel_projection()
     plotter.enable_anti_aliasing("ssaa")
     plotter.reset_camera()
-    plotter.camera.zoom(1.15)
+    plotter.camera.zoom(1.0 if boxed else 1.15)
     image = np.asarray(plotter.screenshot(return_img=True))[..., :3]
+    to_pixels = _projection(plotter, image.shape[:2], place)
     plotter.close()
     drawn = image.min(axis=2) < 250
     rows, columns = np.flatnonzero(drawn.any(axis=1)), np.flatnonzero(drawn.any(axis=0))
     if not rows.size:
-        return image.copy()
-    return image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1].copy()
+        return Scene(image.copy(), raised, limits, low, high, to_pixels)
+    first, last = np.array([columns[0], rows[0]]), np.array([columns[-1], rows[-1]]) + 1
+    if boxed:
+        corners = np.stack(np.meshgrid(*np.stack([low, high], axis=1)), axis=-1).reshape(-1, 3)
+        flat = np.column_stack([corners, np.ones(8)]) @ to_pixels.T
+        first = np.minimum(first, np.floor(flat.min(axis=0)).astype(int)).clip(0)
+        last = np.maximum(last, np.ceil(flat.max(axis=0)).astype(int)).clip(None, [image.shape[1], image.shape[0]])
+    to_pixels[:, 3] -= first
+    return Scene(image[first[1] : last[1], first[0] : last[0]].copy(), raised, limits, low, high, to_pixels)
+
+
+def _projection(plotter: pyvista.Plotter, shape: tuple[int, ...], place: _Place) -> Floats:
+    """Return the (2, 4) matrix from map coordinates to columns and rows of a parallel projection."""
+    camera = plotter.camera
+    back = np.subtract(camera.position, camera.focal_point)
+    back = back / np.linalg.norm(back)
+    right = np.cross(camera.up, back)
+    right /= np.linalg.norm(right)
+    up = np.cross(back, right)
+    tall, wide = shape
+    scale = tall / (2 * camera.parallel_scale)
+    linear = np.stack([right, -up]) * scale
+    start = np.array([wide / 2, tall / 2]) - linear @ np.asarray(camera.focal_point)
+    of_map = linear * place.scale
+    return np.column_stack([of_map, start - of_map @ place.centre])

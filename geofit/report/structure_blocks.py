@@ -72,8 +72,8 @@ def _contradictions(report: AccuracyReport, t: Language) -> list[Block]:
         Column(t("Upper horizon")),
         Column(t("Lower horizon")),
         Column(t("Missing, m"), "number"),
-        Column("x, m", "number"),
-        Column("y, m", "number"),
+        Column(t("x, m"), "number"),
+        Column(t("y, m"), "number"),
         Column(t("Exact point of the upper horizon"), "wide"),
         Column(t("Exact point of the lower horizon"), "wide"),
     )
@@ -137,9 +137,9 @@ def _along(cut: CutLine, t: Language) -> Table:
     """Lay out throw and heave at places spread evenly along the trace, both ends included."""
     columns = (
         Column(t("Along the fault, m"), "number"),
-        Column("x, m", "number"),
-        Column("y, m", "number"),
-        Column("z, m", "number"),
+        Column(t("x, m"), "number"),
+        Column(t("y, m"), "number"),
+        Column(t("z, m"), "number"),
         Column(t("Throw, m"), "number"),
         Column(t("Heave, m"), "number"),
     )

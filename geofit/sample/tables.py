@@ -200,6 +200,20 @@ crs = "local grid, fictional"
 # Top to bottom. W cuts strata, F1 is a fault, M1 an overturned fold.
 order = ["T3-T2", "T2-T1"]
 
+[report]
+project = "HB-2026"
+client = "Heishui River Hydropower Co. (fictional)"
+organisation = "Geological Survey Team 3 (fictional)"
+document = "HB-2026-GEO-012"
+status = "for review"
+author = "Li Wen"
+
+[[report.revision]]
+mark = "A"
+date = 2026-11-02
+text = "First issue"
+author = "Li Wen"
+
 [boundary]
 file = "boundary.csv"
 

@@ -1,0 +1,127 @@
+"""Work on several horizons side by side: a process for each core, and none where there is one core or one horizon."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+from geofit.data.errors import Cancelled
+from geofit.data.progress import Progress, tell
+
+__all__ = ["Crew", "available", "crew"]
+
+T = TypeVar("T")
+
+#: What a process imports before the first work comes, while the fits are still under way.
+HEAVY = (
+    "geofit.cad.step", "geofit.cad.read_back", "geofit.cad.sewing", "geofit.prediction.examine",
+    "geofit.report.pictures", "geofit.report.section_sheet", "geofit.report.contour_plan",
+    "geofit.checks.storage", "cadquery", "pyvista", "matplotlib.backends.backend_agg", "matplotlib.figure",
+    "scipy.optimize", "scipy.spatial", "shapely",
+)  # fmt: skip
+#: Seconds between two looks at Cancel.
+LOOK = 0.1
+
+
+def available() -> int:
+    """Return the number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+class Crew:
+    """Processes that work on tasks; without any, the tasks are done here, one after another."""
+
+    def __init__(self, pool: ProcessPoolExecutor | None) -> None:
+        self._pool = pool
+
+    def do(
+        self, work: Callable[..., T], tasks: Sequence[tuple[Any, ...]], progress: Progress | None, stage: Any = ""
+    ) -> Iterator[tuple[int, T]]:
+        """Call ``work(*task)`` for each task; yield the number of a task and its result as they are ready.
+
+        Parameters
+        ----------
+        work : callable
+            A function of a module; its arguments and its result must be picklable.
+        tasks : sequence of tuple
+            Arguments; the first task begins first.
+        progress : callable, optional
+            Called as ``progress(stage, share of the tasks that are done)``.
+        stage : str or Message
+            What the progress says.
+
+        Raises
+        ------
+        Cancelled
+            If ``progress`` returned False; tasks that have not begun are dropped.
+        """
+        if self._pool is None:
+            for i, task in enumerate(tasks):
+                tell(progress, stage, i / len(tasks))
+                yield i, work(*task)
+            return
+        # A process that was killed, for want of memory for one, breaks the pool: the rest is done here.
+        pending: dict[Future[T], int] = {}
+        broken: list[int] = []
+        for i, task in enumerate(tasks):
+            try:
+                pending[self._pool.submit(work, *task)] = i
+            except BrokenProcessPool:
+                broken.append(i)
+        while pending:
+            done, _ = wait(pending, timeout=LOOK, return_when=FIRST_COMPLETED)
+            try:
+                tell(progress, stage, 1 - len(pending) / len(tasks))
+            except Cancelled:
+                for future in pending:
+                    future.cancel()
+                raise
+            for future in sorted(done, key=pending.__getitem__):
+                i = pending.pop(future)
+                try:
+                    yield i, future.result()
+                except BrokenProcessPool:
+                    broken.append(i)
+        for i in broken:
+            yield i, work(*tasks[i])
+
+
+@contextmanager
+def crew(size: int) -> Iterator[Crew]:
+    """Keep a crew of ``size`` processes at work; below 2, or within a process that may have none, there is none."""
+    if size < 2 or multiprocessing.current_process().daemon:
+        yield Crew(None)
+        return
+    context = multiprocessing.get_context("forkserver" if sys.platform.startswith("linux") else "spawn")
+    if sys.platform.startswith("linux"):
+        context.set_forkserver_preload(list(HEAVY))
+    pool = ProcessPoolExecutor(size, mp_context=context, initializer=_begin)
+    try:
+        for _ in range(size):
+            pool.submit(_ready)
+        yield Crew(pool)
+    except BaseException:
+        pool.shutdown(wait=False, cancel_futures=True)
+        raise
+    pool.shutdown()
+
+
+def _begin() -> None:
+    """Leave Ctrl-C to the process that gives the work, and one core to each process."""
+    from threadpoolctl import threadpool_limits
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threadpool_limits(limits=1)
+
+
+def _ready() -> None:
+    """Do nothing: the process starts, and imports what it needs."""

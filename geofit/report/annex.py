@@ -1,0 +1,238 @@
+"""The annex: input files with checksums, rejected rows, programs, and the long tables of every horizon."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from itertools import zip_longest
+
+from geofit.data.languages import Language, sentence, together, translate
+from geofit.data.messages import message
+from geofit.report import digits
+from geofit.report.accuracy_report import AccuracyReport, HorizonReport
+from geofit.report.checks_table import check_table
+from geofit.report.document import Block, Chapter, Column, Heading, Mark, Paragraph, Table
+from geofit.report.group_tables import doubled, group_blocks
+from geofit.report.point_table import point_cells, point_columns
+
+__all__ = ["horizon_annex", "inputs_annex"]
+
+#: Rows of a list in the document; the JSON and the CSV hold all of them.
+LONGEST = 40
+_SETTINGS = {
+    "epsilon": message("report.control-error", "Control error ε, m"),
+    "interior_tolerance": message("report.interior-tolerance", "Interior tolerance, m"),
+    "boundary_tolerance": message("report.boundary-tolerance", "Boundary tolerance, m"),
+    "across": message("report.interpolation-across-sections", "Interpolation across the sections"),
+    "seam": message("report.seams", "Seams"),
+    "core": message("report.core", "Core"),
+    "frame": message("report.frame", "Frame"),
+    "smoothing": message("report.smoothing", "Smoothing"),
+    "robust": message("report.outliers-take-no-part", "Outliers take no part"),
+    "max_iterations": message("report.max-iterations", "Most iterations"),
+    "max_control_points": message("report.max-control-points", "Most control points"),
+    "conflict_distance": message("report.conflict-distance", "Conflict distance, m"),
+}
+_FIT = {
+    "control_points": message("report.control-points", "Control points"),
+    "energy": message("report.bending-energy", "Bending energy"),
+    "smoothing": message("report.smoothing", "Smoothing"),
+    "iterations": message("report.iterations", "Iterations"),
+    "frame": message("report.frame", "Frame"),
+    "order": message("report.derivative-energy", "Derivative in the energy"),
+    "across": message("report.interpolation-across-sections", "Interpolation across the sections"),
+    "noise": message("report.noise", "Noise, m"),
+    "spacing": message("report.spacing", "Spacing, m"),
+    "noise_limit": message("report.noise-limit", "Largest noise that a point may have, m"),
+    "by_hand": message("report.by-hand", "Changes by hand"),
+}
+#: Values that are code, in words.
+_VALUES = {
+    "auto": message("report.value-auto", "chosen automatically"),
+    "True": message("report.value-yes", "yes"),
+    "False": message("report.value-no", "no"),
+    "all": message("report.value-all", "all points"),
+    "none": message("report.value-none", "no points"),
+    "cubic": message("report.value-cubic", "smooth (cubic)"),
+    "linear": message("report.value-linear", "straight (linear)"),
+    "tangent": message("report.value-tangent", "same tangent plane"),
+    "position": message("report.value-position", "same edge only"),
+    "map": message("report.value-map", "height over the map"),
+    "best-plane": message("report.value-best-plane", "height over the best plane"),
+    "sections": message("report.value-sections", "parametric, through the section lines"),
+}
+
+
+def inputs_annex(report: AccuracyReport, t: Language) -> Chapter:
+    """Lay out files, rejected rows and programs."""
+    return Chapter(t("Annex A: input files and programs"), _dense(_inputs(report, t)), follows=True)
+
+
+def horizon_annex(report: AccuracyReport, t: Language) -> Chapter:
+    """Lay out the long tables of every horizon."""
+    blocks: list[Block] = []
+    for h in report.horizons:
+        blocks.append(Heading(t("Horizon {name}", name=h.name)))
+        blocks += [*_made(h, t), *group_blocks(h, ("section", "hole", "patch"), t), *_worst(h, t), *_seams(h, t)]
+        blocks += _read_back(h, t)
+    return Chapter(t("Annex B: tables of the horizons"), _dense(blocks), follows=True)
+
+
+def _dense(blocks: Iterable[Block]) -> tuple[Block, ...]:
+    return tuple(replace(block, dense=True) if isinstance(block, Table) else block for block in blocks)
+
+
+def more(total: int, shown: int, where: str, t: Language) -> list[Block]:
+    """Say that a table is longer than what is shown, and where the rest stands; nothing if it is not."""
+    if total <= shown:
+        return []
+    return [Paragraph(t("{count} more stand in {file}.", count=total - shown, file=where), "quiet")]
+
+
+def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
+    counts = dict(report.issues)
+    blocks: list[Block] = [
+        Heading(t("Files")),
+        Paragraph(t("Rows read = rows used + rows listed. SHA-256 tells whether a file is the one that was read.")),
+        Table(
+            (
+                Column(t("File"), "wide"),
+                Column(t("Rows read"), "number"),
+                Column(t("Used"), "number"),
+                Column(t("Listed"), "number"),
+                Column("SHA-256", "hash"),
+            ),
+            tuple(
+                (f.file, digits.count(f.read), digits.count(f.used), digits.count(f.listed), f.sha256 or "–")
+                for f in report.inputs
+            ),
+        ),
+        Heading(t("Rejected rows and warnings")),
+        Paragraph(
+            t(
+                "Rows not used: {errors}; warnings: {warnings}; notes on how files were understood: {notes}. "
+                "import_issues.csv lists all of them.",
+                errors=counts["error"],
+                warnings=counts["warning"],
+                notes=counts["note"],
+            )
+        ),
+    ]
+    if report.rejected:
+        rows = tuple(
+            (
+                Mark(False, t("not used")) if r.severity == "error" else Mark(None, t("warning")),
+                r.file,
+                str(r.row) if r.row else "–",
+                r.column or "–",
+                r.value or "–",
+                together([sentence(r.reason, t), translate(r.remedy, t)], t),
+            )
+            for r in report.rejected[:LONGEST]
+        )
+        columns = (
+            Column(t("What")),
+            Column(t("File"), "wide"),
+            Column(t("Row"), "number"),
+            Column(t("Column")),
+            Column(t("Value")),
+            Column(t("Reason and remedy"), "wide"),
+        )
+        blocks.append(Table(columns, rows))
+        blocks += more(len(report.rejected), LONGEST, "import_issues.csv", t)
+    blocks.append(Heading(t("Versions")))
+    blocks.append(Table((Column(t("Program")), Column(t("Version"))), report.versions))
+    blocks.append(
+        Paragraph(
+            t(
+                "Method: Li, Miao, Liu, Wang (2011), interpolation–approximation fitting of complex geological "
+                "surfaces; checks and errors off the data as geofit documents them."
+            ),
+            "quiet",
+        )
+    )
+    return blocks
+
+
+def _worst(h: HorizonReport, t: Language) -> list[Block]:
+    columns = (*point_columns(t), Column(t("Patch")), Column(t("d, m"), "number"))
+    rows = tuple((*point_cells(p, t), translate(p.patch, t), digits.metres(p.residual)) for p in h.worst)
+    return [Heading(t("The {count} largest residuals", count=len(h.worst)), 3), Table(columns, rows)]
+
+
+def _seams(h: HorizonReport, t: Language) -> list[Block]:
+    return [Heading(t("Seams"), 3), _seam_table(h, t) if h.seams else Paragraph(t("One patch: no seams."))]
+
+
+def _seam_table(h: HorizonReport, t: Language) -> Table:
+    """Lay out the seams of the surface, and beside them what the reader found in the file."""
+    seams = {(s.first, s.second): s for s in h.seams}
+    back = {(s.first, s.second): s for s in (h.read_back.seams if h.read_back else ())}
+    columns = (
+        Column(t("Seam")),
+        Column(t("Largest gap, m"), "number"),
+        Column(t("Largest angle, °"), "number"),
+        Column(t("Gap in the file, m"), "number"),
+        Column(t("Angle in the file, °"), "number"),
+    )
+    rows = []
+    for a, b in dict.fromkeys([*seams, *(pair for pair in back if pair[::-1] not in seams)]):
+        found = (seams.get((a, b)), back.get((a, b)) or back.get((b, a)))
+        figures = [value for seam in found for value in ((seam.gap, seam.angle) if seam else (None, None))]
+        rows.append((f"{translate(a, t)} – {translate(b, t)}", *(digits.metres(value) for value in figures)))
+    return Table(columns, tuple(rows))
+
+
+def _read_back(h: HorizonReport, t: Language) -> list[Block]:
+    back = h.read_back
+    if back is None:
+        return []
+    blocks: list[Block] = [Heading(t("Checks of the STEP file, read back"), 3)]
+    if back.checks:
+        blocks.append(check_table(back.checks, t))
+    return [*blocks, Paragraph(f"{back.file}: SHA-256 {back.sha256}", "quiet")]
+
+
+def _value(key: str, value: str, t: Language) -> str:
+    """Return the value of a setting in words; a word may mean something else under another key."""
+    if value in _VALUES and key != "energy":
+        return translate(_VALUES[value], t)
+    return translate(value, t)
+
+
+def _made(h: HorizonReport, t: Language) -> list[Block]:
+    settings = [(translate(_SETTINGS.get(key, key), t), _value(key, value, t)) for key, value in h.settings]
+    figures = [(translate(_FIT[key], t), _value(key, value, t)) for key, value in h.fit if key in _FIT]
+    patches = tuple(
+        (
+            translate(p.name, t),
+            f"{p.degree[0]} × {p.degree[1]}",
+            f"{p.control[0]} × {p.control[1]} = {digits.count(p.control[0] * p.control[1])}",
+        )
+        for p in h.patches
+    )
+    blocks: list[Block] = [
+        Heading(t("Settings and figures of the fit"), 3),
+        Table(
+            (
+                Column(t("Setting")),
+                Column(t("Value"), "wide"),
+                Column(t("Figure of the fit")),
+                Column(t("Value"), "wide"),
+            ),
+            tuple((*a, *b) for a, b in zip_longest(settings, figures, fillvalue=("", ""))),
+        ),
+    ]
+    if h.tin_points and h.equal_accuracy:
+        grid = digits.count(h.grid_points) if h.grid_points else t("more than 12 000")
+        text = t(
+            "To stay within {tolerance} m of this surface, a TIN needs {tin} points, a square grid {grid}; the surface "
+            "has {control} control points.",
+            tolerance=digits.given(h.equal_accuracy),
+            tin=digits.count(h.tin_points),
+            grid=grid,
+            control=digits.count(h.control_points),
+        )
+        blocks.append(Paragraph(text))
+    table = Table((Column(t("Patch")), Column(t("Degree"), "number"), Column(t("Control points"), "number")), patches)
+    return [*blocks, doubled(table) if len(patches) > 2 else table]

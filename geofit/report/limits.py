@@ -1,0 +1,96 @@
+"""What a report may be used for, and what not: derived from what was found, in plain words."""
+
+from __future__ import annotations
+
+from geofit.data.languages import Language
+from geofit.report import digits
+from geofit.report.accuracy_report import AccuracyReport, HorizonReport, OffDataReport
+from geofit.report.document import Block, Column, Heading, Paragraph, Table
+
+__all__ = ["away_from_data", "limits_of_use"]
+
+#: Names in a sentence; more are counted.
+MOST = 6
+#: Half of the 90 % band of a normal law, in standard deviations.
+HALF = 1.6448536269514722
+
+
+def away_from_data(report: AccuracyReport, t: Language) -> list[Block]:
+    """Lay out, a row a horizon, what to expect where there is no hole; nothing where nothing was examined."""
+    known = [(h.name, h.off_data) for h in report.horizons if h.off_data is not None]
+    if not known:
+        return []
+    columns = (
+        Column(t("Horizon")),
+        Column(t("90 % band, mean, m"), "number"),
+        Column(t("90 % band, largest, m"), "number"),
+        Column(t("Holes left out: in the band"), "number"),
+        Column(t("Suggested boreholes"), "number"),
+        Column(t("Outliers"), "number"),
+    )
+    rows = tuple((name, *_expected(off)) for name, off in known)
+    text = t("± half the width of the 90 % band of the surface over the study area; a dash means that it is unknown.")
+    return [Heading(t("Away from the data")), Table(columns, rows), Paragraph(text, "quiet")]
+
+
+def _expected(off: OffDataReport) -> tuple[str, ...]:
+    bands = [None if sd is None else HALF * sd for sd in (off.sd_mean, off.sd_max)]
+    inside = off.left_out[0].inside if off.left_out else None
+    return (
+        *("–" if band is None else f"± {digits.metres(band)}" for band in bands),
+        digits.share(inside),
+        digits.count(len(off.suggestions)),
+        digits.count(len(off.outliers)),
+    )
+
+
+def limits_of_use(report: AccuracyReport, t: Language) -> list[Block]:
+    """Lay out the limits of use of a site's surfaces."""
+    crs = report.crs or t("not stated")
+    sentences = [
+        t("Elevations and coordinates are metres in the coordinate system: {crs}.", crs=crs),
+        t(
+            "The verdict says how well a surface meets its data. Away from the data, use the left-out error and the "
+            "90 % band, never σ."
+        ),
+    ]
+    wide = [h for h in report.horizons if (error := _left_out(h)) is not None and error > h.epsilon]
+    if wide:
+        names = _names([t("{name} ({error})", name=h.name, error=digits.length(_left_out(h))) for h in wide], t)
+        sentences.append(
+            t(
+                "Between boreholes the typical error exceeds the control error for: {names}.",
+                names=names,
+            )
+        )
+    unknown = [h.name for h in report.horizons if _left_out(h) is None]
+    if unknown:
+        sentences.append(t("The error away from the data is unknown for: {names}.", names=_names(unknown, t)))
+    if any(check.name == "above ground" and check.value for h in report.horizons for check in h.checks):
+        sentences.append(t("Where a surface lies above the ground, the rock has been eroded or excavated."))
+    counts = dict(report.issues)
+    if counts.get("error"):
+        sentences.append(
+            t("{count} rows of the input were not used; they are listed in the annex.", count=counts["error"])
+        )
+    sentences.append(
+        t(
+            "The report applies to the input files with the checksums in the annex and to the settings listed there; "
+            "with other data, fit again."
+        )
+    )
+    return [Heading(t("Limits of use")), *(Paragraph(f"{i}. {text}") for i, text in enumerate(sentences, 1))]
+
+
+def _left_out(horizon: HorizonReport) -> float | None:
+    off = horizon.off_data
+    return off.left_out[0].rms if off is not None and off.left_out else None
+
+
+def _names(names: list[str], t: Language) -> str:
+    shown = names[:MOST]
+    text = shown[0]
+    for name in shown[1:]:
+        text = t("{first}, {second}", first=text, second=name)
+    more = len(names) - len(shown)
+    return text if not more else t("{names} and {count} more", names=text, count=more)

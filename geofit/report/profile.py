@@ -1,0 +1,139 @@
+"""What the geological sections of a report show of each horizon: its line, its 90 % band, its contacts nearby."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.guard import guarded
+from geofit.data.points import PointSet
+from geofit.data.prediction import OffData
+from geofit.data.site import Section, Site
+from geofit.fitting.horizon_fit import HorizonFit
+from geofit.prediction.bands import prediction_sd
+from geofit.sampling.cut import CutLine, cut_section
+
+__all__ = ["Profile", "along", "profiles", "report_sections"]
+
+Floats = NDArray[np.float64]
+
+#: Sections of a report, and how far from a section (share of its length) holes and points are shown on it.
+MOST, THICKNESS = 4, 0.02
+#: Half of the 90 % band of a normal law, in standard deviations.
+HALF = 1.6448536269514722
+#: Largest distance of the triangles that are cut, metres; vertices of the lines are exact.
+COARSE = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """A line of a horizon in a section: ``line`` (k, 2) distance along the section and elevation, metres.
+
+    ``lower`` and ``upper`` (k, 2) are the ends of the 90 % band of a new hole's contact, None where it is not known.
+    """
+
+    horizon: str
+    line: Floats
+    lower: Floats | None = None
+    upper: Floats | None = None
+
+
+def report_sections(site: Site, points: Sequence[PointSet]) -> tuple[Section, ...]:
+    """Return the sections that a report shows: up to four of the site's, far apart; else two through its middle."""
+    lines = [section for section in site.sections if _length(section.line) > 0]
+    if not lines:
+        return _crosswise(site, points)
+    chosen = [max(lines, key=lambda one: _length(one.line))]
+    while len(chosen) < min(MOST, len(lines)):
+        rest = [one for one in lines if one not in chosen]
+        chosen.append(max(rest, key=lambda one: min(_apart(one, other) for other in chosen)))
+    return tuple(one for one in lines if one in chosen)
+
+
+def profiles(fit: HorizonFit, found: OffData | None, sections: Sequence[Section]) -> Mapping[str, tuple[Profile, ...]]:
+    """Return what each section cuts of a horizon, by the section's name."""
+    mesh = fit.triangulate(COARSE)
+    return {
+        section.name: tuple(
+            _profile(fit, found, section, cut) for cut in cut_section(fit.surface, section.line, mesh=mesh)
+        )
+        for section in sections
+    }
+
+
+def along(line: Floats, xy: Floats) -> tuple[Floats, Floats]:
+    """Return distance along a polyline and distance from it of (n, 2) places, metres."""
+    best, where = np.full(len(xy), np.inf), np.zeros(len(xy))
+    start_at = 0.0
+    for start, end in pairwise(line):
+        way = end - start
+        length = float(np.hypot(*way))
+        t = np.clip((xy - start) @ way / max(length**2, 1e-12), 0.0, 1.0)
+        off = np.linalg.norm(xy - start - t[:, None] * way, axis=1)
+        nearer = off < best
+        best, where = np.where(nearer, off, best), np.where(nearer, start_at + t * length, where)
+        start_at += length
+    return where, best
+
+
+def _profile(fit: HorizonFit, found: OffData | None, section: Section, cut: CutLine) -> Profile:
+    line = np.column_stack([cut.distance, cut.xyz[:, 2]])
+    uncertainty = found.uncertainty if found is not None else None
+    if uncertainty is None or fit.model is None:
+        return Profile(fit.name, line)
+    sd = guarded(lambda: prediction_sd(fit, uncertainty, cut.xyz, "contact"), None, lambda reason: None)
+    if sd is None:
+        return Profile(fit.name, line)
+    shift = HALF * sd[:, None] * _within_section(fit, section, cut)
+    return Profile(fit.name, line, line - shift, line + shift)
+
+
+def _within_section(fit: HorizonFit, section: Section, cut: CutLine) -> Floats:
+    """Return how a shift by one metre across the frame moves the trace in the plane of the section, (k, 2).
+
+    Moving a plane by w along its normal n moves its trace by w n' / |n'|^2, n' the part of n in the section.
+    """
+    if fit.frame != "best-plane" or fit.model is None:
+        return np.tile([0.0, 1.0], (len(cut.distance), 1))
+    normal = fit.model.problem.chart.frame.turn_back(np.array([[0.0, 0.0, 1.0]]))[0]
+    normal = normal if normal[2] >= 0 else -normal
+    steps = np.diff(section.line, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    leg = np.clip(np.searchsorted(np.cumsum(lengths), cut.distance), 0, len(steps) - 1)
+    ways = steps / lengths[:, None]
+    across = np.column_stack([ways[leg] @ normal[:2], np.full(len(leg), normal[2])])
+    return np.asarray(across / np.maximum((across**2).sum(axis=1), 0.05)[:, None])
+
+
+def _crosswise(site: Site, points: Sequence[PointSet]) -> tuple[Section, ...]:
+    """Return two lines through the middle of the points, along and across their longer axis."""
+    xy = np.concatenate([one.xyz[:, :2] for one in points])
+    if len(xy) < 3:
+        return ()
+    ends = xy if site.boundary is None else site.boundary
+    middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
+    _, _, axes = np.linalg.svd(xy - xy.mean(axis=0), full_matrices=False)
+    sections = []
+    for name, way in zip("AB", axes, strict=True):
+        way = way if way[0] > 0 or (way[0] == 0 and way[1] > 0) else -way
+        reach = (ends - middle) @ way
+        if reach.max() - reach.min() > 0:
+            sections.append(Section(name, middle + np.outer([reach.min(), reach.max()], way)))
+    return tuple(sections)
+
+
+def _length(line: Floats) -> float:
+    return float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
+
+
+def _apart(one: Section, other: Section) -> float:
+    """Return how different two sections are: distance of their middles, and of their directions."""
+    ways = [(section.line[-1] - section.line[0]) for section in (one, other)]
+    lengths = [max(float(np.hypot(*way)), 1e-9) for way in ways]
+    sine = abs(ways[0][0] * ways[1][1] - ways[0][1] * ways[1][0]) / (lengths[0] * lengths[1])
+    middles = [(section.line[0] + section.line[-1]) / 2 for section in (one, other)]
+    return float(np.linalg.norm(middles[0] - middles[1]) + sine * min(lengths))

@@ -1,0 +1,244 @@
+"""Geological sections to scale: ground, horizons with their 90 % bands, holes, scale and exaggeration stated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.languages import EN, Language, together, translate
+from geofit.data.points import PointSet
+from geofit.data.site import Ground, Section, Site
+from geofit.report.accuracy_report import SectionSheet
+from geofit.report.furniture import exaggeration_for, scale_bar, scale_for, scale_text
+from geofit.report.profile import THICKNESS, Profile, along
+from geofit.report.style import INK, LINE, MUTED, PAPER, drawing, horizon_colours, kind_style
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["draw_section", "section_caption", "section_sheet"]
+
+Floats = NDArray[np.float64]
+
+#: Width of the sheet, of its drawing, margin on the left, and most height of the drawing, mm.
+SHEET, DRAWING, LEFT, TALLEST = 174.0, 150.0, 15.0, 150.0
+#: Room above the drawing for names of ends and holes, and below it for the axis, the bar and the legend, mm.
+ABOVE, BELOW = 13.0, 27.0
+GROUND = "#6b5a3e"
+#: Bands wider than the relief of all horizons are cut at so many times it.
+WIDEST_BAND = 0.6
+MM = 1 / 25.4
+
+
+def section_sheet(section: Section, site: Site, cut: Mapping[str, Sequence[Profile]], picture: str) -> SectionSheet:
+    """Choose scale and exaggeration of a sheet.
+
+    Parameters
+    ----------
+    section : Section
+        The line.
+    site : Site
+        Its ground belongs to the sheet.
+    cut : mapping of str to sequence of Profile
+        What the section cuts of each horizon.
+    picture : str
+        Name under which the report finds the drawing.
+    """
+    lines = [line for of in cut.values() for line in of]
+    length = float(np.linalg.norm(np.diff(section.line, axis=0), axis=1).sum())
+    z = np.concatenate([line.line[:, 1] for line in lines] or [np.zeros(1)])
+    low, high = float(z.min()), float(z.max())
+    reach = WIDEST_BAND * max(high - low, 0.02 * length)
+    banded = [(line.lower, line.upper) for line in lines if line.lower is not None and line.upper is not None]
+    for lower, upper in banded:
+        low = min(low, max(float(np.nanmin(lower[:, 1])), float(z.min()) - reach))
+        high = max(high, min(float(np.nanmax(upper[:, 1])), float(z.max()) + reach))
+    grounded = site.ground is not None
+    if site.ground is not None:
+        ground = _ground_line(section, site.ground, length)[1]
+        grounded = bool(np.isfinite(ground).any())
+        if grounded:
+            low, high = min(low, float(np.nanmin(ground))), max(high, float(np.nanmax(ground)))
+    room = max(0.04 * (high - low), 0.003 * length)
+    low, high = low - room, high + room
+    scale = scale_for(length, DRAWING)
+    start, end = ((float(x), float(y)) for x, y in (section.line[0], section.line[-1]))
+    raised = exaggeration_for(high - low, scale, TALLEST)
+    return SectionSheet(
+        section.name, start, end, length, low, high, scale, raised, bool(banded), grounded, picture
+    )  # fmt: skip
+
+
+def draw_section(
+    sheet: SectionSheet, section: Section, site: Site, cut: Mapping[str, Sequence[Profile]],
+    points: Mapping[str, PointSet], t: Language = EN,
+) -> Figure:  # fmt: skip
+    """Draw a section sheet, 174 mm wide.
+
+    Parameters
+    ----------
+    sheet : SectionSheet
+        Its scale and exaggeration.
+    section : Section
+        The line.
+    site : Site
+        Ground and holes.
+    cut : mapping of str to sequence of Profile
+        What the section cuts of each horizon, in the order of their colours.
+    points : mapping of str to PointSet
+        Points of each horizon; those near the section are drawn.
+    t : Language
+        That of the words.
+    """
+    from matplotlib.figure import Figure
+
+    length, low, high = sheet.length, sheet.low, sheet.high
+    wide, tall = length * 1000 / sheet.scale, (high - low) * 1000 / sheet.scale * sheet.exaggeration
+    height = ABOVE + tall + BELOW
+    with drawing(7.5):
+        figure = Figure(figsize=(SHEET * MM, height * MM), dpi=200)
+        axes = figure.add_axes((LEFT / SHEET, BELOW / height, wide / SHEET, tall / height))
+        axes.set_xlim(0, length)
+        axes.set_ylim(low, high)
+        colours = horizon_colours(cut)
+        ground = _ground(axes, section, site.ground, length)
+        for name, lines in cut.items():
+            for line in lines:
+                _profile(axes, line, colours[name], ground)
+        near = max(THICKNESS * length, 1.0)
+        _holes(axes, section, site, near, (low, high))
+        for name, found in points.items():
+            _contacts(axes, section, found, near, colours[name])
+        _frame(axes, section, length, t)
+        scale_bar(axes, sheet.scale, wide - 44.0, -13.5)
+        _legend(figure, cut, colours, site, near, t)
+    return figure
+
+
+def section_caption(sheet: SectionSheet, t: Language) -> str:
+    """Return scale, exaggeration and what the signs mean."""
+    times, scale = sheet.exaggeration, scale_text(sheet.scale)
+    if times == 1:
+        text = t(
+            "Section {name}, scale {scale} on A4 at 100 %; heights are not exaggerated.", name=sheet.name, scale=scale
+        )
+    else:
+        text = t(
+            "Section {name}, scale {scale} on A4 at 100 %; vertical exaggeration {times} ×, heights {vertical}.",
+            name=sheet.name,
+            scale=scale,
+            times=times,
+            vertical=scale_text(round(sheet.scale / times)),
+        )
+    band = t("Tinted: 90 % band of the contact that a new hole would find.") if sheet.banded else ""
+    return together([text, band, t("Dashed: above the ground.") if sheet.grounded else ""], t)
+
+
+def _ground_line(section: Section, ground: Ground, length: float) -> tuple[Floats, Floats]:
+    corners = section.line
+    bends = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1))])
+    s = np.unique(np.concatenate([np.linspace(0, length, 400), bends]))
+    z = ground.elevation(np.interp(s, bends, corners[:, 0]), np.interp(s, bends, corners[:, 1]))
+    return s, z
+
+
+def _ground(axes: Axes, section: Section, ground: Ground | None, length: float) -> tuple[Floats, Floats] | None:
+    if ground is None:
+        return None
+    s, z = _ground_line(section, ground, length)
+    axes.plot(s, z, color=GROUND, lw=1.3, zorder=5)
+    axes.fill_between(s, z, axes.get_ylim()[0], color="#f4f1ea", lw=0, zorder=0)
+    return s, z
+
+
+def _profile(axes: Axes, profile: Profile, colour: str, ground: tuple[Floats, Floats] | None) -> None:
+    """Draw the band, and the line: whole below the ground, dashed above it."""
+    if profile.lower is not None and profile.upper is not None:
+        ring = np.concatenate([profile.upper, profile.lower[::-1]])
+        axes.fill(*ring.T, facecolor=colour, alpha=0.2, edgecolor="none", zorder=2)
+    s, z = profile.line.T
+    above = np.zeros(len(s), bool) if ground is None else z > np.interp(s, *ground) + 1e-6
+    for part, style in ((above, (0, (4, 2.5))), (~above, "solid")):
+        # A part goes on to the next vertex, so that there is no gap where it changes.
+        shown = part | np.append(part[1:], False) & ~part
+        axes.plot(np.where(shown, s, np.nan), np.where(shown, z, np.nan), color=colour, lw=1.5, ls=style, zorder=4)
+
+
+def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[float, float]) -> None:
+    """Draw the holes within a distance of the section, projected onto it, with their names above."""
+    named: list[float] = []
+    low, high = limits
+    length = axes.get_xlim()[1]
+    for hole in sorted(site.holes, key=lambda one: float(along(section.line, one.xyz[:1, :2])[0][0])):
+        s, off = along(section.line, hole.xyz[:, :2])
+        if off[0] > near:
+            continue
+        z = hole.xyz[:, 2]
+        within = (z >= low) & (z <= high)
+        if not within.any():
+            continue
+        axes.plot(s, z, color=kind_style(hole.kind)[1], lw=0.9, zorder=3)
+        axes.plot(s[:1], z[:1], marker="v", ms=3.2, color=kind_style(hole.kind)[1], lw=0, zorder=6, clip_on=False)
+        if all(abs(s[0] - other) > 0.028 * length for other in named):
+            named.append(float(s[0]))
+            axes.annotate(
+                hole.name, (s[0], min(max(z[0], low), high)), xytext=(0, 4), textcoords="offset points", rotation=90,
+                size=5.6, color=INK, ha="center", va="bottom", zorder=7, annotation_clip=False,
+            )  # fmt: skip
+
+
+def _contacts(axes: Axes, section: Section, points: PointSet, near: float, colour: str) -> None:
+    s, off = along(section.line, points.xyz[:, :2])
+    of = off <= near
+    axes.plot(s[of], points.xyz[of, 2], "o", ms=2.6, mfc=PAPER, mec=colour, mew=0.8, zorder=6)
+
+
+def _frame(axes: Axes, section: Section, length: float, t: Language) -> None:
+    """Draw the axes, and name both ends with the direction in which the section runs."""
+    from matplotlib.ticker import FuncFormatter, MaxNLocator
+
+    axes.xaxis.set_major_locator(MaxNLocator(8, steps=[1, 2, 5, 10]))
+    axes.yaxis.set_major_locator(MaxNLocator(6, steps=[1, 2, 5, 10]))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}".replace(",", "\N{NO-BREAK SPACE}")))
+    axes.grid(axis="y", color=LINE, lw=0.5, zorder=0)
+    axes.set_axisbelow(True)
+    axes.tick_params(length=2.5, width=0.6, labelsize=6.5)
+    axes.spines["top"].set_visible(False)
+    for side in ("left", "right", "bottom"):
+        axes.spines[side].set(color=MUTED, linewidth=0.7)
+    axes.set_xlabel(t("Distance along the section, m"), fontsize=7, labelpad=2)
+    axes.set_ylabel(t("Elevation, m"), fontsize=7, labelpad=2)
+    way = section.line[-1] - section.line[0]
+    azimuth = float(np.degrees(np.arctan2(way[0], way[1]))) % 360
+    ends = ((0.0, section.name, (azimuth + 180) % 360, "left"), (length, section.name + "′", azimuth, "right"))
+    top = axes.get_ylim()[1]
+    for x, name, bearing, ha in ends:
+        axes.annotate(
+            f"{name}  {bearing:03.0f}°", (x, top), xytext=(0, 20), textcoords="offset points", size=8, weight="bold",
+            color=INK, ha=ha, va="bottom", annotation_clip=False,
+        )  # fmt: skip
+
+
+def _legend(
+    figure: Figure, cut: Mapping[str, Sequence[Profile]], colours: Mapping[str, str], site: Site,
+    near: float, t: Language,
+) -> None:  # fmt: skip
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], color=colours[name], lw=1.8, label=name) for name, lines in cut.items() if lines]
+    if site.ground is not None:
+        handles.append(Line2D([], [], color=GROUND, lw=1.3, label=t("ground surface")))
+    handles.append(Line2D([], [], color=MUTED, lw=0, marker="o", ms=3, mfc=PAPER, mec=MUTED,
+                          label=t("contacts and holes within {distance:.0f} m", distance=float(near))))  # fmt: skip
+    for hole_kind in sorted({hole.kind for hole in site.holes}):
+        handles.append(Line2D([], [], color=kind_style(hole_kind)[1], lw=0.9, label=translate(hole_kind, t)))
+    height = figure.get_size_inches()[1] / MM
+    figure.legend(
+        handles=handles, loc="lower left", bbox_to_anchor=(LEFT / SHEET, 1.0 / height), ncols=5, fontsize=6.5,
+        handlelength=1.8, columnspacing=1.4, borderaxespad=0, handletextpad=0.5,
+    )  # fmt: skip
