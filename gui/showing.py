@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from geofit.data.accuracy import ReadBack
 from geofit.data.settings import FitSettings
+from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.drawing import Drawing
 from geofit.gui.view3d.drawn import Drawn
@@ -118,6 +119,7 @@ class Showing(QObject):
     def show_orders(self, orders: tuple[Order, ...]) -> None:
         """Show how the horizons lie to each other, in the checks."""
         self.orders = orders
+        self._show_tree()
         self._show_horizon()
 
     def show_cuts(self, cuts: tuple[FaultCut, ...]) -> None:
@@ -130,6 +132,7 @@ class Showing(QObject):
         """Show what the reader found in the files of surfaces, for as long as these are the ones."""
         surfaces = self._document.surfaces()
         self._read_back |= {name: (surfaces[name], back) for name, back in found.items() if name in surfaces}
+        self._show_tree()
         self._show_horizon()
 
     def _show_in_view(self, name: str) -> None:
@@ -151,7 +154,9 @@ class Showing(QObject):
         document = self._document
         site = document.site_in_use() if document.site.horizons else None
         stale = {name for name in document.horizons if document.stale(name)}
-        self._panels.tree.show_site(site, document.surfaces(), stale)
+        surfaces = document.surfaces()
+        verdicts = {name: found for name in surfaces if (found := self.verdict(name)) is not None}
+        self._panels.tree.show_site(site, surfaces, stale, verdicts)
         if document.selection.horizon:
             self._panels.tree.choose_horizon(document.selection.horizon)
 
@@ -164,21 +169,34 @@ class Showing(QObject):
         settings = document.settings(name) if known and name else FitSettings()
         stale = bool(known and name and document.stale(name))
         panels.fit.show_settings(name if known and name else "", settings, stale)
-        panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale)
+        verdict = self.verdict(name) if known and name else None
+        panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale, verdict)
         panels.residuals.show_surface(surface)
         panels.histogram.show_surface(surface)
         panels.seams.show_surface(surface)
-        written, back = self._read_back.get(name or "", (None, None))
         panels.checks.show_surface(
             surface,
             offdata,
             self._orders_of(name),
-            back if surface is not None and written is surface else None,
+            self._file_of(name, surface),
             tuple(cut for cut in self.cuts if name in (cut.up, cut.down)),
         )
         panels.offdata.show_offdata(offdata, None if surface is None else surface.points, fitted=surface is not None)
         panels.adjust.show_surface(surface)
         panels.plan.show_surface(document.site_in_use() if known else None, name or "", surface, settings)
+
+    def verdict(self, name: str) -> Verdict | None:
+        """Return the verdict on a horizon's surface from all that is known of it; None while it has none."""
+        surface = self._document.surface(name)
+        if surface is None or surface.accuracy is None:
+            return None
+        orders = (order.check() for order in self._orders_of(name))
+        return verdict_of(surface.accuracy, self._document.offdata(name), self._file_of(name, surface), orders)
+
+    def _file_of(self, name: str | None, surface: HorizonFit | None) -> ReadBack | None:
+        """Return what the reader found in the file that has this very surface."""
+        written, back = self._read_back.get(name or "", (None, None))
+        return back if surface is not None and written is surface else None
 
     def _orders_of(self, name: str | None) -> tuple[Order, ...]:
         return tuple(order for order in self.orders if name in (order.upper, order.lower))

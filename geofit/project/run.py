@@ -112,6 +112,7 @@ def deliver(
     """
     from geofit.report.gather import accuracy_report
     from geofit.report.pictures import draw_site
+    from geofit.report.result import write_json
     from geofit.site.fit_site import fit_site
 
     names = _chosen(site, horizons)
@@ -145,6 +146,10 @@ def deliver(
         tell(progress, "report", 1.0)
         compared, unordered = _orders(site, fits)
         orders = compared or ()
+        results = _with_orders(results, orders, fits)
+        for result in results:
+            if any(check.passed is False for check in result.orders):
+                write_json(result, out / f"{stems[result.name]}.json")
         report = accuracy_report(
             results, compared, cuts=fits.cuts, contradictions=fits.contradictions, failures=failures, date=date
         )
@@ -243,6 +248,7 @@ def write_reports(
         surfaces = {result.name: result.surface for result in made}
         fits = SiteFit(surfaces, {name: name for name in surfaces})
     orders, unordered = _orders(made[0].site, fits)
+    made = _with_orders(made, orders or (), fits)
     report = accuracy_report(made, orders, cuts=fits.cuts, date=date)
     whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
     tell(progress, "report", 0.95)
@@ -373,6 +379,18 @@ def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Messag
         ),
     )
     return compared, missing[0] if missing else EMPTY
+
+
+def _with_orders(results: Sequence[HorizonResult], orders: Sequence[Order], fits: SiteFit) -> list[HorizonResult]:
+    """Return the results with how their horizons lie to others: part of their verdicts."""
+    return [
+        replace(result, orders=tuple(order.check() for order in orders if fits.horizon[result.name] in _pair(order)))
+        for result in results
+    ]
+
+
+def _pair(order: Order) -> tuple[str, str]:
+    return order.upper, order.lower
 
 
 def _write_report(

@@ -128,7 +128,8 @@ def _horizon(result: HorizonResult) -> HorizonReport:
     shown = [what for what in PICTURES if what != "uncertainty" or _has_uncertainty(result.offdata)]
     return HorizonReport(
         name=result.name,
-        verdict=a.verdict,
+        verdict=result.verdict.word,
+        lamps=result.verdict.lamps,
         sound=result.sound,
         n=a.n,
         n_core=int(core.sum()),

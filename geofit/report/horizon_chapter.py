@@ -26,7 +26,7 @@ from geofit.report.document import (
 from geofit.report.off_data_blocks import off_data_blocks
 from geofit.report.point_table import point_cells, point_columns
 
-__all__ = ["horizon_chapter"]
+__all__ = ["horizon_chapter", "verdict_badge"]
 
 #: Holes and sections beyond this number are in the JSON only, the largest residual first here.
 LONGEST_GROUPS = 20
@@ -84,20 +84,17 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
         *_conflicts(h, t),
         *_made(h, t),
     ]
-    passed = h.verdict == "PASS"
-    return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), Verdict(passed, t("PASS") if passed else t("FAIL")))
+    return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h, t))
+
+
+def verdict_badge(h: HorizonReport, t: Language) -> Verdict:
+    """Return the badge of a horizon's verdict."""
+    words = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}
+    return Verdict({"PASS": True, "FAIL": False}.get(h.verdict), words[h.verdict])
 
 
 def _sentence(h: HorizonReport, t: Language) -> str:
-    sigma, epsilon = digits.equals(h.sigma), digits.given(h.epsilon)
-    if h.verdict != "PASS" and h.sigma < h.epsilon:
-        return t("The surface runs far beyond the elevations of its data: see below.")
-    if h.verdict != "PASS":
-        return t("σ {sigma} is not below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
-    text = t("σ {sigma} is below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
-    if not h.sound:
-        text += " " + t("But a check does not hold: see below.")
-    return text
+    return " · ".join(f"{translate(lamp.title, t)}: {translate(lamp.text, t)}" for lamp in h.lamps)
 
 
 def _facts(h: HorizonReport, t: Language) -> Facts:

@@ -141,11 +141,12 @@ class _Pages(FPDF):
         after = self.y
         if verdict is not None:
             word = verdict.text
-            self._type(11, "#ffffff" if verdict.passed else FAIL, "B")
+            shade = WARNING if verdict.passed is None else FAIL
+            self._type(11, "#ffffff" if verdict.passed else shade, "B")
             wide = self.get_string_width(word) + 8
             self.set_xy(self.w - SIDE - wide, top)
             self.set_fill_color(*rgb(PASS))
-            self.set_draw_color(*rgb(FAIL))
+            self.set_draw_color(*rgb(shade))
             self.set_line_width(0.9)
             self.rect(self.x, top, wide, 8, style="F" if verdict.passed else "D")
             self.cell(wide, 8, word, align="C")

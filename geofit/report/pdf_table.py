@@ -9,7 +9,7 @@ from fpdf import FPDF, FontFace
 from fpdf.enums import CellBordersLayout, VAlign
 
 from geofit.report.document import Cell, Column, Mark, Table, Verdict
-from geofit.report.style import FAIL, INK, MUTED, PASS
+from geofit.report.style import FAIL, INK, MUTED, PASS, WARNING
 
 __all__ = ["draw_table", "least_height", "plain_text", "rgb"]
 
@@ -87,6 +87,8 @@ def _title(column: Column) -> str:
 def _badge(verdict: Verdict) -> FontFace:
     if verdict.passed:
         return FontFace(emphasis="BOLD", color=(255, 255, 255), fill_color=rgb(PASS))
+    if verdict.passed is None:
+        return FontFace(emphasis="BOLD", color=rgb(WARNING), fill_color=(255, 255, 255))
     return FontFace(emphasis="BOLD", color=rgb(FAIL), fill_color=(255, 255, 255))
 
 

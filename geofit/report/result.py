@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 import geofit
 from geofit.checks.storage import Storage
-from geofit.data.accuracy import Accuracy, ReadBack, Seam, plain
+from geofit.data.accuracy import Accuracy, Check, ReadBack, Seam, plain
 from geofit.data.files import replacing
 from geofit.data.messages import Message
 from geofit.data.prediction import OffData
 from geofit.data.site import ImportIssue, Site
+from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 
 __all__ = ["HorizonResult", "horizon_data", "sigma_of", "write_json"]
@@ -43,6 +44,8 @@ class HorizonResult:
         Time of each stage.
     offdata : OffData or None
         The surface away from its data; None: not examined.
+    orders : tuple of Check
+        How the horizon lies to its neighbours (:meth:`geofit.site.order.Order.check`).
     """
 
     surface: HorizonFit
@@ -52,6 +55,12 @@ class HorizonResult:
     step_bytes: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
     offdata: OffData | None = None
+    orders: tuple[Check, ...] = ()
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict with its three lamps."""
+        return verdict_of(self.accuracy, self.offdata, self.read_back, self.orders)
 
     @property
     def name(self) -> str:
@@ -106,7 +115,8 @@ def horizon_data(result: HorizonResult) -> dict[str, Any]:
         "sigma": a.sigma,
         "max_abs": a.max_abs,
         "mean": a.mean,
-        "verdict": a.verdict,
+        "verdict": result.verdict.word,
+        "lamps": {lamp.title.code: plain(lamp) for lamp in result.verdict.lamps},
         "sound": result.sound,
         "over": a.over,
         "core": {"n": int(core.sum()), "max_abs": d[core].max() if core.any() else None},

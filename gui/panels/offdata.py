@@ -133,11 +133,8 @@ class OffDataPanel(QWidget):
                 self.tr(
                     "Widened by a factor of {factor:.2f}, so that 90 % of the left-out points lie in the 90 % band."
                 )
-                if sd.factor >= 1
-                else self.tr(
-                    "Narrowed by a factor of {factor:.2f}: fewer than 10 % of the left-out points lay outside the "
-                    "90 % band."
-                )
+                if sd.factor > 1
+                else self.tr("Not widened: the 90 % band contains 90 % of the left-out points or more.")
             )
             lines.append(words.format(factor=sd.factor))
         for left in offdata.left_out:
