@@ -163,7 +163,7 @@ class MainWindow(QMainWindow):
             "order": self.ordering.edit,
             "repair": self.ordering.ask_repair,
             "worst": self.selecting.go_to_worst,
-            "exclude": self._exclude_chosen,
+            "exclude": lambda: self._exclude(self.selecting.rows()),
             "stop": self.activity.cancel,
             "tutorial": self.help.tutorial,
             "shortcuts": lambda: self.help.shortcuts(self.menuBar()),
@@ -274,16 +274,10 @@ class MainWindow(QMainWindow):
             self.showing.begin_section()
         self.panels.view.set_section(self.showing.line if on else None, self.showing.thickness)
 
-    def _exclude(self, index: int) -> None:
+    def _exclude(self, rows: tuple[Row, ...]) -> None:
         name = self._horizon()
-        surface = None if name is None else self.session.document.surface(name)
-        if name is not None and surface is not None:
-            self.fitting.exclude(name, Row.of(surface.points, index))
-
-    def _exclude_chosen(self) -> None:
-        chosen = self.session.document.selection
-        if chosen.horizon is not None and chosen.row is not None:
-            self.fitting.exclude(chosen.horizon, chosen.row)
+        if name is not None:
+            self.fitting.exclude(name, rows)
 
     def _rename(self) -> None:
         name, given = QInputDialog.getText(

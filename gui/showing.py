@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import cast
 
 from numpy.typing import ArrayLike
@@ -84,10 +85,10 @@ class Showing(QObject):
             self.drawing.clear()
             panels.view.clear()
             if is_open:
-                panels.view.show_site(document.site_in_use())
+                every = {name: document.site.horizons[name] for name in document.horizons}
+                panels.view.show_site(replace(document.site_in_use(), horizons=every))
             self._results = set(document.horizons)
         elif self._points:
-            panels.view.show_site(document.site_in_use())
             self._results |= self._points
         for name in self._results:
             self._show_in_view(name)
@@ -137,6 +138,8 @@ class Showing(QObject):
 
     def _show_in_view(self, name: str) -> None:
         surface, offdata, view = self._document.surface(name), self._document.offdata(name), self._panels.view
+        if name in self._document.site.horizons:
+            view.show_listing(name, self._document.listing(name))
         if surface is None:
             self.drawing.forget(name)
             view.remove_surface(name)
@@ -171,7 +174,7 @@ class Showing(QObject):
         panels.fit.show_settings(name if known and name else "", settings, stale)
         verdict = self.verdict(name) if known and name else None
         panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale, verdict)
-        panels.residuals.show_surface(surface)
+        panels.residuals.show_surface(surface, document.listing(name) if known and name else None)
         panels.histogram.show_surface(surface)
         panels.seams.show_surface(surface)
         panels.checks.show_surface(
@@ -211,8 +214,11 @@ class Showing(QObject):
         self._results.update(self._document.horizons)
         self._later.start()
 
-    def _on_settings(self, _: str) -> None:
+    def _on_settings(self, name: str) -> None:
         self._settings = True
+        if self._document.surface(name) is not None:
+            # Another control error judges the same surface anew.
+            self._results.add(name)
         self._later.start()
 
     def _on_points(self, name: str) -> None:

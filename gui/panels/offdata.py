@@ -16,6 +16,7 @@ from geofit.data.prediction import LeftOut, OffData
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
+from geofit.project.provenance import Row
 
 __all__ = ["OffDataPanel"]
 
@@ -28,7 +29,7 @@ class OffDataPanel(QWidget):
 
     examine_requested = Signal()
     suggestion_chosen = Signal(float, float, float)
-    point_chosen = Signal(int)
+    point_chosen = Signal(object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -223,8 +224,8 @@ class OffDataPanel(QWidget):
             self.suggestion_chosen.emit(hole.x, hole.y, hole.z)
 
     def _tell_outlier(self, row: int) -> None:
-        if self._offdata is not None:
-            self.point_chosen.emit(self._offdata.outliers[row].index)
+        if self._offdata is not None and self._points is not None:
+            self.point_chosen.emit(Row.of(self._points, self._offdata.outliers[row].index))
 
 
 def _peer(name: str, left: LeftOut) -> float:
