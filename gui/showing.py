@@ -29,14 +29,17 @@ THICKNESS = 50.0
 class Showing(QObject):
     """Keeps the panels as the document is. Several changes in one event are shown once.
 
-    ``drawn(horizon)`` tells that the 3D view has a horizon's surface.
+    ``drawn(horizon)`` tells that the 3D view has a surface. ``busy()`` returns whether something runs, so that
+    surfaces may still come.
     """
 
     drawn = Signal(str)
 
-    def __init__(self, document: Document, workspace: Workspace, parent: QObject) -> None:
+    def __init__(
+        self, document: Document, workspace: Workspace, parent: QObject, busy: Callable[[], bool] = lambda: False
+    ) -> None:
         super().__init__(parent)
-        self._document, self._panels = document, workspace
+        self._document, self._panels, self._busy = document, workspace, busy
         self.drawing = Drawing(self)
         self._site = False
         self._points: set[str] = set()
@@ -68,6 +71,16 @@ class Showing(QObject):
         for end in self._ends:
             end()
         self._ends.clear()
+
+    @property
+    def waiting(self) -> bool:
+        """Whether surfaces of the project are still being read or made again."""
+        return self._busy() and any(self._document.waiting(name) for name in self._document.horizons)
+
+    def renew(self) -> None:
+        """Show the chosen horizon anew, once the event is over: what ran has ended."""
+        self._chosen = True
+        self._later.start()
 
     def everything(self) -> None:
         """Show the whole document anew."""
@@ -171,9 +184,10 @@ class Showing(QObject):
         offdata = document.offdata(name) if known and name else None
         settings = document.settings(name) if known and name else FitSettings()
         stale = bool(known and name and document.stale(name))
-        panels.fit.show_settings(name if known and name else "", settings, stale)
+        waiting = bool(known and name and self._busy() and document.waiting(name))
+        panels.fit.show_settings(name if known and name else "", settings, stale, self.waiting)
         verdict = self.verdict(name) if known and name else None
-        panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale, verdict)
+        panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale, verdict, waiting)
         panels.residuals.show_surface(surface, document.listing(name) if known and name else None)
         panels.histogram.show_surface(surface)
         panels.seams.show_surface(surface)
@@ -187,6 +201,15 @@ class Showing(QObject):
         panels.offdata.show_offdata(offdata, None if surface is None else surface.points, fitted=surface is not None)
         panels.adjust.show_surface(surface)
         panels.plan.show_surface(document.site_in_use() if known else None, name or "", surface, settings)
+        if waiting:
+            self._say_waiting()
+
+    def _say_waiting(self) -> None:
+        """Say in every panel of the surface that it is still being read."""
+        panels = self._panels
+        words = self.tr("The surface of the project is being read.")
+        for panel in (panels.residuals, panels.histogram, panels.seams, panels.checks, panels.offdata, panels.adjust):
+            panel.pages.say(words)
 
     def verdict(self, name: str) -> Verdict | None:
         """Return the verdict on a horizon's surface from all that is known of it; None while it has none."""

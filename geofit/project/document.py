@@ -91,6 +91,12 @@ class Document:
         self.saved_changed.emit()
 
     @property
+    def folder(self) -> Path | None:
+        """The folder of the project, or of the site before it was saved: where exports go unless told otherwise."""
+        file = self.project_file or self.site_file
+        return None if file is None else file.resolve().parent
+
+    @property
     def site(self) -> Site:
         """The site, blocks in the place of horizons that were parted at their faults."""
         return self._site
@@ -222,9 +228,9 @@ class Document:
         return known[1]
 
     def waiting(self, name: str) -> bool:
-        """Whether a horizon's surface is wanted and still being read or made."""
+        """Whether a horizon's surface is wanted and not at hand: it may still be read or made."""
         recipe = self._state.recipes.get(name)
-        return recipe is not None and self.shelf.surface(recipe) is None and self.holds(recipe)
+        return recipe is not None and self.shelf.surface(recipe) is None
 
     def surfaces(self) -> Mapping[str, HorizonFit]:
         """Return the surfaces at hand, the highest first."""

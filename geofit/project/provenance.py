@@ -239,7 +239,8 @@ def find_rows(points: PointSet, rows: Collection[Row]) -> NDArray[np.intp]:
     candidates = np.flatnonzero(np.isin(points.row, [row.row for row in rows]))
     turn = turns(points)
     known = [Row(str(points.file[i]), int(points.row[i]), int(turn[i])) in rows for i in candidates]
-    return candidates[np.array(known, bool)]
+    found: NDArray[np.intp] = candidates[np.array(known, bool)]
+    return found
 
 
 def turns(points: PointSet) -> NDArray[np.int64]:

@@ -55,6 +55,7 @@ class ExportDialog(TaskDialog):
         surfaces: Mapping[str, HorizonFit],
         parent: QWidget | None = None,
         verdicts: Mapping[str, Verdict] | None = None,
+        folder: Path | None = None,
     ) -> None:
         super().__init__(parent)
         self._verdicts = verdicts or {}
@@ -63,7 +64,7 @@ class ExportDialog(TaskDialog):
         self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         self.files: list[StepFile] = []
         self.horizons = self._list()
-        self.target = QLineEdit(str(Path(str(QSettings().value(_FOLDER, ""))) / self._proposed()))
+        self.target = QLineEdit(str((folder or Path(str(QSettings().value(_FOLDER, "")))) / self._proposed()))
         self.unit = QComboBox()
         self.unit.addItem(self.tr("metres"), "m")
         self.unit.addItem(self.tr("millimetres"), "mm")
@@ -169,7 +170,7 @@ class ExportDialog(TaskDialog):
         QSettings().setValue(_FOLDER, str(files[0].path.parent))
         found = {name: back for file in files for name, back in file.read_back.items()}
         size = digits.size(sum(file.size for file in files))
-        names = ", ".join(file.path.name for file in files)
+        names = ", ".join(str(file.path.resolve()) for file in files)
         if all(back.passed for back in found.values()):
             self.say(self.tr("Wrote {names} ({size}). Every check of the file holds.").format(names=names, size=size),
                       "passed")  # fmt: skip

@@ -27,10 +27,11 @@ from PySide6.QtCore import (
     Qt,
     Signal,
 )
-from PySide6.QtGui import QAction, QFont, QIcon, QKeySequence, QPalette, QResizeEvent
+from PySide6.QtGui import QAction, QIcon, QKeySequence, QPalette, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHeaderView, QMenu, QTableView, QWidget
 
 from geofit.data.files import replacing, spreadsheet_cell
+from geofit.gui.preferences import Preferences
 from geofit.gui.words import spoken
 
 __all__ = ["ArrayModel", "Column", "DataTable", "natural", "spoken_words"]
@@ -165,7 +166,7 @@ class ArrayModel(QAbstractTableModel):
             return column.text(self._order[index.row()])
         if self._struck is not None and self._struck[self._order[index.row()]]:
             if role == Qt.ItemDataRole.FontRole:
-                font = QFont(QApplication.font("QTableView"))
+                font = QApplication.font()
                 font.setStrikeOut(True)
                 return font
             if role == Qt.ItemDataRole.ForegroundRole:
@@ -346,7 +347,7 @@ class DataTable(QTableView):
 
     def _ask_where(self) -> None:
         path, _ = QFileDialog.getSaveFileName(
-            self, self.tr("Export as CSV"), "", self.tr("Comma-separated values (*.csv)")
+            self, self.tr("Export as CSV"), Preferences().folder, self.tr("Comma-separated values (*.csv)")
         )
         if path:
             self.export(path if path.lower().endswith(".csv") else f"{path}.csv")

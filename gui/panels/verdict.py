@@ -75,16 +75,26 @@ class VerdictBadge(QFrame):
         labels = (self._word, *(label for _, label in self.lamps), self._more, self._old)
         return "\n".join(label.text() for label in labels if label.text())
 
-    def show_accuracy(self, accuracy: Accuracy | None, stale: bool = False, verdict: Verdict | None = None) -> None:
-        """Show the check of a surface, None while there is none; ``verdict`` has what else is known of it."""
+    def show_accuracy(
+        self, accuracy: Accuracy | None, stale: bool = False, verdict: Verdict | None = None, waiting: bool = False
+    ) -> None:
+        """Show the check of a surface, None while there is none; ``verdict`` has what else is known of it.
+
+        ``waiting`` says that there is a surface, which is still being read or made.
+        """
         self._stale = stale and accuracy is not None
         judged = verdict_of(accuracy) if verdict is None and accuracy is not None else verdict
         self._level = "none" if judged is None else judged.level
         self._mark.name = level_mark(self._level)
-        self._word.setText(self.tr("No surface yet") if judged is None else verdict_word(judged))
+        none = self.tr("Reading the surface…") if waiting else self.tr("No surface yet")
+        self._word.setText(none if judged is None else verdict_word(judged))
         self._show_lamps(() if judged is None else judged.lamps)
         if accuracy is None:
-            self._more.setText(self.tr("Press Fit to lay one and check it against ε."))
+            self._more.setText(
+                self.tr("It is part of the project, and its verdict follows in a moment.")
+                if waiting
+                else self.tr("Press Fit to lay one and check it against ε.")
+            )
             self.setToolTip("")
         else:
             beyond = " · ".join(

@@ -116,7 +116,7 @@ def test_all_selected_rows_are_excluded_and_the_ring_stays(shown):
     assert shown.window.selecting.index() == 40
     assert set(table.selected) == {3, 40, 71}
     assert view.contents._listed[NAME].excluded.sum() == 3
-    item = dict((layer.key, item) for layer, item in view._stage.items())[f"points:{NAME}"]
+    item = {layer.key: item for layer, item in view._stage.items()}[f"points:{NAME}"]
     assert min(part.opacity for part in item.parts) < 0.5, "ghosts"
     shown.trigger("exclude")
     shown.idle()
@@ -125,3 +125,88 @@ def test_all_selected_rows_are_excluded_and_the_ring_stays(shown):
     assert len(document.state.excluded[NAME]) == 3
     shown.window.session.stack.undo()
     assert not document.state.excluded.get(NAME)
+
+
+def test_a_project_that_is_still_reading_says_so_and_locks_fit(shown, qtbot, tmp_path):
+    window, panels = shown.window, shown.panels
+    window.files.save_to(tmp_path / "dam.geofit")
+    shown.idle()
+    window.files.close()
+    shown.idle()
+    window.files.open(tmp_path / "dam.geofit")
+    qtbot.waitUntil(lambda: shown.document.waiting(NAME) and "Reading" in str(panels.verdict.text), timeout=60_000)
+    assert not window.actions_["fit"].isEnabled()
+    assert not window.actions_["fit_all"].isEnabled()
+    assert not panels.fit.fit_button.isEnabled()
+    assert not panels.fit.all_button.isEnabled()
+    assert "being read" in str(panels.fit.banner.text)
+    assert "being read" in str(panels.residuals.pages.text)
+    shown.idle()
+    assert panels.verdict.text.splitlines()[0] == "PASS", "the file has the surface as it was fitted"
+    assert window.actions_["fit"].isEnabled()
+    assert panels.fit.fit_button.isEnabled()
+    assert str(panels.residuals.pages.text) == ""
+
+
+def test_stopping_the_reading_unlocks_fit(shown, qtbot, tmp_path):
+    shown.window.files.save_to(tmp_path / "dam.geofit")
+    shown.idle()
+    shown.window.files.close()
+    shown.idle()
+    shown.window.files.open(tmp_path / "dam.geofit")
+    qtbot.waitUntil(lambda: shown.document.waiting(NAME), timeout=60_000)
+    shown.trigger("stop")
+    shown.idle()
+    assert shown.panels.fit.fit_button.isEnabled()
+    assert "No surface yet" in str(shown.panels.verdict.text)
+
+
+def test_files_go_beside_the_project_and_messages_name_the_whole_path(shown, qtbot, tmp_path, monkeypatch):
+    from geofit.gui.dialogs.report import ReportDialog
+    from geofit.gui.preferences import Preferences
+
+    folder = tmp_path / "job"
+    folder.mkdir()
+    shown.window.files.save_to(folder / "dam.geofit")
+    shown.idle()
+    assert str(folder / "dam.geofit") in shown.window.statusBar().currentMessage()
+    assert Preferences().folder == str(folder)
+    seen = []
+
+    def drive(dialog):
+        seen.append((dialog.target if isinstance(dialog, ExportDialog) else dialog.folder).text())
+        if isinstance(dialog, ExportDialog):
+            qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+            qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+            seen.append(dialog.message.text())
+
+    monkeypatch.setattr(ExportDialog, "exec", drive)
+    monkeypatch.setattr(ReportDialog, "exec", drive)
+    shown.trigger("export_step")
+    shown.idle()
+    shown.trigger("report")
+    step = str(folder / f"{NAME}.step")
+    assert seen[0] == step
+    assert step in seen[1]
+    assert step in shown.window.statusBar().currentMessage()
+    assert seen[2] == str(folder / "report")
+    assert step in shown.panels.log.text.toPlainText()
+
+
+def test_status_bar_and_log_record_every_step(shown):
+    log, bar, fitting = shown.panels.log.text, shown.window.statusBar(), shown.window.fitting
+    assert f"Fit {NAME}: σ" in log.toPlainText()
+    row = Row.of(shown.document.site.horizons[NAME], 3)
+    fitting.exclude(NAME, [row])
+    assert bar.currentMessage() == f"Exclude {row.file} row {row.row} from {NAME}"
+    assert bar.currentMessage() in log.toPlainText()
+    shown.window.session.stack.undo()
+    assert bar.currentMessage().startswith("Undone: Exclude")
+    shown.window.session.stack.redo()
+    assert bar.currentMessage().startswith("Done again: Exclude")
+    assert bar.currentMessage() in log.toPlainText()
+    shown.window.session.stack.undo()
+    shown.idle()
+    fitting.pull(NAME, row, 0.5)
+    shown.idle()
+    assert f"Pull {NAME} to point" in log.toPlainText()

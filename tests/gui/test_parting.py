@@ -103,7 +103,7 @@ def test_a_block_is_as_old_as_its_fault_and_its_site(parted):
     document.become(parted.state)
     assert not document.stale("T2 (A)")
     assert not document.unparted("T2 (A)")
-    other = SetSettings("F1", FitSettings(frame="best-plane", epsilon=0.2))
+    other = SetSettings("F1", FitSettings(frame="best-plane", interior_tolerance=0.2))
     other.redo(document)
     assert document.unparted("T2 (A)")
     assert document.stale("T2 (A)")
@@ -232,7 +232,7 @@ def test_fit_all_parts_fits_and_measures(app, caplog):
     # By hand a block is changed as any horizon is.
     document.select("T2 (B)")
     before = document.surface("T2 (B)")
-    app.window.fitting.pull("T2 (B)", before.accuracy.worst[0], 1.0)
+    app.window.fitting.pull("T2 (B)", Row.of(before.points, before.accuracy.worst[0]), 1.0)
     app.idle()
     after = document.surface("T2 (B)")
     assert after is not before

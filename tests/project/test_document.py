@@ -208,7 +208,7 @@ def test_results_go_stale_and_come_back():
     assert opened.surface("low") is surface
     assert not opened.stale("low")
     assert opened.dirty
-    other = SetSettings("low", FitSettings(epsilon=0.1))
+    other = SetSettings("low", FitSettings(interior_tolerance=0.2))
     other.redo(opened)
     assert opened.stale("low")
     other.undo(opened)
