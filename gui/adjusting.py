@@ -13,7 +13,7 @@ from geofit.gui.words import spoken
 from geofit.gui.worker import Task, run
 from geofit.project.building import edited
 from geofit.project.document import Document
-from geofit.project.provenance import HandEdit, Move, Pull, Weigh
+from geofit.project.provenance import HandEdit, Move, Pull, Row, Weigh
 
 __all__ = ["Adjusting"]
 
@@ -33,11 +33,11 @@ class Adjusting(QObject):
         panel.pull_requested.connect(self.pull)
         fitting.adjusted.connect(panel.show_effect)
 
-    def pull(self, index: int, share: float = 1.0) -> None:
+    def pull(self, row: Row, share: float = 1.0) -> None:
         """Pull the chosen horizon's surface to one of its points."""
         self._stop()
         if self._document.selection.horizon is not None:
-            self._fitting.pull(self._document.selection.horizon, index, share)
+            self._fitting.pull(self._document.selection.horizon, row, share)
 
     def _adjust(self, patch: str, i: int, j: int, dz: float) -> None:
         self._stop()

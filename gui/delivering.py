@@ -61,7 +61,8 @@ class Delivering(QObject):
 
         surfaces = self._surfaces()
         if surfaces:
-            dialog = ExportDialog(surfaces, self._window)
+            verdicts = {name: found for name in surfaces if (found := self._showing.verdict(name)) is not None}
+            dialog = ExportDialog(surfaces, self._window, verdicts, self._folder())
             dialog.exec()
             self._showing.show_read_back({name: back for file in dialog.files for name, back in file.read_back.items()})
             if dialog.files:
@@ -77,7 +78,7 @@ class Delivering(QObject):
         path, chosen = QFileDialog.getSaveFileName(
             self._window,
             self.tr("Export"),
-            str(Path(self._preferences.folder) / file_stems([self._document.state.name])[self._document.state.name]),
+            str(self._folder() / file_stems([self._document.state.name])[self._document.state.name]),
             ";;".join(filters),
         )
         if path:
@@ -104,7 +105,7 @@ class Delivering(QObject):
         if surfaces:
             site, recipes = self._document.site_in_use(), dict(self._document.state.recipes)
             results = [self._result(name, surface) for name, surface in surfaces.items()]
-            dialog = ReportDialog(site, results, self._window, self._document.blocks())
+            dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder())
             dialog.written.connect(self.list_report)
             dialog.examined.connect(lambda name, offdata: self._document.put_offdata(recipes[name], offdata))
             dialog.exec()
@@ -120,6 +121,8 @@ class Delivering(QObject):
     def list_report(self, path: object) -> None:
         """List a report in the project tree."""
         self._reports.append(str(path))
+        _LOG.info(message("log.wrote", "Wrote {file}", file=str(Path(str(path)).resolve())))
+        self.told.emit(self.tr("Wrote {names}.").format(names=Path(str(path)).resolve()))
         self._panels.tree.show_reports(self._reports)
 
     def screenshot(self) -> None:
@@ -127,7 +130,7 @@ class Delivering(QObject):
         path, _ = QFileDialog.getSaveFileName(
             self._window,
             self.tr("Screenshot"),
-            str(Path(self._preferences.folder) / "screenshot.png"),
+            str(self._folder() / "screenshot.png"),
             self.tr("Pictures (*.png)"),
         )
         if path:
@@ -147,9 +150,12 @@ class Delivering(QObject):
             )
         return surfaces
 
+    def _folder(self) -> Path:
+        """Return where files go unless somebody says otherwise: beside the project."""
+        return self._document.folder or Path(self._preferences.folder)
+
     def _written(self, files: list[Path]) -> None:
-        self._preferences.folder = str(files[0].parent)
-        names = ", ".join(file.name for file in files)
+        names = ", ".join(str(file.resolve()) for file in files)
         self.told.emit(self.tr("Wrote {names}.").format(names=names))
         for file in files:
-            _LOG.info(message("log.wrote", "Wrote {file}", file=str(file)))
+            _LOG.info(message("log.wrote", "Wrote {file}", file=str(file.resolve())))

@@ -44,7 +44,9 @@ class Drawing(QObject):
         """Call ``show`` as soon as the surface can be drawn; one that is asked for later takes its place."""
         self.forget(surface.name)
         for made in self._made:
-            if made.surface is surface and made.uncertainty is uncertainty:
+            # Judged by another control error, it is the same surface.
+            same = made.surface.surface is surface.surface and made.surface.model is surface.model
+            if same and made.uncertainty is uncertainty:
                 show(made.drawn)
                 return
 

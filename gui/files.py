@@ -202,6 +202,7 @@ class Files(QObject):
 
     def _opened(self, path: Path, found: Site | Opened) -> None:
         self._preferences.opened(path)
+        self._preferences.folder = str(path.resolve().parent)
         if isinstance(found, Site):
             self._session.begin(found, path)
             site = found
@@ -255,7 +256,8 @@ class Files(QObject):
     def _saved(self, written: Written) -> None:
         self._session.saved(written.path, written.state)
         self._preferences.opened(written.path)
-        self.told.emit(self.tr("Saved {name}.").format(name=written.path.name))
+        self._preferences.folder = str(written.path.resolve().parent)
+        self.told.emit(self.tr("Saved {name}.").format(name=written.path.resolve()))
         _LOG.info(message("log.saved", "Saved {path}", path=str(written.path)))
         then, self._after_saving = self._after_saving, None
         if then is not None and not self._document.dirty:

@@ -21,8 +21,8 @@ from geofit.project.commands import (
     AdjustControlPoint,
     ChangeWeight,
     Command,
-    ExcludeRow,
-    IncludeRow,
+    ExcludeRows,
+    IncludeRows,
     PartAtFaults,
     PullToPoint,
     SetCore,
@@ -149,8 +149,21 @@ class Fitting(QObject):
         """Give a control point another weight."""
         self._edit(ChangeWeight(name, patch, i, j, weight))
 
-    def pull(self, name: str, index: int, share: float = 1.0) -> None:
+    def pull(self, name: str, row: Row, share: float = 1.0) -> None:
         """Pull a surface to one of its points."""
+        surface = self._document.surface(name)
+        index = None if surface is None else row.find(surface.points)
+        if index is None:
+            text = message(
+                "window.point-not-fitted",
+                "{file} row {row} is not among the points of the surface of '{name}'. Include it and fit, or choose "
+                "another point.",
+                file=row.file,
+                row=row.row,
+                name=name,
+            )
+            self.refused.emit(DocumentError(text))
+            return
         self._edit(PullToPoint(name, index, share))
 
     def set_settings(self, name: str, settings: FitSettings) -> None:
@@ -164,10 +177,14 @@ class Fitting(QObject):
         if corners != self._document.settings(name).core:
             self.push(SetCore(name, corners))
 
-    def exclude(self, name: str, row: Row) -> None:
-        """Leave a row out of the next fit, or take it in again if it is left out."""
-        out = row in self._document.state.excluded.get(name, frozenset())
-        self.push(IncludeRow(name, row) if out else ExcludeRow(name, row))
+    def exclude(self, name: str, rows: Sequence[Row]) -> None:
+        """Leave rows out of the next fit; where all of them are left out already, take them in again."""
+        out = self._document.state.excluded.get(name, frozenset())
+        used = tuple(row for row in rows if row not in out)
+        if used:
+            self.push(ExcludeRows(name, used))
+        elif rows:
+            self.push(IncludeRows(name, tuple(rows)))
 
     def push(self, command: Command) -> None:
         """Do a command, or tell why not."""

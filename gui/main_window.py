@@ -58,7 +58,7 @@ class MainWindow(QMainWindow):
         self.panels = Workspace(self)
         self.bar = ActivityBar(self, self.activity)
         document = session.document
-        self.showing = Showing(document, self.panels, self)
+        self.showing = Showing(document, self.panels, self, lambda: self.activity.busy)
         self.fitting = Fitting(session, self.activity, self)
         self.files = Files(session, self.activity, self.fitting, preferences, self)
         self.selecting = Selecting(document, self.panels, self.showing, self)
@@ -106,6 +106,7 @@ class MainWindow(QMainWindow):
             part.close()
         for end in self._ends:
             end()
+        self.session.recorded.disconnect(self.tell)
         self.panels.close()
         event.accept()
         self.closed.emit()
@@ -163,7 +164,7 @@ class MainWindow(QMainWindow):
             "order": self.ordering.edit,
             "repair": self.ordering.ask_repair,
             "worst": self.selecting.go_to_worst,
-            "exclude": self._exclude_chosen,
+            "exclude": lambda: self._exclude(self.selecting.rows()),
             "stop": self.activity.cancel,
             "tutorial": self.help.tutorial,
             "shortcuts": lambda: self.help.shortcuts(self.menuBar()),
@@ -210,6 +211,7 @@ class MainWindow(QMainWindow):
         self.activity.failed.connect(self.fail)
         self.activity.began.connect(lambda _: self._enable())
         self.activity.ended.connect(self._enable)
+        self.activity.ended.connect(self.showing.renew)
         for refusing in (self.fitting, self.delivering, self.ordering):
             refusing.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
@@ -217,6 +219,7 @@ class MainWindow(QMainWindow):
             part.told.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.said.connect(self.tell)
+        self.session.recorded.connect(self.tell)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (
             (document.site_changed, self._on_site),
@@ -253,6 +256,8 @@ class MainWindow(QMainWindow):
         for name, action in self.actions_.all().items():
             if name not in _ALWAYS:
                 action.setEnabled(is_open)
+        for name in ("fit", "fit_all"):
+            self.actions_[name].setEnabled(is_open and not self.showing.waiting)
         self.actions_["stop"].setEnabled(self.activity.busy)
         self.actions_.exaggerations.setEnabled(is_open)
         self.menus.panels.setEnabled(is_open)
@@ -274,16 +279,10 @@ class MainWindow(QMainWindow):
             self.showing.begin_section()
         self.panels.view.set_section(self.showing.line if on else None, self.showing.thickness)
 
-    def _exclude(self, index: int) -> None:
+    def _exclude(self, rows: tuple[Row, ...]) -> None:
         name = self._horizon()
-        surface = None if name is None else self.session.document.surface(name)
-        if name is not None and surface is not None:
-            self.fitting.exclude(name, Row.of(surface.points, index))
-
-    def _exclude_chosen(self) -> None:
-        chosen = self.session.document.selection
-        if chosen.horizon is not None and chosen.row is not None:
-            self.fitting.exclude(chosen.horizon, chosen.row)
+        if name is not None:
+            self.fitting.exclude(name, rows)
 
     def _rename(self) -> None:
         name, given = QInputDialog.getText(

@@ -5,7 +5,6 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, Signal
 
-from geofit.data.points import PointSet
 from geofit.gui.showing import Showing
 from geofit.gui.words import spoken
 from geofit.gui.workspace import Workspace
@@ -36,7 +35,7 @@ class Selecting(QObject):
         panels.view.section_changed.connect(self._line_drawn)
         panels.section.line_changed.connect(self._line_edited)
         panels.section.thickness_changed.connect(self._thickness_edited)
-        panels.section.point_chosen.connect(self._choose)
+        panels.section.point_chosen.connect(document.select)
         for table in (panels.residuals.point_chosen, panels.checks.point_chosen, panels.offdata.point_chosen):
             table.connect(self._chosen_here)
         panels.offdata.suggestion_chosen.connect(self._suggestion_chosen)
@@ -50,11 +49,18 @@ class Selecting(QObject):
         self._document.selection_changed.disconnect(self._show)
 
     def index(self) -> int | None:
-        """Return the chosen point as an index into the points that are shown of its horizon."""
+        """Return the chosen point as an index into all points of its horizon; None where there is none."""
         chosen = self._document.selection
         if chosen.horizon is None or chosen.row is None:
             return None
-        return chosen.row.find(self._points(chosen.horizon))
+        return self._document.listing(chosen.horizon).index(chosen.row)
+
+    def rows(self) -> tuple[Row, ...]:
+        """Return the rows that are selected in the residual table, or the chosen one."""
+        chosen, many = self._document.selection.row, self._panels.residuals.chosen_rows()
+        if chosen is None:
+            return many
+        return many if chosen in many else (chosen,)
 
     def go_to_worst(self) -> None:
         """Choose the point of the chosen horizon that lies farthest from its surface."""
@@ -63,23 +69,15 @@ class Selecting(QObject):
         if name is None or surface is None or surface.accuracy is None or not surface.accuracy.worst:
             self.said.emit(self.tr("There is no surface yet: press Fit."))
             return
-        self._choose(name, surface.accuracy.worst[0])
+        self._document.select(name, Row.of(surface.points, surface.accuracy.worst[0]))
 
-    def _points(self, name: str) -> PointSet:
-        """Return the points that the windows show of a horizon: those of its surface, if it has one."""
-        surface = self._document.surface(name)
-        return self._document.points(name) if surface is None else surface.points
-
-    def _choose(self, name: str, index: int) -> None:
-        self._document.select(name, Row.of(self._points(name), index))
-
-    def _chosen_here(self, index: int) -> None:
+    def _chosen_here(self, row: Row) -> None:
         if self._document.selection.horizon is not None:
-            self._choose(self._document.selection.horizon, index)
+            self._document.select(self._document.selection.horizon, row)
 
-    def _picked(self, name: str, index: int) -> None:
+    def _picked(self, name: str, row: Row) -> None:
         self._from_view = True
-        self._choose(name, index)
+        self._document.select(name, row)
         self._from_view = False
 
     def _show(self, chosen: Selection) -> None:
@@ -87,16 +85,18 @@ class Selecting(QObject):
         index, panels = self.index(), self._panels
         if chosen.horizon is None:
             return
+        row = None if index is None else chosen.row
         panels.tree.choose_horizon(chosen.horizon)
-        panels.view.highlight_point(chosen.horizon, index)
-        if self._document.surface(chosen.horizon) is not None:
-            panels.residuals.choose(index)
-        if index is None:
+        panels.view.highlight_point(chosen.horizon, row)
+        surface = self._document.surface(chosen.horizon)
+        if surface is not None:
+            panels.residuals.choose(row)
+        if index is None or row is None:
             return
         if not self._from_view:
-            panels.view.focus_point(chosen.horizon, index)
-        panels.adjust.choose_point(index)
-        points = self._points(chosen.horizon)
+            panels.view.focus_point(chosen.horizon, row)
+        panels.adjust.choose_point(None if surface is None else row.find(surface.points))
+        points = self._document.listing(chosen.horizon).points
         self.said.emit(f"{chosen.horizon}: {spoken(points.describe(index))}")
 
     def _go_to_hole(self, name: str) -> None:

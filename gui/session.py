@@ -5,13 +5,14 @@ from __future__ import annotations
 import logging
 from pathlib import Path
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
 from geofit.data.messages import message
 from geofit.data.site import Site
+from geofit.data.verdict import verdict_of
 from geofit.gui.words import shown_error, spoken
-from geofit.project.commands import Command
+from geofit.project.commands import Command, SetSurface
 from geofit.project.document import Document
 from geofit.project.journal import Journal, Unfinished
 from geofit.project.state import State
@@ -22,7 +23,12 @@ _LOG = logging.getLogger(__name__)
 
 
 class Session(QObject):
-    """What is worked on, for as long as the application runs; ``folder`` is where journals stand."""
+    """What is worked on, for as long as the application runs; ``folder`` is where journals stand.
+
+    ``recorded(text)`` says each step that was done, undone or done again; the log has it, too.
+    """
+
+    recorded = Signal(str)
 
     def __init__(self, folder: Path, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -77,6 +83,7 @@ class Session(QObject):
             self._journal = None
 
     def _record(self, command: Command, action: str) -> None:
+        self._tell(command, action)
         if self._journal is None:
             return
         try:
@@ -95,6 +102,21 @@ class Session(QObject):
                     error=shown_error(error),
                 )
             )
+
+    def _tell(self, command: Command, action: str) -> None:
+        """Log a step, a fit with its figures, and say it."""
+        text = command.text
+        if action == "undo":
+            text = message("log.undone", "Undone: {step}", step=text)
+        elif action == "redo":
+            text = message("log.redone", "Done again: {step}", step=text)
+        elif isinstance(command, SetSurface):
+            surface = self.document.surface(command.recipe.horizon)
+            if surface is not None and surface.accuracy is not None:
+                figures = verdict_of(surface.accuracy).data.text
+                text = message("log.fitted", "{step}: {figures}", step=text, figures=figures)
+        _LOG.info(text)
+        self.recorded.emit(spoken(text))
 
 
 class _Step(QUndoCommand):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import cast
 
 from numpy.typing import ArrayLike
@@ -10,6 +11,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from geofit.data.accuracy import ReadBack
 from geofit.data.settings import FitSettings
+from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.drawing import Drawing
 from geofit.gui.view3d.drawn import Drawn
@@ -27,14 +29,17 @@ THICKNESS = 50.0
 class Showing(QObject):
     """Keeps the panels as the document is. Several changes in one event are shown once.
 
-    ``drawn(horizon)`` tells that the 3D view has a horizon's surface.
+    ``drawn(horizon)`` tells that the 3D view has a surface. ``busy()`` returns whether something runs, so that
+    surfaces may still come.
     """
 
     drawn = Signal(str)
 
-    def __init__(self, document: Document, workspace: Workspace, parent: QObject) -> None:
+    def __init__(
+        self, document: Document, workspace: Workspace, parent: QObject, busy: Callable[[], bool] = lambda: False
+    ) -> None:
         super().__init__(parent)
-        self._document, self._panels = document, workspace
+        self._document, self._panels, self._busy = document, workspace, busy
         self.drawing = Drawing(self)
         self._site = False
         self._points: set[str] = set()
@@ -67,6 +72,16 @@ class Showing(QObject):
             end()
         self._ends.clear()
 
+    @property
+    def waiting(self) -> bool:
+        """Whether surfaces of the project are still being read or made again."""
+        return self._busy() and any(self._document.waiting(name) for name in self._document.horizons)
+
+    def renew(self) -> None:
+        """Show the chosen horizon anew, once the event is over: what ran has ended."""
+        self._chosen = True
+        self._later.start()
+
     def everything(self) -> None:
         """Show the whole document anew."""
         self._on_site()
@@ -83,10 +98,10 @@ class Showing(QObject):
             self.drawing.clear()
             panels.view.clear()
             if is_open:
-                panels.view.show_site(document.site_in_use())
+                every = {name: document.site.horizons[name] for name in document.horizons}
+                panels.view.show_site(replace(document.site_in_use(), horizons=every))
             self._results = set(document.horizons)
         elif self._points:
-            panels.view.show_site(document.site_in_use())
             self._results |= self._points
         for name in self._results:
             self._show_in_view(name)
@@ -118,6 +133,7 @@ class Showing(QObject):
     def show_orders(self, orders: tuple[Order, ...]) -> None:
         """Show how the horizons lie to each other, in the checks."""
         self.orders = orders
+        self._show_tree()
         self._show_horizon()
 
     def show_cuts(self, cuts: tuple[FaultCut, ...]) -> None:
@@ -130,10 +146,13 @@ class Showing(QObject):
         """Show what the reader found in the files of surfaces, for as long as these are the ones."""
         surfaces = self._document.surfaces()
         self._read_back |= {name: (surfaces[name], back) for name, back in found.items() if name in surfaces}
+        self._show_tree()
         self._show_horizon()
 
     def _show_in_view(self, name: str) -> None:
         surface, offdata, view = self._document.surface(name), self._document.offdata(name), self._panels.view
+        if name in self._document.site.horizons:
+            view.show_listing(name, self._document.listing(name))
         if surface is None:
             self.drawing.forget(name)
             view.remove_surface(name)
@@ -151,7 +170,9 @@ class Showing(QObject):
         document = self._document
         site = document.site_in_use() if document.site.horizons else None
         stale = {name for name in document.horizons if document.stale(name)}
-        self._panels.tree.show_site(site, document.surfaces(), stale)
+        surfaces = document.surfaces()
+        verdicts = {name: found for name in surfaces if (found := self.verdict(name)) is not None}
+        self._panels.tree.show_site(site, surfaces, stale, verdicts)
         if document.selection.horizon:
             self._panels.tree.choose_horizon(document.selection.horizon)
 
@@ -163,22 +184,45 @@ class Showing(QObject):
         offdata = document.offdata(name) if known and name else None
         settings = document.settings(name) if known and name else FitSettings()
         stale = bool(known and name and document.stale(name))
-        panels.fit.show_settings(name if known and name else "", settings, stale)
-        panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale)
-        panels.residuals.show_surface(surface)
+        waiting = bool(known and name and self._busy() and document.waiting(name))
+        panels.fit.show_settings(name if known and name else "", settings, stale, self.waiting)
+        verdict = self.verdict(name) if known and name else None
+        panels.verdict.show_accuracy(None if surface is None else surface.accuracy, stale, verdict, waiting)
+        panels.residuals.show_surface(surface, document.listing(name) if known and name else None)
         panels.histogram.show_surface(surface)
         panels.seams.show_surface(surface)
-        written, back = self._read_back.get(name or "", (None, None))
         panels.checks.show_surface(
             surface,
             offdata,
             self._orders_of(name),
-            back if surface is not None and written is surface else None,
+            self._file_of(name, surface),
             tuple(cut for cut in self.cuts if name in (cut.up, cut.down)),
         )
         panels.offdata.show_offdata(offdata, None if surface is None else surface.points, fitted=surface is not None)
         panels.adjust.show_surface(surface)
         panels.plan.show_surface(document.site_in_use() if known else None, name or "", surface, settings)
+        if waiting:
+            self._say_waiting()
+
+    def _say_waiting(self) -> None:
+        """Say in every panel of the surface that it is still being read."""
+        panels = self._panels
+        words = self.tr("The surface of the project is being read.")
+        for panel in (panels.residuals, panels.histogram, panels.seams, panels.checks, panels.offdata, panels.adjust):
+            panel.pages.say(words)
+
+    def verdict(self, name: str) -> Verdict | None:
+        """Return the verdict on a horizon's surface from all that is known of it; None while it has none."""
+        surface = self._document.surface(name)
+        if surface is None or surface.accuracy is None:
+            return None
+        orders = (order.check() for order in self._orders_of(name))
+        return verdict_of(surface.accuracy, self._document.offdata(name), self._file_of(name, surface), orders)
+
+    def _file_of(self, name: str | None, surface: HorizonFit | None) -> ReadBack | None:
+        """Return what the reader found in the file that has this very surface."""
+        written, back = self._read_back.get(name or "", (None, None))
+        return back if surface is not None and written is surface else None
 
     def _orders_of(self, name: str | None) -> tuple[Order, ...]:
         return tuple(order for order in self.orders if name in (order.upper, order.lower))
@@ -193,8 +237,11 @@ class Showing(QObject):
         self._results.update(self._document.horizons)
         self._later.start()
 
-    def _on_settings(self, _: str) -> None:
+    def _on_settings(self, name: str) -> None:
         self._settings = True
+        if self._document.surface(name) is not None:
+            # Another control error judges the same surface anew.
+            self._results.add(name)
         self._later.start()
 
     def _on_points(self, name: str) -> None:

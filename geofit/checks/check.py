@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from geofit.geometry.projection import Projection, project
 from geofit.geometry.seams import seams
 from geofit.surfaces.protocol import FittedSurface
 
-__all__ = ["check", "sigma"]
+__all__ = ["check", "judged_by", "sigma"]
 
 Floats = NDArray[np.float64]
 
@@ -30,6 +31,8 @@ Floats = NDArray[np.float64]
 CORE_LIMIT, GAP_LIMIT, ANGLE_LIMIT = 1e-6, 1e-6, 0.1
 #: The check of a surface's elevations against those of its data.
 RANGE = "elevation range"
+#: The check whose limit depends on the control error.
+TREND = "trend"
 #: Points with the largest distances that are named.
 WORST = 20
 
@@ -122,6 +125,40 @@ def check(
         conflicts=tuple(conflicts),
         notes=(*notes, *missing),
     )
+
+
+def judged_by(surface: FittedSurface, accuracy: Accuracy, epsilon: float) -> Accuracy:
+    """Return a check with another control error: the surface and its residuals are the same.
+
+    Parameters
+    ----------
+    surface : FittedSurface
+        The surface of the check, with ``epsilon`` in its settings.
+    accuracy : Accuracy
+        Its check by the former control error.
+    epsilon : float
+        The control error, metres.
+    """
+    checks = tuple(_trend_by(surface, accuracy, one) if one.name == TREND else one for one in accuracy.checks)
+    passed = accuracy.sigma < epsilon and not _runs_away(surface, checks)
+    beyond = Exceedance(epsilon, int((np.abs(accuracy.residuals) > epsilon).sum()))
+    notes = tuple(note for note in accuracy.notes if not (passed and note.code == "fit.sigma-stays-above-epsilon"))
+    return replace(
+        accuracy, epsilon=epsilon, passed=passed, over={**accuracy.over, "epsilon": beyond}, checks=checks, notes=notes
+    )
+
+
+def _trend_by(surface: FittedSurface, accuracy: Accuracy, former: Check) -> Check:
+    """Return the trend's check, whose limit is epsilon at least; measured again where the limit was epsilon itself."""
+    epsilon = surface.settings.epsilon
+    if former.passed is None:
+        return former
+    if former.limit > accuracy.epsilon or epsilon >= former.limit:
+        limit = max(epsilon, former.limit if former.limit > accuracy.epsilon else 0.0)
+        return replace(former, limit=limit, passed=former.value <= limit)
+    honoured = np.ones(accuracy.n, bool)
+    honoured[[conflict.dropped for conflict in accuracy.conflicts]] = False
+    return trend(surface, lattices(surface), honoured) or former
 
 
 def _groups(d: Floats, labels: Labels) -> dict[str, Group]:

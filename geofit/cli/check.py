@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -12,6 +12,9 @@ from geofit.cli.app import app
 from geofit.cli.console import guarded, print_counts, print_issues, print_json, print_results
 from geofit.cli.options import SURFACE_FILES, Crs, Decimal, Json, SectionColumn, Sep, SurfaceColumn, X, Y, Z
 from geofit.cli.sources import pick, read_source
+
+if TYPE_CHECKING:
+    from geofit.report.result import HorizonResult
 
 __all__ = ["check"]
 
@@ -65,18 +68,18 @@ def check(
         out.mkdir(parents=True, exist_ok=True)
         write_residuals(result, out / f"{file_stems([name])[name]}_residuals.csv")
     if as_json:
-        print_json(_summary(plain(result.accuracy), name))
+        print_json({"horizon": name, **_judged(result), **_summary(plain(result.accuracy))})
     else:
         print_results([result])
     return 0 if result.accuracy.passed else 1
 
 
-def _summary(accuracy: dict[str, Any], name: str) -> dict[str, Any]:
+def _judged(result: HorizonResult) -> dict[str, Any]:
+    """Return the verdict as the reports have it."""
+    return {"verdict": result.verdict.word, "lamps": [str(lamp.text) for lamp in result.verdict.lamps]}
+
+
+def _summary(accuracy: dict[str, Any]) -> dict[str, Any]:
     accuracy.pop("residuals")
     accuracy.pop("patch")
-    return {
-        "horizon": name,
-        "verdict": "PASS" if accuracy["passed"] else "FAIL",
-        **accuracy,
-        "version": __version__,
-    }
+    return {**accuracy, "version": __version__}

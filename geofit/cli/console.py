@@ -192,16 +192,16 @@ def print_results(results: Sequence[HorizonResult]) -> None:
     rows = []
     for r in results:
         a, core = r.accuracy, int(r.core.sum())
-        verdict = a.verdict if r.sound or not a.passed else f"{a.verdict} (!)"
         rows.append(
             (
                 r.name, str(a.n), f"{core}/{a.n - core}", metres(a.sigma), f"{a.epsilon:g}", metres(a.max_abs),
-                verdict, _seams(r), _time(r.seconds.get("fit")), _time(sum(r.seconds.values())),
+                r.verdict.word, _seams(r), _time(r.seconds.get("fit")), _time(sum(r.seconds.values())),
             )
         )  # fmt: skip
     print_table(header, rows, left=(0, 6, 7))
     for r in results:
         a = r.accuracy
+        say(f"{r.name}: {r.verdict.text}")
         failed = [c for c in (*a.checks, *(r.read_back.checks if r.read_back else ())) if c.passed is False]
         for check in failed:
             say(f"{r.name}: check '{check.name}' does not hold: {check.text}")
@@ -231,7 +231,7 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str]], left: Sequ
     table = Table(box=SIMPLE_HEAD, pad_edge=False)
     for i, word in enumerate(header):
         table.add_column(word, justify="left" if i in left else "right", overflow="fold", no_wrap=i not in left)
-    styles = {"PASS": "green", "FAIL": "bold red", "PASS (!)": "yellow"}
+    styles = {"PASS": "green", "FAIL": "bold red", "WARNING": "yellow"}
     for row in rows:
         table.add_row(*(Text(cell, style=styles.get(cell, "")) for cell in row))
     _stdout().print(table)

@@ -1,7 +1,7 @@
 """The standard deviation held to what points left out show.
 
 The posterior of a smoothing spline is right on the average only where its energy suits the relief. It is therefore
-widened (or narrowed) by a local factor, so that 90 % of left-out errors lie inside the 90 % band. Every place of the
+widened by a local factor, never narrowed, so that 90 % of left-out errors lie inside the 90 % band. Every place of the
 surface speaks for left-out errors twice, and both count alike:
 
 - by nearness: for the point next to it, left out alone, with its small block and with its section. A dense core's many
@@ -10,7 +10,9 @@ surface speaks for left-out errors twice, and both count alike:
   to that of the place. A place between two sections is like a point whose section is left out as a whole, one beside a
   hole like a point left out alone.
 
-At last the band is widened until it holds 85 % of the left-out holes themselves, if it does not yet.
+At last the band is widened until it contains 90 % of the left-out holes themselves, if it does not yet. A factor below
+1 would make the band narrower than the fit itself expects: the band would contain less than its name says wherever the
+left-out points are nearer to data than the place in question.
 """
 
 from __future__ import annotations
@@ -43,8 +45,8 @@ Ints = NDArray[np.int64]
 
 #: Half width of the 90 % band of a normal distribution, in standard deviations, and its share.
 BAND, SHARE = 1.6448536269514722, 0.9
-#: Share of the left-out holes that the 90 % band must hold at least.
-LEAST_HELD = 0.85
+#: Share of the left-out holes that the 90 % band must contain at least: its name.
+LEAST_HELD = SHARE
 #: Points near a place among which its like is sought.
 _NEAR = 8
 #: Points that a local factor is estimated from, and the part of their weight that the whole area has in it.
@@ -87,14 +89,18 @@ class Calibration:
     scale: float
 
     def at(self, plane: Floats) -> Floats:
-        """Return the (k,) factors at (k, 2) places."""
+        """Return the (k,) factors at (k, 2) places, at least 1."""
+        return np.maximum(self.scale * self.local(plane), 1.0)
+
+    def local(self, plane: Floats) -> Floats:
+        """Return the (k,) local factors before they are scaled for the whole; below 1 where the band is too wide."""
         if not len(self.plane):
             return np.full(len(plane), self.common)
         count = min(_LOCAL, len(self.plane))
         near = KDTree(self.plane).query(plane, k=count)[1].reshape(len(plane), count)
         whole = _WHOLE * count * self.weight.mean()
         mean = (self.square[near].sum(axis=1) + whole * self.common**2) / (self.weight[near].sum(axis=1) + whole)
-        return np.asarray(self.scale * np.sqrt(mean))
+        return np.asarray(np.sqrt(mean))
 
 
 def uncalibrated() -> Calibration:
@@ -134,7 +140,7 @@ def calibrate(
     n = len(plane)
     square = _sums(every.point, weight * ratio, n)
     local = Calibration(plane, square, _sums(every.point, weight, n), common, 1.0)
-    at = local.at(plane)
+    at = local.local(plane)
     scale = factor_for(every, at[every.point], weight, SHARE)
     if len(holes.point) >= FEWEST:
         scale = max(scale, factor_for(holes, at[holes.point], np.ones(len(holes.point)), LEAST_HELD))

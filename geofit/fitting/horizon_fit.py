@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.checks.check import check
+from geofit.checks.check import check, judged_by
 from geofit.data.accuracy import Accuracy, Conflict, Partition, ReadBack
 from geofit.data.picture import LEVELS, card, deviation_colours, plan_svg
 from geofit.data.points import PointSet
@@ -178,6 +178,13 @@ class HorizonFit:
     def checked(self, conflicts: tuple[Conflict, ...], notes: tuple[Any, ...]) -> HorizonFit:
         """Return the fit with its surface measured and checked anew."""
         return replace(self, accuracy=check(self, conflicts, notes))
+
+    def judged_by(self, epsilon: float) -> HorizonFit:
+        """Return the fit judged by another control error, metres: the same surface, and perhaps another verdict."""
+        judged = replace(self, settings=replace(self.settings, epsilon=epsilon))
+        if self.accuracy is None or not len(self.points):
+            return judged
+        return replace(judged, accuracy=judged_by(judged, self.accuracy, epsilon))
 
     def refitted(self, model: Model) -> HorizonFit:
         """Return the fit with the surface of another control net, checked anew."""

@@ -12,6 +12,7 @@ from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion
 from geofit.data.progress import Progress, tell
+from geofit.data.verdict import LEAST_INSIDE
 from geofit.fitting.calibration import Calibration, common_factor, uncalibrated
 from geofit.fitting.deletion import LinearFit, linear_fit
 from geofit.fitting.horizon_fit import HorizonFit
@@ -32,8 +33,6 @@ Floats = NDArray[np.float64]
 MOST = 4_000
 #: Fits without the outliers found so far, at most.
 ROUNDS = 2
-#: Shares of left-out points inside the 90 % band between which the band counts as held.
-HELD = (0.85, 0.95)
 
 
 def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
@@ -205,14 +204,13 @@ def _outliers(model: Model, fit: LinearFit, factor: Floats) -> tuple[Outlier, ..
 
 
 def _not_held(found: LeftOut) -> list[Message]:
-    low, high = HELD
-    if not np.isfinite(found.inside) or low <= round(found.inside, 2) <= high:
+    if not np.isfinite(found.inside) or round(found.inside, 2) >= LEAST_INSIDE:
         return []
     return [
         message(
             "prediction.points-left-lie-inside",
-            "{share:.0%} of the points left out by {scheme} lie inside the 90 % band ({raw:.0%} before it was held to "
-            "the places between the data)",
+            "only {share:.0%} of the points left out by {scheme} lie inside the 90 % band "
+            "({raw:.0%} before calibration)",
             share=found.inside,
             scheme=found.scheme,
             raw=found.inside_raw,

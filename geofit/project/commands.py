@@ -5,13 +5,14 @@ A command is checked by :meth:`Command.on` before anything changes; the document
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from collections.abc import Collection, Mapping
-from dataclasses import asdict, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar
+from dataclasses import dataclass, replace
+from typing import Any
 
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
+from geofit.project.command import Command, known
 from geofit.project.provenance import (
     Apart,
     DocumentError,
@@ -24,18 +25,16 @@ from geofit.project.provenance import (
     Weigh,
     settings_from,
 )
+from geofit.project.row_commands import ExcludeRows, IncludeRows
 from geofit.project.state import State
-
-if TYPE_CHECKING:
-    from geofit.project.document import Document
 
 __all__ = [
     "COMMANDS",
     "AdjustControlPoint",
     "ChangeWeight",
     "Command",
-    "ExcludeRow",
-    "IncludeRow",
+    "ExcludeRows",
+    "IncludeRows",
     "PartAtFaults",
     "PullToPoint",
     "PushApart",
@@ -52,49 +51,6 @@ Core = Any
 
 
 @dataclass
-class Command(ABC):
-    """A named step; ``kind`` names its class in the journal."""
-
-    kind: ClassVar[str]
-    _before: State | None = field(default=None, init=False, repr=False, compare=False)
-
-    @property
-    @abstractmethod
-    def text(self) -> Message:
-        """What the step does, as the Edit menu names it."""
-
-    @abstractmethod
-    def on(self, state: State) -> State:
-        """Return the state after the command; DocumentError if it does not apply to ``state``."""
-
-    def redo(self, document: Document) -> None:
-        """Do it, for the first time or again."""
-        after = self.on(document.state)
-        self._before = document.state
-        document.become(after)
-
-    def undo(self, document: Document) -> None:
-        """Take it back."""
-        if self._before is None:
-            raise DocumentError(
-                message(
-                    "project.not-done-yet-cannot", "'{step}' was not done yet and cannot be undone.", step=self.text
-                )
-            )
-        document.become(self._before)
-
-    def to_data(self) -> dict[str, Any]:
-        """Return numbers, words, lists and mappings only."""
-        values = {f.name: getattr(self, f.name) for f in fields(self) if f.init}
-        return {"kind": self.kind, **{name: _plain(value) for name, value in values.items()}}
-
-    @classmethod
-    def from_data(cls, data: Mapping[str, Any]) -> Command:
-        """Return what :meth:`to_data` was called on."""
-        return cls(**{name: value for name, value in data.items() if name != "kind"})
-
-
-@dataclass
 class SetSettings(Command):
     """Other settings for a horizon; its surface becomes stale."""
 
@@ -107,7 +63,7 @@ class SetSettings(Command):
         return message("step.settings", "Settings of {name}", name=self.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
-        _known(state, self.horizon)
+        known(state, self.horizon)
         return replace(state, settings={**state.settings, self.horizon: self.settings})
 
     @classmethod
@@ -128,7 +84,7 @@ class SetCore(Command):
         return message("step.core", "Core of {name}", name=self.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
-        _known(state, self.horizon)
+        known(state, self.horizon)
         settings = replace(state.settings[self.horizon], core=self.core)
         return replace(state, settings={**state.settings, self.horizon: settings})
 
@@ -136,85 +92,6 @@ class SetCore(Command):
     def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
         core = data["core"]
         return cls(data["horizon"], core if isinstance(core, str) else tuple((x, y) for x, y in core))
-
-
-@dataclass
-class _RowCommand(Command):
-    horizon: str
-    row: Row
-
-    def _excluded(self, state: State) -> frozenset[Row]:
-        _known(state, self.horizon)
-        return state.excluded.get(self.horizon, frozenset())
-
-    def _with(self, state: State, rows: frozenset[Row]) -> State:
-        return replace(state, excluded={**state.excluded, self.horizon: rows})
-
-    @classmethod
-    def from_data(cls, data: Mapping[str, Any]) -> Command:
-        return cls(data["horizon"], Row(**data["row"]))
-
-
-@dataclass
-class ExcludeRow(_RowCommand):
-    """A row of a file that takes no part in the fit of a horizon."""
-
-    kind = "exclude"
-
-    @property
-    def text(self) -> Message:  # noqa: D102
-        return message(
-            "step.exclude",
-            "Exclude {file} row {row} from {name}",
-            file=self.row.file,
-            row=self.row.row,
-            name=self.horizon,
-        )
-
-    def on(self, state: State) -> State:  # noqa: D102
-        rows = self._excluded(state)
-        if self.row in rows:
-            raise DocumentError(
-                message(
-                    "project.row-excluded-already",
-                    "{file} row {row} is excluded from '{name}' already.",
-                    file=self.row.file,
-                    row=self.row.row,
-                    name=self.horizon,
-                )
-            )
-        return self._with(state, rows | {self.row})
-
-
-@dataclass
-class IncludeRow(_RowCommand):
-    """A row that was excluded takes part again."""
-
-    kind = "include"
-
-    @property
-    def text(self) -> Message:  # noqa: D102
-        return message(
-            "step.include",
-            "Include {file} row {row} in {name}",
-            file=self.row.file,
-            row=self.row.row,
-            name=self.horizon,
-        )
-
-    def on(self, state: State) -> State:  # noqa: D102
-        rows = self._excluded(state)
-        if self.row not in rows:
-            raise DocumentError(
-                message(
-                    "project.row-not-excluded",
-                    "{file} row {row} is not excluded from '{name}'.",
-                    file=self.row.file,
-                    row=self.row.row,
-                    name=self.horizon,
-                )
-            )
-        return self._with(state, rows - {self.row})
 
 
 @dataclass
@@ -229,7 +106,7 @@ class SetSurface(Command):
         return message("step.fit", "Fit {name}", name=self.recipe.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
-        _known(state, self.recipe.horizon)
+        known(state, self.recipe.horizon)
         return replace(state, recipes={**state.recipes, self.recipe.horizon: self.recipe})
 
     @classmethod
@@ -252,7 +129,7 @@ class PartAtFaults(Command):
 
     def on(self, state: State) -> State:  # noqa: D102
         former = [name for name, part in state.parts.items() if part.horizon == self.horizon] or [self.horizon]
-        _known(state, former[0])
+        known(state, former[0])
         taken = [name for name in self.blocks if name in state.order and name not in former]
         if taken:
             raise DocumentError(
@@ -454,7 +331,7 @@ class RenameSite(Command):
 COMMANDS: dict[str, type[Command]] = {
     command.kind: command
     for command in (
-        SetSettings, SetCore, ExcludeRow, IncludeRow, SetSurface, PartAtFaults, AdjustControlPoint, ChangeWeight,
+        SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, PartAtFaults, AdjustControlPoint, ChangeWeight,
         PullToPoint, PushApart, SetOrder, RenameSite,
     )
 }  # fmt: skip
@@ -465,28 +342,5 @@ def command_from(data: Mapping[str, Any]) -> Command:
     return COMMANDS[data["kind"]].from_data(data)
 
 
-def _known(state: State, horizon: str) -> None:
-    if horizon not in state.order:
-        names = ", ".join(state.order) or message("site.none", "none")
-        raise DocumentError(
-            message(
-                "project.site-no-horizon",
-                "The site has no horizon '{name}'. It has {names}.",
-                name=horizon,
-                names=names,
-            )
-        )
-
-
 def _without(values: Mapping[str, Any], names: Collection[str]) -> dict[str, Any]:
     return {name: value for name, value in values.items() if name not in names}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, (Recipe, Part)):
-        return value.to_data()
-    if isinstance(value, dict):
-        return {name: _plain(one) for name, one in value.items()}
-    if isinstance(value, (FitSettings, Row)):
-        return asdict(value)
-    return value

@@ -14,6 +14,7 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.building import Given
 from geofit.project.fault_blocks import Blocks, parted_site
+from geofit.project.listing import Listing, listing
 from geofit.project.provenance import DocumentError, Recipe, Row, fingerprint, without_rows
 from geofit.project.shelf import Shelf
 from geofit.project.signal import Signal
@@ -62,6 +63,8 @@ class Document:
         self._points: dict[tuple[str, frozenset[Row]], PointSet] = {}
         self._fingerprints: dict[str, str] = {}
         self._used = _EMPTY
+        self._judged: dict[str, tuple[HorizonFit, HorizonFit]] = {}
+        self._listings: dict[str, tuple[tuple[object, object, object], Listing]] = {}
         self.site_changed: Signal[[]] = Signal()
         self.settings_changed: Signal[[str]] = Signal()
         self.points_changed: Signal[[str]] = Signal()
@@ -77,6 +80,8 @@ class Document:
         """Begin with a site, and with the work that a project or a journal holds."""
         self.site_file, self.project_file = site_file, project_file
         self.shelf.clear()
+        self._judged.clear()
+        self._listings.clear()
         self._state = self._saved = state or State.of_site(site)
         self._read = site
         self._take_parts()
@@ -84,6 +89,12 @@ class Document:
         self.selection = Selection(next(iter((*worked_on, *self._state.order)), None))
         self.site_changed.emit()
         self.saved_changed.emit()
+
+    @property
+    def folder(self) -> Path | None:
+        """The folder of the project, or of the site before it was saved: where exports go unless told otherwise."""
+        file = self.project_file or self.site_file
+        return None if file is None else file.resolve().parent
 
     @property
     def site(self) -> Site:
@@ -190,8 +201,36 @@ class Document:
         return part.faults != faults or part.given != self.given(part.horizon)
 
     def surface(self, name: str) -> HorizonFit | None:
-        """Return the surface of a horizon; None if there is none, or if it is wanted but not made yet."""
-        return self.shelf.surface(self._state.recipes.get(name))
+        """Return the surface of a horizon; None if there is none, or if it is wanted but not made yet.
+
+        It is judged by the control error that the horizon has now: that needs no other fit.
+        """
+        made = self.shelf.surface(self._state.recipes.get(name))
+        if made is None or name not in self._state.settings:
+            return made
+        epsilon = self._state.settings[name].epsilon
+        if made.settings.epsilon == epsilon:
+            return made
+        former, judged = self._judged.get(name, (None, None))
+        if judged is None or former is not made or judged.settings.epsilon != epsilon:
+            judged = made.judged_by(epsilon)
+            self._judged[name] = (made, judged)
+        return judged
+
+    def listing(self, name: str) -> Listing:
+        """Return all points of a horizon, excluded rows too, with what its surface says of each."""
+        points, surface = self._given(name), self.surface(name)
+        excluded = self._state.excluded.get(name, frozenset())
+        key = (points, surface, excluded)
+        known = self._listings.get(name)
+        if known is None or any(a is not b for a, b in zip(known[0], key, strict=True)):
+            known = self._listings[name] = (key, listing(points, excluded, surface))
+        return known[1]
+
+    def waiting(self, name: str) -> bool:
+        """Whether a horizon's surface is wanted and not at hand: it may still be read or made."""
+        recipe = self._state.recipes.get(name)
+        return recipe is not None and self.shelf.surface(recipe) is None
 
     def surfaces(self) -> Mapping[str, HorizonFit]:
         """Return the surfaces at hand, the highest first."""
@@ -218,7 +257,9 @@ class Document:
         if recipe is None:
             return False
         parted = recipe.part is not None
-        return replace(recipe, edits=()) != self.recipe(name) or (parted and self.unparted(name))
+        # The control error judges a surface and does not shape it: see surface().
+        settings = replace(recipe.settings, epsilon=self._state.settings[name].epsilon)
+        return replace(recipe, edits=(), settings=settings) != self.recipe(name) or (parted and self.unparted(name))
 
     def missing(self) -> tuple[Recipe, ...]:
         """Return recipes whose surfaces are wanted, not at hand, and can be made from the site as it is."""

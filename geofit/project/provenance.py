@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -25,8 +25,11 @@ __all__ = [
     "Recipe",
     "Row",
     "Weigh",
+    "find_rows",
     "fingerprint",
+    "matched",
     "settings_from",
+    "turns",
     "without_rows",
 ]
 
@@ -220,12 +223,59 @@ def settings_from(data: Mapping[str, Any]) -> FitSettings:
 
 def without_rows(points: PointSet, rows: Iterable[Row]) -> PointSet:
     """Return the points but those of ``rows``; rows that are not there are passed over."""
-    found = [index for row in rows if (index := row.find(points)) is not None]
-    if not found:
+    wanted = frozenset(rows)
+    found = find_rows(points, wanted)
+    if not len(found):
         return points
     kept = np.ones(len(points), bool)
     kept[found] = False
     return points[kept]
+
+
+def find_rows(points: PointSet, rows: Collection[Row]) -> NDArray[np.intp]:
+    """Return the indices of the points of rows, ascending; rows that are not there are passed over."""
+    if not rows:
+        return np.empty(0, np.intp)
+    candidates = np.flatnonzero(np.isin(points.row, [row.row for row in rows]))
+    turn = turns(points)
+    known = [Row(str(points.file[i]), int(points.row[i]), int(turn[i])) in rows for i in candidates]
+    found: NDArray[np.intp] = candidates[np.array(known, bool)]
+    return found
+
+
+def turns(points: PointSet) -> NDArray[np.int64]:
+    """Return which of the points of its line each point is, (n,) from 0 on."""
+    file = np.unique(points.file, return_inverse=True)[1].ravel()
+    order = np.lexsort((np.arange(len(points)), points.row, file))
+    new = np.ones(len(points), bool)
+    new[1:] = (np.diff(points.row[order]) != 0) | (np.diff(file[order]) != 0)
+    start = np.maximum.accumulate(np.where(new, np.arange(len(points)), 0))
+    turn = np.empty(len(points), np.int64)
+    turn[order] = np.arange(len(points)) - start
+    return turn
+
+
+def matched(points: PointSet, among: PointSet) -> NDArray[np.int64]:
+    """Return the index among other points of each point by its file, line and turn; -1 where there is none.
+
+    Points that lack some turns of a line (one of them was excluded) are told apart by their places.
+    """
+    keys: dict[tuple[str, int, bytes], list[int]] = {}
+    for index, key in enumerate(_keys(among)):
+        keys.setdefault(key, []).append(index)
+    taken: dict[tuple[str, int, bytes], int] = {}
+    found = np.full(len(points), -1)
+    for index, key in enumerate(_keys(points)):
+        turn = taken.get(key, 0)
+        places = keys.get(key, ())
+        if turn < len(places):
+            found[index], taken[key] = places[turn], turn + 1
+    return found
+
+
+def _keys(points: PointSet) -> Iterator[tuple[str, int, bytes]]:
+    for file, row, xyz in zip(points.file.tolist(), points.row.tolist(), points.xyz, strict=True):
+        yield file, row, xyz.tobytes()
 
 
 def runs(index: NDArray[np.intp]) -> str:

@@ -134,6 +134,7 @@ def _deliver(
     from geofit.report.gather import accuracy_report
     from geofit.report.pictures import draw_sections, draw_site
     from geofit.report.profile import report_sections
+    from geofit.report.result import write_json
 
     failures, warnings = dict(fits.failures), list(fits.warnings)
     sections = report_sections(site, [surface.points for surface in fits.surfaces.values()]) if fits.surfaces else ()
@@ -146,6 +147,11 @@ def _deliver(
         tell(progress, "report", 0.9)
         ordered, unordered = _orders(site, fits)
         orders = ordered or ()
+        results = _with_orders(results, orders, fits)
+        stems = file_stems(fits.surfaces)
+        for result in results:
+            if any(check.passed is False for check in result.orders):
+                write_json(result, out / f"{stems[result.name]}.json")
         report = accuracy_report(
             results, ordered, cuts=fits.cuts, contradictions=fits.contradictions, failures=failures, date=date,
             sections=sections,
@@ -277,6 +283,7 @@ def write_reports(
         surfaces = {result.name: result.surface for result in made}
         fits = SiteFit(surfaces, {name: name for name in surfaces})
     orders, unordered = _orders(made[0].site, fits)
+    made = _with_orders(made, orders or (), fits)
     report = accuracy_report(made, orders, cuts=fits.cuts, date=date, sections=sections)
     images |= draw_sections(made, sections, language)
     whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
@@ -318,6 +325,18 @@ def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Messag
         ),
     )
     return compared, missing[0] if missing else EMPTY
+
+
+def _with_orders(results: Sequence[HorizonResult], orders: Sequence[Order], fits: SiteFit) -> list[HorizonResult]:
+    """Return the results with how their horizons lie to others: part of their verdicts."""
+    return [
+        replace(result, orders=tuple(order.check() for order in orders if fits.horizon[result.name] in _pair(order)))
+        for result in results
+    ]
+
+
+def _pair(order: Order) -> tuple[str, str]:
+    return order.upper, order.lower
 
 
 def _write_report(

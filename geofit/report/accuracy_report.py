@@ -14,6 +14,7 @@ from geofit.data.accuracy import Exceedance, plain
 from geofit.data.files import replacing
 from geofit.data.messages import Message
 from geofit.data.title_block import TitleBlock
+from geofit.data.verdict import Lamp
 
 __all__ = [
     "AccuracyReport",
@@ -293,7 +294,8 @@ class PlanSheet:
 class HorizonReport:
     """Everything said about one horizon; metres.
 
-    ``verdict`` is PASS or FAIL by sigma against epsilon alone; ``sound`` tells whether every check holds too.
+    ``verdict`` is PASS, WARNING or FAIL, which follows from the ``lamps`` (:mod:`geofit.data.verdict`): at the data,
+    checks, away from the data. ``sound`` tells whether sigma is below epsilon and every check holds.
     ``over`` counts points beyond tolerances, by the name of the setting. ``pictures`` names those that
     belong here, by what they show. ``plan`` is None for a folded surface, of which contours would cross.
     ``excluded`` are points that a person left out, ``edits`` changes by hand.
@@ -301,6 +303,7 @@ class HorizonReport:
 
     name: str
     verdict: str
+    lamps: tuple[Lamp, ...]
     sound: bool
     n: int
     n_core: int
@@ -340,11 +343,6 @@ class HorizonReport:
     def control_points(self) -> int:
         """Number of control points over all patches."""
         return sum(patch.control[0] * patch.control[1] for patch in self.patches)
-
-    @property
-    def all_checks(self) -> tuple[CheckLine, ...]:
-        """Checks of the surface, then those of the file."""
-        return self.checks + (self.read_back.checks if self.read_back else ())
 
 
 @dataclass(frozen=True)

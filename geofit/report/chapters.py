@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from geofit.data.languages import Language, translate
 from geofit.data.messages import Message
+from geofit.data.verdict import Lamp
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport
 from geofit.report.annex import horizon_annex, inputs_annex
@@ -19,10 +20,9 @@ from geofit.report.document import (
     Paragraph,
     Picture,
     Table,
-    Verdict,
 )
 from geofit.report.drawings_chapter import sections_chapter
-from geofit.report.horizon_chapter import horizon_chapter
+from geofit.report.horizon_chapter import horizon_chapter, verdict_badge
 from geofit.report.interventions import interventions
 from geofit.report.limits import away_from_data, limits_of_use
 from geofit.report.structure_blocks import structure_blocks
@@ -86,16 +86,18 @@ def _summary(report: AccuracyReport, t: Language) -> Chapter:
         Column(t("ε, m"), "number"),
         Column(t("Largest |d|, m"), "number"),
         Column(t("Points"), "number"),
-        Column(t("Left-out error, m"), "number"),
         Column(t("Checks"), "wide"),
+        Column(t("Away from the data"), "wide"),
     )
     blocks.append(Table(columns, tuple(_verdict_row(horizon, t) for horizon in report.horizons)))
     blocks.append(
         Paragraph(
             t(
                 "σ = √(Σ d² / (n − 1)) over all n points; d is the orthogonal distance from a point to the surface, "
-                "positive above it. PASS: σ is below the control error ε. The left-out error is the root mean square "
-                "of what the surface misses where a whole hole is left out: σ says nothing about that."
+                "positive above it. FAIL: σ is not below the control error ε. WARNING: it is, but a check fails, or "
+                "the surface is worse away from its data: the left-out error, the root mean square of what it misses "
+                "where holes, sections or blocks are left out (the worst of them), is above ε, or the 90 % band "
+                "contains too few of these points. PASS: none of this."
             ),
             "quiet",
         )
@@ -106,28 +108,20 @@ def _summary(report: AccuracyReport, t: Language) -> Chapter:
     return Chapter(t("Summary"), tuple(blocks))
 
 
-def verdict_word(horizon: HorizonReport, t: Language) -> str:
-    """Return PASS or FAIL in a language."""
-    return t("PASS") if horizon.verdict == "PASS" else t("FAIL")
-
-
 def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
-    failed = [check for check in horizon.all_checks if check.passed is False]
-    if failed:
-        names = ", ".join(dict.fromkeys(translate(check.name, t) for check in failed))
-        checks = Mark(False, t("{count} failed: {names}", count=len(failed), names=names))
-    else:
-        held = sum(check.passed is True for check in horizon.all_checks)
-        checks = Mark(True, t("all {count} hold", count=held))
-    off = horizon.off_data
-    error = off.left_out[0].rms if off and off.left_out else None
+    _, checks, away = (_mark(lamp, t) for lamp in horizon.lamps)
     return (
         horizon.name,
-        Verdict(horizon.verdict == "PASS", verdict_word(horizon, t)),
+        verdict_badge(horizon, t),
         digits.metres(horizon.sigma),
         digits.given(horizon.epsilon),
         digits.metres(horizon.max_abs),
         digits.count(horizon.n),
-        t("not examined") if off is None else digits.metres(error),
         checks,
+        away,
     )
+
+
+def _mark(lamp: Lamp, t: Language) -> Mark:
+    text = translate(lamp.text, t)
+    return Mark({"pass": True, "fail": False}.get(lamp.level), f"! {text}" if lamp.level == "warning" else text)

@@ -38,15 +38,15 @@ class Mark:
 
 @dataclass(frozen=True)
 class Verdict:
-    """PASS or FAIL as a badge: filled for True, a heavy frame for False."""
+    """PASS, FAIL or WARNING as a badge: filled for True, a heavy frame for False, a plain frame for None."""
 
-    passed: bool
+    passed: bool | None
     word: str
 
     @property
     def text(self) -> str:
         """The word behind its sign."""
-        return ("✓ " if self.passed else "✗ ") + self.word
+        return {True: "✓ ", False: "✗ ", None: "! "}[self.passed] + self.word
 
 
 Cell = str | Mark | Verdict

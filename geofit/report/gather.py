@@ -149,7 +149,8 @@ def _horizon(result: HorizonResult) -> HorizonReport:
     shown = [what for what in PICTURES if _shown(what, result, out)]
     return HorizonReport(
         name=result.name,
-        verdict=a.verdict,
+        verdict=result.verdict.word,
+        lamps=result.verdict.lamps,
         sound=result.sound,
         n=a.n,
         n_core=int(core.sum()),

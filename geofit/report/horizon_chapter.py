@@ -24,7 +24,7 @@ from geofit.report.document import (
 from geofit.report.group_tables import group_blocks
 from geofit.report.off_data_blocks import off_data_blocks
 
-__all__ = ["horizon_chapter"]
+__all__ = ["horizon_chapter", "verdict_badge"]
 
 
 def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | None = None) -> Chapter:
@@ -41,18 +41,17 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
         *_read_back(h.read_back, t),
         *off_data_blocks(h, t),
     ]
-    passed = h.verdict == "PASS"
-    return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), Verdict(passed, t("PASS") if passed else t("FAIL")))
+    return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h, t))
+
+
+def verdict_badge(h: HorizonReport, t: Language) -> Verdict:
+    """Return the badge of a horizon's verdict."""
+    words = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}
+    return Verdict({"PASS": True, "FAIL": False}.get(h.verdict), words[h.verdict])
 
 
 def _sentence(h: HorizonReport, t: Language) -> str:
-    sigma, epsilon = digits.equals(h.sigma), digits.given(h.epsilon)
-    if h.verdict != "PASS" and h.sigma < h.epsilon:
-        return t("The surface runs far beyond the elevations of its data: see below.")
-    if h.verdict != "PASS":
-        return t("σ {sigma} is not below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
-    text = t("σ {sigma} is below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
-    return together([text, "" if h.sound else t("But a check does not hold: see below.")], t)
+    return " · ".join(f"{translate(lamp.title, t)}: {translate(lamp.text, t)}" for lamp in h.lamps)
 
 
 def _facts(h: HorizonReport, t: Language) -> Facts:

@@ -189,10 +189,11 @@ class _Pages(FPDF):
             self.type.draw(SIDE, top + 8 * k + 4, line, pen)
             self.set_y(top + 8 * (k + 1))
         if verdict is not None:
-            mark = Pen(11, "#ffffff" if verdict.passed else FAIL, bold=True)
+            shade = WARNING if verdict.passed is None else FAIL
+            mark = Pen(11, "#ffffff" if verdict.passed else shade, bold=True)
             wide = self.type.width(verdict.text, mark) + 8
             self.set_fill_color(*rgb(PASS))
-            self.set_draw_color(*rgb(FAIL))
+            self.set_draw_color(*rgb(shade))
             self.set_line_width(0.9)
             self.rect(self.w - SIDE - wide, top, wide, 8, style="F" if verdict.passed else "D")
             self.type.draw(self.w - SIDE - wide, top + 4, verdict.text, mark, wide, "centre")

@@ -9,7 +9,7 @@ from fpdf import FPDF
 
 from geofit.report.document import Cell, Column, Mark, Table, Verdict
 from geofit.report.pdf_text import Pen, Typesetter, rgb
-from geofit.report.style import FAIL, MUTED, PASS
+from geofit.report.style import FAIL, MUTED, PASS, WARNING
 
 __all__ = ["draw_table", "plain_text", "table_height"]
 
@@ -156,7 +156,7 @@ def _draw_row(
 
 def _badge(pdf: FPDF, verdict: Verdict, x: float, y: float, wide: float, height: float) -> None:
     pdf.set_fill_color(*rgb(PASS))
-    pdf.set_draw_color(*rgb(FAIL))
+    pdf.set_draw_color(*rgb(WARNING if verdict.passed is None else FAIL))
     pdf.set_line_width(0.4)
     pdf.rect(x + 0.2, y + 0.5, wide - 0.8, height - 1.0, style="F" if verdict.passed else "D")
 
@@ -173,7 +173,11 @@ def _title(column: Column) -> str:
 _HEAD = Pen(SIZE, MUTED, bold=True)
 _PLAIN = Pen(SIZE)
 _HASH = Pen(HASH_SIZE, family="mono")
-_BADGES = {True: Pen(SIZE, "#ffffff", bold=True), False: Pen(SIZE, FAIL, bold=True)}
+_BADGES = {
+    True: Pen(SIZE, "#ffffff", bold=True),
+    False: Pen(SIZE, FAIL, bold=True),
+    None: Pen(SIZE, WARNING, bold=True),
+}
 _MARKS = {True: Pen(SIZE, PASS), False: Pen(SIZE, FAIL, bold=True), None: Pen(SIZE, MUTED)}
 
 

@@ -22,7 +22,7 @@ from geofit.report.gather import SITE_PICTURE, cut_of, picture_name, section_pic
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
 from geofit.report.section_sheet import draw_section, section_sheet
-from geofit.report.style import FAIL, HORIZONS, INK, MUTED, PASS, drawing
+from geofit.report.style import FAIL, HORIZONS, INK, MUTED, PASS, WARNING, drawing
 from geofit.report.uncertainty import uncertainty_map
 
 if TYPE_CHECKING:
@@ -137,16 +137,12 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
         )
         figure.text(0.025, top, result.name, size=17, weight="bold", color=INK)
         figure.text(0.025, second, line, color=MUTED, size=10)
-        verdict, colour = (t("PASS"), PASS) if a.passed else (t("FAIL"), FAIL)
-        figure.text(0.555, top, verdict, size=17, weight="bold", color=colour)
-        below, above = (
-            t("σ is below ε = {epsilon:g} m", epsilon=a.epsilon),
-            t("σ is not below ε = {epsilon:g} m", epsilon=a.epsilon),
-        )
-        relation = below if a.passed else above
-        failed = ", ".join(translate(check.name, t) for check in a.checks if check.passed is False)
-        rest = " · " + t("does not hold: {names}", names=failed) if failed else ""
-        figure.text(0.555, second, relation + rest, color=MUTED, size=10)
+        verdict = result.verdict
+        word = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}[verdict.word]
+        colour = {"PASS": PASS, "WARNING": WARNING, "FAIL": FAIL}[verdict.word]
+        figure.text(0.555, top, word, size=17, weight="bold", color=colour)
+        lamps = " · ".join(translate(lamp.text, t) for lamp in verdict.lamps)
+        figure.text(0.555, second, lamps, color=MUTED, size=10 if len(lamps) < 70 else 7.5)
         data = _png(figure, margin=40)
     with replacing(path) as part:
         part.write_bytes(data)

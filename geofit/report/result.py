@@ -13,12 +13,13 @@ from numpy.typing import NDArray
 
 import geofit
 from geofit.checks.storage import Storage
-from geofit.data.accuracy import Accuracy, ReadBack, Seam, plain
+from geofit.data.accuracy import Accuracy, Check, ReadBack, Seam, plain
 from geofit.data.files import replacing
 from geofit.data.messages import Message
 from geofit.data.points import PointSet
 from geofit.data.prediction import OffData
 from geofit.data.site import ImportIssue, Site
+from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.profile import Profile
 
@@ -51,6 +52,8 @@ class HorizonResult:
         Points that a person left out of the fit.
     edits : tuple of Message
         Changes by hand after the fit, in their order.
+    orders : tuple of Check
+        How the horizon lies to its neighbours (:meth:`geofit.site.order.Order.check`).
     """
 
     surface: HorizonFit
@@ -63,6 +66,12 @@ class HorizonResult:
     profiles: Mapping[str, tuple[Profile, ...]] = field(default_factory=dict, repr=False)
     excluded: PointSet | None = None
     edits: tuple[Message, ...] = ()
+    orders: tuple[Check, ...] = ()
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict with its three lamps."""
+        return verdict_of(self.accuracy, self.offdata, self.read_back, self.orders)
 
     @property
     def name(self) -> str:
@@ -117,7 +126,8 @@ def horizon_data(result: HorizonResult) -> dict[str, Any]:
         "sigma": a.sigma,
         "max_abs": a.max_abs,
         "mean": a.mean,
-        "verdict": a.verdict,
+        "verdict": result.verdict.word,
+        "lamps": {lamp.title.code: plain(lamp) for lamp in result.verdict.lamps},
         "sound": result.sound,
         "over": a.over,
         "core": {"n": int(core.sum()), "max_abs": d[core].max() if core.any() else None},

@@ -30,9 +30,10 @@ from PySide6.QtWidgets import (
 from geofit.data.accuracy import Check
 from geofit.data.files import file_stems
 from geofit.data.messages import message
+from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.task_dialog import TaskDialog
-from geofit.gui.panels.marks import verdict_mark
+from geofit.gui.panels.marks import icon, level_mark, verdict_mark
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
 from geofit.project.step_files import StepFile, step_paths, write_step_files
@@ -49,14 +50,21 @@ class ExportDialog(TaskDialog):
     ``files`` holds what was written last.
     """
 
-    def __init__(self, surfaces: Mapping[str, HorizonFit], parent: QWidget | None = None) -> None:
+    def __init__(
+        self,
+        surfaces: Mapping[str, HorizonFit],
+        parent: QWidget | None = None,
+        verdicts: Mapping[str, Verdict] | None = None,
+        folder: Path | None = None,
+    ) -> None:
         super().__init__(parent)
+        self._verdicts = verdicts or {}
         self.setWindowTitle(self.tr("Export STEP"))
         # The patches are all that a file holds; what stands behind them need not travel to the other process.
         self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         self.files: list[StepFile] = []
         self.horizons = self._list()
-        self.target = QLineEdit(str(Path(str(QSettings().value(_FOLDER, ""))) / self._proposed()))
+        self.target = QLineEdit(str((folder or Path(str(QSettings().value(_FOLDER, "")))) / self._proposed()))
         self.unit = QComboBox()
         self.unit.addItem(self.tr("metres"), "m")
         self.unit.addItem(self.tr("millimetres"), "mm")
@@ -91,8 +99,10 @@ class ExportDialog(TaskDialog):
         made.setAccessibleName(self.tr("Horizons to write"))
         for name, surface in self._surfaces.items():
             accuracy = surface.accuracy
-            text = name if accuracy is None else f"{name}   σ {digits.equals(accuracy.sigma)}"
-            item = QListWidgetItem(verdict_mark(None if accuracy is None else accuracy.passed), text)
+            judged = None if accuracy is None else self._verdicts.get(name) or verdict_of(accuracy)
+            text = name if judged is None else f"{name}   {spoken(judged.text)}"
+            item = QListWidgetItem(icon("none" if judged is None else level_mark(judged.level)), text)
+            item.setToolTip(text)
             item.setData(Qt.ItemDataRole.UserRole, name)
             item.setFlags(item.flags() | Qt.ItemFlag.ItemIsUserCheckable)
             item.setCheckState(Qt.CheckState.Checked)
@@ -160,7 +170,7 @@ class ExportDialog(TaskDialog):
         QSettings().setValue(_FOLDER, str(files[0].path.parent))
         found = {name: back for file in files for name, back in file.read_back.items()}
         size = digits.size(sum(file.size for file in files))
-        names = ", ".join(file.path.name for file in files)
+        names = ", ".join(str(file.path.resolve()) for file in files)
         if all(back.passed for back in found.values()):
             self.say(self.tr("Wrote {names} ({size}). Every check of the file holds.").format(names=names, size=size),
                       "passed")  # fmt: skip

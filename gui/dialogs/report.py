@@ -55,6 +55,7 @@ class ReportDialog(TaskDialog):
         results: Sequence[HorizonResult],
         parent: QWidget | None = None,
         blocks: Blocks | None = None,
+        folder: Path | None = None,
     ) -> None:
         super().__init__(parent)
         self._blocks = blocks or Blocks({}, Given(site))
@@ -76,7 +77,7 @@ class ReportDialog(TaskDialog):
         self.date = QDateEdit(QDate.fromString(today(), Qt.DateFormat.ISODate))
         self.date.setDisplayFormat("yyyy-MM-dd")
         self.date.setCalendarPopup(True)
-        self.folder = QLineEdit(str(Path(str(QSettings().value(_FOLDER, "")) or Path.home()) / "report"))
+        self.folder = QLineEdit(str((folder or Path(str(QSettings().value(_FOLDER, "")) or Path.home())) / "report"))
         self.folder.textChanged.connect(self.refresh)
         self.examine = QCheckBox()
         self.examine.setToolTip(
@@ -169,7 +170,7 @@ class ReportDialog(TaskDialog):
         best: Form = next(form for form in ("pdf", "html", "json") if form in made.files)
         self._path = made.files[best]
         QSettings().setValue(_FOLDER, str(self._path.parent.parent))
-        names = ", ".join(path.name for path in made.files.values())
+        names = ", ".join(str(path.resolve()) for path in made.files.values())
         text = self.tr("Wrote {names} in {folder}.").format(names=names, folder=self._path.parent)
         said = "\n".join([text, *(spoken(warning) for warning in made.warnings)])
         self.say(said, "stale" if made.warnings else "passed")

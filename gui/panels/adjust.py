@@ -12,6 +12,7 @@ from geofit.gui.panels.data_point import DataPointPage
 from geofit.gui.panels.effect import Effect
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
+from geofit.project.provenance import Row
 
 __all__ = ["AdjustPanel"]
 
@@ -27,7 +28,7 @@ class AdjustPanel(QWidget):
     """
 
     adjust_requested = Signal(str, int, int, float)
-    pull_requested = Signal(int, float)
+    pull_requested = Signal(object, float)
     weigh_requested = Signal(str, int, int, float)
     adjust_wanted = Signal(str, int, int, float)
     pull_wanted = Signal(int, float)
@@ -155,5 +156,6 @@ class AdjustPanel(QWidget):
         self._pause.stop()
         if self.ways.currentWidget() is self.control:
             self.adjust_requested.emit(*self.control.target, self.control.dz.value())
-        elif self.point.point is not None:
-            self.pull_requested.emit(self.point.point, self.point.share.value() / 100)
+        elif self.point.point is not None and self._surface is not None:
+            row = Row.of(self._surface.points, self.point.point)
+            self.pull_requested.emit(row, self.point.share.value() / 100)

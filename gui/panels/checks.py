@@ -25,6 +25,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken
+from geofit.project.provenance import Row
 from geofit.report.digits import measured
 from geofit.site.order import Order
 from geofit.site.throw import FaultCut
@@ -39,11 +40,11 @@ _WORDS = 4
 class ChecksPanel(QWidget):
     """Checks in groups; each says passed, failed or not applicable by a mark and by a word.
 
-    ``point_chosen`` carries the index of the point that gave way, when its conflict is chosen;
+    ``point_chosen`` carries the Row of the point that gave way, when its conflict is chosen;
     ``place_chosen`` map coordinates, when a check that has a worst place is.
     """
 
-    point_chosen = Signal(int)
+    point_chosen = Signal(object)
     place_chosen = Signal(float, float, float)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -205,7 +206,7 @@ class ChecksPanel(QWidget):
             value = measured(conflict.difference, "m")
             item = self._row(name, None, value, words=spoken(conflict.text), word=self.tr("gave way"))
             item.setIcon(0, icon("stale"))
-            item.setData(0, _POINT, conflict.dropped)
+            item.setData(0, _POINT, Row.of(surface.points, conflict.dropped))
             rows.append(item)
         return rows
 
@@ -237,7 +238,7 @@ class ChecksPanel(QWidget):
         index = None if current is None else current.data(0, _POINT)
         place = None if current is None else current.data(0, _PLACE)
         if index is not None:
-            self.point_chosen.emit(int(index))
+            self.point_chosen.emit(index)
         elif place is not None:
             self.place_chosen.emit(*place)
 

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QVBoxLayout, QWidge
 
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.words import spoken
+from geofit.project.provenance import Row
 
 __all__ = ["DataPointPage"]
 
@@ -53,8 +54,9 @@ class DataPointPage(QWidget):
 
     def show_surface(self, surface: HorizonFit) -> None:
         """Show a surface; the point stays chosen where it has it."""
-        self._surface = surface
-        self.choose(self.point if self.point is not None and self.point < len(surface.points) else None)
+        former, self._surface = self._surface, surface
+        row = None if former is None or self.point is None else Row.of(former.points, self.point)
+        self.choose(None if row is None else row.find(surface.points))
 
     def choose(self, index: int | None) -> None:
         """Choose a data point; nothing is emitted."""

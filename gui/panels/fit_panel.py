@@ -42,7 +42,7 @@ class FitPanel(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._name, self._settings, self._stale = "", FitSettings(), False
+        self._name, self._settings, self._stale, self._locked = "", FitSettings(), False, False
         self.fields: dict[str, Field] = {}
         self.errors: dict[str, QLabel] = {}
         self._labels: dict[str, QLabel] = {}
@@ -101,8 +101,12 @@ class FitPanel(QWidget):
         self.all_button.clicked.connect(self.fit_all_requested)
         self.show_settings("", FitSettings(), False)
 
-    def show_settings(self, name: str, settings: FitSettings, stale: bool = False) -> None:
-        """Show a horizon's settings; ``stale`` where its surface is older. Without a name nothing is chosen."""
+    def show_settings(self, name: str, settings: FitSettings, stale: bool = False, locked: bool = False) -> None:
+        """Show a horizon's settings; ``stale`` where its surface is older. Without a name nothing is chosen.
+
+        ``locked`` while a surface of the project is still being read or made: a fit must wait for it.
+        """
+        self._locked = locked
         core = self.fields["core"]
         if name != self._name and isinstance(core, CoreField):
             core.forget()
@@ -263,9 +267,12 @@ class FitPanel(QWidget):
         changed = new != self._settings
         self.apply_button.setEnabled(new is not None and changed)
         self.reset_button.setEnabled(changed)
-        self.fit_button.setEnabled(new is not None)
+        self.fit_button.setEnabled(new is not None and not self._locked)
+        self.all_button.setEnabled(not self._locked)
         self.banner.show_text(
-            self.tr("Not applied yet: press Apply or Fit.")
+            self.tr("The surfaces of the project are being read: Fit waits for them.")
+            if self._locked
+            else self.tr("Not applied yet: press Apply or Fit.")
             if changed
             else self.tr("The surface is older than these settings: press Fit.")
             if self._stale

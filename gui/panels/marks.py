@@ -8,9 +8,10 @@ from functools import lru_cache
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPalette, QPen, QPixmap, QPolygonF
 
-from geofit.report.style import FAIL, PASS, QUIET
+from geofit.data.verdict import Level
+from geofit.report.style import FAIL, PASS, QUIET, WARNING
 
-__all__ = ["icon", "is_dark", "readable", "verdict_mark"]
+__all__ = ["icon", "is_dark", "level_mark", "readable", "verdict_mark"]
 
 _SIZE = 16
 _RATIOS = (1.0, 1.25, 1.5, 2.0)
@@ -30,15 +31,20 @@ def readable(colour: str, palette: QPalette) -> QColor:
 
 
 def verdict_mark(passed: bool | None, *, stale: bool = False) -> QIcon:
-    """Return the mark of a verdict: a disc with a tick, a square with a cross, a ring with a dash."""
+    """Return the mark of a check: a disc with a tick, a square with a cross, a ring with a dash."""
     if stale:
         return icon("stale")
     return icon("none" if passed is None else "passed" if passed else "failed")
 
 
+def level_mark(level: Level) -> str:
+    """Return the name of the mark of a lamp or a verdict."""
+    return {"none": "none", "pass": "passed", "warning": "warning", "fail": "failed"}[level]
+
+
 @lru_cache(maxsize=128)
 def icon(name: str) -> QIcon:
-    """Return a mark by name: passed, failed, none, stale; hole, section, ...; up, down, dot, horizon with a colour."""
+    """Return a mark by name: passed, warning, failed, stale; hole, section, ...; up, dot, horizon with a colour."""
     made = QIcon()
     for ratio in _RATIOS:
         pixmap = QPixmap(round(_SIZE * ratio), round(_SIZE * ratio))
@@ -81,6 +87,13 @@ def paint(painter: QPainter, box: QRectF, name: str) -> None:
         painter.drawEllipse(box.adjusted(1, 1, -1, -1))
         painter.drawLine(at(0.32, 0.5), at(0.68, 0.5))
     elif name == "stale":
+        clock = QPen(QColor(WARNING), side / 9)
+        clock.setCapStyle(Qt.PenCapStyle.RoundCap)
+        painter.setPen(clock)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.drawEllipse(box.adjusted(1, 1, -1, -1))
+        painter.drawPolyline(QPolygonF([at(0.5, 0.26), at(0.5, 0.52), at(0.7, 0.62)]))
+    elif name == "warning":
         painter.setBrush(QColor("#c98a12"))
         painter.drawPolygon(QPolygonF([at(0.5, 0.02), at(1.0, 0.95), at(0.0, 0.95)]))
         painter.setPen(pen)

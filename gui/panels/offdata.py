@@ -16,6 +16,7 @@ from geofit.data.prediction import LeftOut, OffData
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.words import spoken
+from geofit.project.provenance import Row
 
 __all__ = ["OffDataPanel"]
 
@@ -28,7 +29,7 @@ class OffDataPanel(QWidget):
 
     examine_requested = Signal()
     suggestion_chosen = Signal(float, float, float)
-    point_chosen = Signal(int)
+    point_chosen = Signal(object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -133,11 +134,8 @@ class OffDataPanel(QWidget):
                 self.tr(
                     "Widened by a factor of {factor:.2f}, so that 90 % of the left-out points lie in the 90 % band."
                 )
-                if sd.factor >= 1
-                else self.tr(
-                    "Narrowed by a factor of {factor:.2f}: fewer than 10 % of the left-out points lay outside the "
-                    "90 % band."
-                )
+                if sd.factor > 1
+                else self.tr("Not widened: the 90 % band contains 90 % of the left-out points or more.")
             )
             lines.append(words.format(factor=sd.factor))
         for left in offdata.left_out:
@@ -226,8 +224,8 @@ class OffDataPanel(QWidget):
             self.suggestion_chosen.emit(hole.x, hole.y, hole.z)
 
     def _tell_outlier(self, row: int) -> None:
-        if self._offdata is not None:
-            self.point_chosen.emit(self._offdata.outliers[row].index)
+        if self._offdata is not None and self._points is not None:
+            self.point_chosen.emit(Row.of(self._points, self._offdata.outliers[row].index))
 
 
 def _peer(name: str, left: LeftOut) -> float:

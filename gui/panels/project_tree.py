@@ -10,16 +10,18 @@ from PySide6.QtGui import QIcon, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QLineEdit, QTreeView, QVBoxLayout, QWidget
 
 from geofit.data.site import Site
+from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.panels.marks import icon, verdict_mark
+from geofit.gui.panels.marks import icon, level_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import natural
 from geofit.gui.words import spoken
-from geofit.report.digits import given, metres
+from geofit.report.digits import metres
 from geofit.report.style import horizon_colours
 
 __all__ = ["ProjectTree"]
 
+_Given = tuple[Site | None, Mapping[str, HorizonFit], Container[str], Mapping[str, Verdict]]
 _TARGET = Qt.ItemDataRole.UserRole
 
 
@@ -63,12 +65,22 @@ class ProjectTree(QWidget):
         self.setLayout(self.pages)
         self._reports: tuple[str, ...] = ()
         self._silent = False
-        self._given: tuple[Site | None, Mapping[str, HorizonFit], Container[str]] = (None, {}, ())
+        self._given: _Given = (None, {}, (), {})
         self.show_site(None, {}, ())
 
-    def show_site(self, site: Site | None, surfaces: Mapping[str, HorizonFit], stale: Container[str] = ()) -> None:
-        """Show a site with its surfaces; names in ``stale`` have settings newer than their surface."""
-        self._given = (site, surfaces, stale)
+    def show_site(
+        self,
+        site: Site | None,
+        surfaces: Mapping[str, HorizonFit],
+        stale: Container[str] = (),
+        verdicts: Mapping[str, Verdict] | None = None,
+    ) -> None:
+        """Show a site with its surfaces; names in ``stale`` have settings newer than their surface.
+
+        ``verdicts`` has those of the surfaces where more is known than their own checks.
+        """
+        verdicts = verdicts or {}
+        self._given = (site, surfaces, stale, verdicts)
         if site is None:
             self.items.removeRows(0, self.items.rowCount())
             self.pages.say(self.tr("No site open: open a site or a project, or drop its files on the window."))
@@ -79,7 +91,9 @@ class ProjectTree(QWidget):
         self.items.setHorizontalHeaderLabels([self.tr("Project"), self.tr("Points")])
         self.items.horizontalHeaderItem(1).setTextAlignment(Qt.AlignmentFlag.AlignRight)
         self._group(
-            "horizons", self.tr("Horizons"), [self._horizon(name, site, surfaces, stale) for name in site.horizons]
+            "horizons",
+            self.tr("Horizons"),
+            [self._horizon(name, site, surfaces, stale, verdicts.get(name)) for name in site.horizons],
         )
         for kind, title in (("borehole", self.tr("Boreholes")), ("adit", self.tr("Adits"))):
             holes = sorted((hole for hole in site.holes if hole.kind == kind), key=lambda hole: natural(hole.name))
@@ -119,7 +133,12 @@ class ProjectTree(QWidget):
         self._silent = False
 
     def _horizon(
-        self, name: str, site: Site, surfaces: Mapping[str, HorizonFit], stale: Container[str]
+        self,
+        name: str,
+        site: Site,
+        surfaces: Mapping[str, HorizonFit],
+        stale: Container[str],
+        verdict: Verdict | None,
     ) -> list[QStandardItem]:
         surface = surfaces.get(name)
         count, colour = len(site.horizons[name]), horizon_colours(site.horizons)[name]
@@ -133,21 +152,17 @@ class ProjectTree(QWidget):
             )
             return row
         a, old = surface.accuracy, name in stale
-        verdict = self.tr("PASS") if a.passed else self.tr("FAIL")
-        words = self.tr("{name}: {verdict}, σ {sigma} m, ε {epsilon} m; patches: {patches}, points: {n}").format(
-            name=name,
-            verdict=verdict,
-            sigma=metres(a.sigma),
-            epsilon=given(a.epsilon),
-            patches=len(surface.patches),
-            n=a.n,
+        judged = verdict or verdict_of(a)
+        words = self.tr("{name}: {verdict}; patches: {patches}, points: {n}").format(
+            name=name, verdict=spoken(judged.word), patches=len(surface.patches), n=a.n
         )
+        words = "\n".join((words, *(f"{spoken(lamp.title)}: {spoken(lamp.text)}" for lamp in judged.lamps)))
         title = name
         if old:
             title = self.tr("{name} (stale)").format(name=name)
             words += "\n" + self.tr("Older than the settings: press Fit")
-        row = _row(title, count, verdict_mark(a.passed, stale=old), ("horizon", name), words)
-        row[0].setData(f"{name}, {verdict}", Qt.ItemDataRole.AccessibleTextRole)
+        row = _row(title, count, icon("stale" if old else level_mark(judged.level)), ("horizon", name), words)
+        row[0].setData(f"{name}, {spoken(judged.word)}", Qt.ItemDataRole.AccessibleTextRole)
         if old:
             font = row[0].font()
             font.setItalic(True)

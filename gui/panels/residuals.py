@@ -16,6 +16,9 @@ from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable, spoken_words
+from geofit.project.listing import Listing
+from geofit.project.listing import listing as list_points
+from geofit.project.provenance import Row
 from geofit.report.style import bands
 
 __all__ = ["ResidualTable"]
@@ -23,25 +26,31 @@ __all__ = ["ResidualTable"]
 #: Wait for the next letter of the filter, milliseconds.
 PAUSE = 150
 _DISTANCE = 1
+Bools = NDArray[np.bool_]
 
 
 class _Table(DataTable):
-    """The table with what can be done to a point."""
+    """The table with what can be done to its points."""
 
-    exclude_requested = Signal(int)
-    pull_requested = Signal(int)
+    exclude_requested = Signal()
+    pull_requested = Signal()
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.excluded: Bools = np.zeros(0, bool)
 
     def menu(self) -> QMenu:
-        """Return the menu of the current point."""
+        """Return the menu of the selected points."""
         menu = QMenu(self)
-        index = self.current
-        exclude = menu.addAction(self.tr("Exclude this row from the fit"))
+        chosen = self.selected
+        again = bool(chosen) and bool(self.excluded[chosen].all())
+        words = self.tr("Include in the fit again: {n}") if again else self.tr("Exclude from the fit: {n}")
+        exclude = menu.addAction(words.format(n=len(chosen)))
         pull = menu.addAction(self.tr("Pull the surface to this point"))
-        exclude.setEnabled(index is not None)
-        pull.setEnabled(index is not None)
-        if index is not None:
-            exclude.triggered.connect(lambda: self.exclude_requested.emit(index))
-            pull.triggered.connect(lambda: self.pull_requested.emit(index))
+        exclude.setEnabled(bool(chosen))
+        pull.setEnabled(self.current is not None)
+        exclude.triggered.connect(self.exclude_requested)
+        pull.triggered.connect(self.pull_requested)
         menu.addSeparator()
         menu.addAction(self.copy_action)
         menu.addAction(self.export_action)
@@ -50,20 +59,23 @@ class _Table(DataTable):
 
 @dataclass(frozen=True, eq=False)
 class _Shown:
-    """What the filters ask: text of each row, |d|, the tolerance, and which points are exact."""
+    """What the filters ask: the points, text of each row, |d|, and the tolerance."""
 
+    listing: Listing
     words: NDArray[np.str_]
     distance: NDArray[np.float64]
     tolerance: float
-    core: NDArray[np.bool_]
 
 
 class ResidualTable(QWidget):
-    """All points of a horizon with their residuals."""
+    """All points of a horizon with their residuals; excluded rows are greyed and struck through.
 
-    point_chosen = Signal(int)
-    exclude_requested = Signal(int)
-    pull_requested = Signal(int)
+    Points are known by their rows: ``point_chosen`` and ``pull_requested`` carry a Row, ``exclude_requested`` a tuple.
+    """
+
+    point_chosen = Signal(object)
+    exclude_requested = Signal(object)
+    pull_requested = Signal(object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -73,11 +85,13 @@ class ResidualTable(QWidget):
         self.only_over = QCheckBox(self.tr("Over tolerance"))
         self.only_loose = QCheckBox(self.tr("Not exact"))
         self.only_loose.setToolTip(self.tr("Leave out the core's points, which the surface meets exactly."))
+        self.only_excluded = QCheckBox(self.tr("Excluded"))
+        self.only_excluded.setToolTip(self.tr("Only rows that take no part in the fit."))
         self.count = QLabel()
         self.table = _Table()
         self.table.setAccessibleName(self.tr("Residuals of all points"))
         head = FlowLayout()
-        for widget in (self.search, self.only_over, self.only_loose, self.count):
+        for widget in (self.search, self.only_over, self.only_loose, self.only_excluded, self.count):
             head.addWidget(widget)
         content = QWidget()
         column = QVBoxLayout(content)
@@ -90,20 +104,21 @@ class ResidualTable(QWidget):
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._filter)
         self.search.textChanged.connect(self._pause.start)
-        self.only_over.toggled.connect(self._filter)
-        self.only_loose.toggled.connect(self._filter)
-        self.table.chosen.connect(self.point_chosen)
-        self.table.exclude_requested.connect(self.exclude_requested)
-        self.table.pull_requested.connect(self.pull_requested)
+        for box in (self.only_over, self.only_loose, self.only_excluded):
+            box.toggled.connect(self._filter)
+        self.table.chosen.connect(lambda index: self.point_chosen.emit(self._row(index)))
+        self.table.exclude_requested.connect(lambda: self.exclude_requested.emit(self.chosen_rows()))
+        self.table.pull_requested.connect(self._pull)
         self._shown: _Shown | None = None
-        self._surface: HorizonFit | None = None
         self.show_surface(None)
 
-    def show_surface(self, surface: HorizonFit | None) -> None:
-        """Show the residuals of a checked surface; None while there is none."""
-        if surface is not None and surface is self._surface:
+    def show_surface(self, surface: HorizonFit | None, listing: Listing | None = None) -> None:
+        """Show the residuals of a checked surface; None while there is none.
+
+        ``listing`` has all points of the horizon, excluded ones too; without it the surface's own points are shown.
+        """
+        if listing is not None and self._shown is not None and listing is self._shown.listing:
             return
-        self._surface = surface
         if surface is None or surface.accuracy is None or not len(surface.points):
             self._shown = None
             self.table.show_columns(())
@@ -114,13 +129,15 @@ class ResidualTable(QWidget):
                 else self.tr("No surface yet: press Fit to see how far each point lies from it.")
             )
             return
-        first = self._shown is None
-        points, d = surface.points, surface.accuracy.residuals
-        core = surface.core if len(surface.core) == len(d) else np.zeros(len(d), bool)
-        kinds, patches = spoken_words(points.kind), spoken_words(surface.accuracy.patch)
+        first, chosen = self._shown is None, self.chosen_rows() if self._shown is not None else ()
+        listed = listing or list_points(surface.points, (), surface)
+        points = listed.points
+        kinds, patches = spoken_words(points.kind), spoken_words(listed.patch)
         parts = (points.hole, points.section, kinds, patches, points.file)
-        self._shown = _Shown(_joined(parts), np.abs(d), surface.settings.interior_tolerance, core)
-        self.table.show_columns(self._columns(surface, core))
+        distance = np.abs(listed.residual)
+        self._shown = _Shown(listed, _joined(parts), distance, surface.settings.interior_tolerance)
+        self.table.excluded = listed.excluded
+        self.table.show_columns(self._columns(surface, listed), listed.excluded)
         if first:
             self.table.sortByColumn(_DISTANCE, Qt.SortOrder.DescendingOrder)
         self.only_over.setToolTip(
@@ -129,36 +146,53 @@ class ResidualTable(QWidget):
             )
         )
         self._filter()
+        self.table.select([i for row in chosen if (i := listed.index(row)) is not None])
         self.pages.reveal()
 
-    def choose(self, index: int | None) -> None:
-        """Go to a point's row, as picked elsewhere; nothing is emitted."""
+    def chosen_rows(self) -> tuple[Row, ...]:
+        """Return the rows of all selected points."""
+        return () if self._shown is None else self._shown.listing.rows(self.table.selected)
+
+    def choose(self, row: Row | None) -> None:
+        """Go to a point, as picked elsewhere; nothing is emitted. One of several selected rows leaves them selected."""
+        index = None if self._shown is None else self._shown.listing.index(row)
+        if index is not None and index in self.table.selected:
+            return
         if not self.table.choose(index) and index is not None and self._shown is not None:
             self.count.setText(self.tr("The picked point is hidden by the filter"))
         elif self._shown is not None:
             self._tell_count()
 
-    def _columns(self, surface: HorizonFit, core: NDArray[np.bool_]) -> list[Column]:
-        points, a = surface.points, surface.accuracy
+    def _row(self, index: int) -> Row:
+        assert self._shown is not None
+        return self._shown.listing.rows([index])[0]
+
+    def _pull(self) -> None:
+        if self.table.current is not None:
+            self.pull_requested.emit(self._row(self.table.current))
+
+    def _columns(self, surface: HorizonFit, listed: Listing) -> list[Column]:
+        points, a = listed.points, surface.accuracy
         assert a is not None
-        marks = _marks(surface, self)
         notes = np.full(len(points), "", dtype=object)
+        back = {int(place): index for index, place in enumerate(listed.place) if place >= 0}
         for conflict in a.conflicts:
-            notes[conflict.dropped] = str(conflict.text)
-        exact = np.where(core, self.tr("exact"), "")
+            notes[back[conflict.dropped]] = str(conflict.text)
+        notes[listed.excluded] = self.tr("excluded")
+        exact = np.where(listed.core, self.tr("exact"), "")
         return [
             Column(
                 self.tr("Residual, m"),
-                a.residuals,
+                listed.residual,
                 4,
                 self.tr("Signed orthogonal distance: positive above the surface."),
-                marks,
+                _marks(surface, listed.residual, self),
             ),
-            Column(self.tr("|d|, m"), np.abs(a.residuals), 4, self.tr("Distance without its sign.")),
+            Column(self.tr("|d|, m"), np.abs(listed.residual), 4, self.tr("Distance without its sign.")),
             Column(self.tr("Kind"), spoken_words(points.kind)),
             Column(self.tr("Hole"), points.hole),
             Column(self.tr("Section"), points.section),
-            Column(self.tr("Patch"), spoken_words(a.patch)),
+            Column(self.tr("Patch"), spoken_words(listed.patch)),
             Column(self.tr("Core"), exact, tooltip=self.tr("Whether the surface meets the point exactly.")),
             Column(self.tr("Easting, m"), points.xyz[:, 0], 3),
             Column(self.tr("Northing, m"), points.xyz[:, 1], 3),
@@ -171,23 +205,30 @@ class ResidualTable(QWidget):
     def _filter(self) -> None:
         if self._shown is None:
             return
+        listed = self._shown.listing
         keep = np.ones(len(self._shown.distance), bool)
         if words := self.search.text().strip().casefold():
             keep &= np.char.find(self._shown.words, words) >= 0
         if self.only_over.isChecked():
             keep &= self._shown.distance > self._shown.tolerance
         if self.only_loose.isChecked():
-            keep &= ~self._shown.core
+            keep &= ~listed.core
+        if self.only_excluded.isChecked():
+            keep &= listed.excluded
         self.table.keep(None if keep.all() else keep)
         self._tell_count()
 
     def _tell_count(self) -> None:
+        assert self._shown is not None
         shown, total = self.table.rows.rowCount(), self.table.rows.total
-        self.count.setText(
+        text = (
             self.tr("Points: {n}").format(n=total)
             if shown == total
             else self.tr("Points: {shown} of {n}").format(shown=shown, n=total)
         )
+        if out := int(self._shown.listing.excluded.sum()):
+            text += " · " + self.tr("excluded: {n}").format(n=out)
+        self.count.setText(text)
 
 
 def _joined(parts: tuple[NDArray[np.str_], ...]) -> NDArray[np.str_]:
@@ -197,14 +238,14 @@ def _joined(parts: tuple[NDArray[np.str_], ...]) -> NDArray[np.str_]:
     return np.char.lower(joined)
 
 
-def _marks(surface: HorizonFit, panel: QWidget) -> Callable[[int], QIcon]:
+def _marks(surface: HorizonFit, d: NDArray[np.float64], panel: QWidget) -> Callable[[int], QIcon | None]:
     """Return the mark of each residual's band, as the deviation map draws it in the panel's theme."""
-    assert surface.accuracy is not None
-    d = surface.accuracy.residuals
     themes = bands(surface.settings), bands(surface.settings, dark=True)
-    band = np.searchsorted([limit.low for limit in themes[0]], np.abs(d), side="right") - 1
+    band = np.searchsorted([limit.low for limit in themes[0]], np.nan_to_num(np.abs(d)), side="right") - 1
 
-    def mark(i: int) -> QIcon:
+    def mark(i: int) -> QIcon | None:
+        if np.isnan(d[i]):
+            return None
         limit = themes[is_dark(panel.palette())][band[i]]
         if band[i] == 0:
             return icon(f"dot:{limit.below}")

@@ -30,6 +30,7 @@ from geofit.gui.panels.section_ink import (
 from geofit.gui.panels.section_scale import automatic, grown, window
 from geofit.gui.words import failure
 from geofit.gui.worker import Task, run
+from geofit.project.provenance import Row
 
 __all__ = ["SectionPanel"]
 
@@ -47,12 +48,12 @@ class SectionPanel(QWidget):
     """The 2D section.
 
     ``line_changed`` carries the new line (k, 2) and ``thickness_changed`` metres, when the user edits them here;
-    ``point_chosen`` the horizon and the index of the point that was clicked.
+    ``point_chosen`` the horizon and the Row of the point that was clicked.
     """
 
     line_changed = Signal(object)
     thickness_changed = Signal(float)
-    point_chosen = Signal(str, int)
+    point_chosen = Signal(str, object)
     failed = Signal(object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
@@ -352,7 +353,8 @@ class SectionPanel(QWidget):
                 if away.min() < least:
                     best, least = (name, int(index[away.argmin()])), float(away.min())
         if best is not None:
-            self.point_chosen.emit(*best)
+            name, index = best
+            self.point_chosen.emit(name, Row.of(self._data.site.horizons[name], index))
 
 
 def _spin(low: float, high: float, step: float, unit: str, longest: str) -> QDoubleSpinBox:

@@ -17,11 +17,21 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QPoint, Qt, Signal
-from PySide6.QtGui import QAction, QIcon, QKeySequence, QResizeEvent
+from PySide6.QtCore import (
+    QAbstractTableModel,
+    QItemSelection,
+    QItemSelectionModel,
+    QModelIndex,
+    QPersistentModelIndex,
+    QPoint,
+    Qt,
+    Signal,
+)
+from PySide6.QtGui import QAction, QIcon, QKeySequence, QPalette, QResizeEvent
 from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHeaderView, QMenu, QTableView, QWidget
 
 from geofit.data.files import replacing, spreadsheet_cell
+from geofit.gui.preferences import Preferences
 from geofit.gui.words import spoken
 
 __all__ = ["ArrayModel", "Column", "DataTable", "natural", "spoken_words"]
@@ -101,12 +111,16 @@ class ArrayModel(QAbstractTableModel):
         self.columns: Sequence[Column] = ()
         self._order: Ints = np.zeros(0, np.int64)
         self._kept: NDArray[np.bool_] | None = None
+        self._struck: NDArray[np.bool_] | None = None
         self._sorted: tuple[int, Qt.SortOrder] | None = None
 
-    def set_columns(self, columns: Sequence[Column]) -> None:
-        """Take other data; what was filtered is shown again, and the sorting stays."""
+    def set_columns(self, columns: Sequence[Column], struck: NDArray[np.bool_] | None = None) -> None:
+        """Take other data; what was filtered is shown again, and the sorting stays.
+
+        Rows where ``struck`` is true are greyed and struck through.
+        """
         self.beginResetModel()
-        self.columns, self._kept = tuple(columns), None
+        self.columns, self._kept, self._struck = tuple(columns), None, struck
         self._arrange()
         self.endResetModel()
 
@@ -150,6 +164,13 @@ class ArrayModel(QAbstractTableModel):
             return column.icons(int(self._order[index.row()]))
         if role == Qt.ItemDataRole.ToolTipRole and not column.number:
             return column.text(self._order[index.row()])
+        if self._struck is not None and self._struck[self._order[index.row()]]:
+            if role == Qt.ItemDataRole.FontRole:
+                font = QApplication.font()
+                font.setStrikeOut(True)
+                return font
+            if role == Qt.ItemDataRole.ForegroundRole:
+                return QApplication.palette().brush(QPalette.ColorGroup.Disabled, QPalette.ColorRole.Text)
         return None
 
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> Any:  # noqa: N802
@@ -228,10 +249,10 @@ class DataTable(QTableView):
         self._sized = self._spaced = False
         self.selectionModel().currentRowChanged.connect(self._tell)
 
-    def show_columns(self, columns: Sequence[Column]) -> None:
+    def show_columns(self, columns: Sequence[Column], struck: NDArray[np.bool_] | None = None) -> None:
         """Take other data, keep the sorting, and fit the columns to their cells the first time."""
         self._silent = True
-        self.rows.set_columns(columns)
+        self.rows.set_columns(columns, struck)
         self._silent = False
         if columns and not self._sized:
             self.resizeColumnsToContents()
@@ -261,6 +282,11 @@ class DataTable(QTableView):
             self.choose(current)
 
     @property
+    def selected(self) -> list[int]:
+        """The data's indices of all selected rows, as they are sorted."""
+        return [self.rows.source(row) for row in sorted(i.row() for i in self.selectionModel().selectedRows())]
+
+    @property
     def current(self) -> int | None:
         """The data's index of the current row."""
         index = self.currentIndex()
@@ -279,6 +305,19 @@ class DataTable(QTableView):
             self.scrollTo(index, QAbstractItemView.ScrollHint.PositionAtCenter)
         self._silent = False
         return row >= 0
+
+    def select(self, sources: Sequence[int]) -> None:
+        """Select rows, those that are shown, without telling anybody."""
+        rows = [row for row in (self.rows.row_of(source) for source in sources) if row >= 0]
+        if not rows:
+            return
+        self._silent = True
+        chosen = QItemSelection()
+        for row in rows:
+            chosen.select(self.rows.index(row, 0), self.rows.index(row, self.rows.columnCount() - 1))
+        self.setCurrentIndex(self.rows.index(rows[0], 0))
+        self.selectionModel().select(chosen, QItemSelectionModel.SelectionFlag.ClearAndSelect)
+        self._silent = False
 
     def menu(self) -> QMenu:
         """Return the menu of the current row; others put their actions before these."""
@@ -308,7 +347,7 @@ class DataTable(QTableView):
 
     def _ask_where(self) -> None:
         path, _ = QFileDialog.getSaveFileName(
-            self, self.tr("Export as CSV"), "", self.tr("Comma-separated values (*.csv)")
+            self, self.tr("Export as CSV"), Preferences().folder, self.tr("Comma-separated values (*.csv)")
         )
         if path:
             self.export(path if path.lower().endswith(".csv") else f"{path}.csv")

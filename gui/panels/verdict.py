@@ -1,26 +1,30 @@
-"""The verdict: PASS or FAIL with the figures behind it, told by shape and word as well as colour."""
+"""The verdict: a word and three lamps with the figures behind them, told by shape and word as well as colour."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPalette, QPen
-from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QSizePolicy, QWidget
 
 from geofit.data.accuracy import Accuracy
-from geofit.gui.panels.marks import is_dark, paint, readable
+from geofit.data.verdict import Lamp, Level, Verdict, verdict_of
+from geofit.gui.panels.marks import is_dark, level_mark, paint, readable
+from geofit.gui.words import spoken
 from geofit.report.digits import count, given, metres
-from geofit.report.style import FAIL, PASS, QUIET
+from geofit.report.style import FAIL, PASS, QUIET, WARNING
 
-__all__ = ["VerdictBadge"]
+__all__ = ["VerdictBadge", "verdict_word"]
+
+_COLOURS: dict[Level, str] = {"none": QUIET, "pass": PASS, "warning": WARNING, "fail": FAIL}
 
 
 class _Mark(QWidget):
-    """The mark, painted as large as the word beside it."""
+    """A painted mark."""
 
-    def __init__(self) -> None:
+    def __init__(self, size: int) -> None:
         super().__init__()
         self.name = "none"
-        self.setFixedSize(QSize(30, 30))
+        self.setFixedSize(QSize(size, size))
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Paint the mark."""
@@ -31,81 +35,103 @@ class _Mark(QWidget):
 
 
 class VerdictBadge(QFrame):
-    """A badge: disc and tick for PASS, square and cross for FAIL, a hatched frame where the result is stale."""
+    """A badge: the word, then a row a lamp; hatched where the result is stale."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._mark, self._word, self._figures, self._more = _Mark(), QLabel(), QLabel(), QLabel()
-        self._old = QLabel()
+        self._mark, self._word, self._more, self._old = _Mark(26), QLabel(), QLabel(), QLabel()
+        self.lamps = [(_Mark(18), QLabel()) for _ in range(3)]
         font = self._word.font()
-        font.setPointSizeF(font.pointSizeF() * 1.35)
+        font.setPointSizeF(font.pointSizeF() * 1.3)
         font.setBold(True)
         self._word.setFont(font)
-        for label in (self._figures, self._more, self._old):
+        small = self._more.font()
+        small.setPointSizeF(small.pointSizeF() * 0.92)
+        self._more.setFont(small)
+        texts = (*(label for _, label in self.lamps), self._more, self._old)
+        for label in texts:
             label.setWordWrap(True)
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        words = QVBoxLayout()
-        words.setSpacing(2)
-        for label in (self._word, self._figures, self._more, self._old):
-            words.addWidget(label)
         grid = QGridLayout(self)
-        grid.setContentsMargins(12, 8, 8, 8)
-        grid.setHorizontalSpacing(10)
-        grid.addWidget(self._mark, 0, 0, Qt.AlignmentFlag.AlignTop)
-        grid.addLayout(words, 0, 1)
+        grid.setContentsMargins(12, 6, 8, 6)
+        grid.setHorizontalSpacing(8)
+        grid.setVerticalSpacing(3)
+        grid.addWidget(self._mark, 0, 0, Qt.AlignmentFlag.AlignHCenter)
+        grid.addWidget(self._word, 0, 1)
+        for row, (mark, label) in enumerate(self.lamps, 1):
+            grid.addWidget(mark, row, 0, Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignHCenter)
+            grid.addWidget(label, row, 1)
+        grid.addWidget(self._more, 4, 1)
+        grid.addWidget(self._old, 5, 0, 1, 2)
         grid.setColumnStretch(1, 1)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
-        self._passed: bool | None = None
+        self._level: Level = "none"
         self._stale = False
         self.show_accuracy(None, False)
 
     @property
     def text(self) -> str:
         """Everything that the badge says, in lines."""
-        labels = (self._word, self._figures, self._more, self._old)
+        labels = (self._word, *(label for _, label in self.lamps), self._more, self._old)
         return "\n".join(label.text() for label in labels if label.text())
 
-    def show_accuracy(self, accuracy: Accuracy | None, stale: bool = False) -> None:
-        """Show the check of a surface; None while there is none."""
+    def show_accuracy(
+        self, accuracy: Accuracy | None, stale: bool = False, verdict: Verdict | None = None, waiting: bool = False
+    ) -> None:
+        """Show the check of a surface, None while there is none; ``verdict`` has what else is known of it.
+
+        ``waiting`` says that there is a surface, which is still being read or made.
+        """
         self._stale = stale and accuracy is not None
-        self._passed = None if accuracy is None else accuracy.passed
-        self._mark.name = "none" if self._passed is None else "passed" if self._passed else "failed"
+        judged = verdict_of(accuracy) if verdict is None and accuracy is not None else verdict
+        self._level = "none" if judged is None else judged.level
+        self._mark.name = level_mark(self._level)
+        none = self.tr("Reading the surface…") if waiting else self.tr("No surface yet")
+        self._word.setText(none if judged is None else verdict_word(judged))
+        self._show_lamps(() if judged is None else judged.lamps)
         if accuracy is None:
-            self._word.setText(self.tr("No surface yet"))
-            self._figures.setText(self.tr("Press Fit to lay one and check it against ε."))
-            self._more.clear()
-        else:
-            self._word.setText(self.tr("PASS") if accuracy.passed else self.tr("FAIL"))
-            words = (
-                self.tr("σ {sigma} m < ε {epsilon} m") if accuracy.passed else self.tr("σ {sigma} m ≥ ε {epsilon} m")
+            self._more.setText(
+                self.tr("It is part of the project, and its verdict follows in a moment.")
+                if waiting
+                else self.tr("Press Fit to lay one and check it against ε.")
             )
-            self._figures.setText(words.format(sigma=metres(accuracy.sigma), epsilon=given(accuracy.epsilon)))
+            self.setToolTip("")
+        else:
             beyond = " · ".join(
                 self.tr("{count} over {limit}").format(count=count(over.count), limit=f"{given(over.limit)} m")
                 for over in accuracy.over.values()
             )
             most = self.tr("max |d| {most} m of {n} points").format(most=metres(accuracy.max_abs), n=count(accuracy.n))
             self._more.setText(f"{most}\n{beyond}")
+            self.setToolTip(
+                self.tr(
+                    "σ = √(Σ d² / (n − 1)) over all {n} original points, d the orthogonal distance to the surface. "
+                    "FAIL: σ is not below the control error ε. WARNING: it is, but a check fails or the surface is "
+                    "worse away from its data."
+                ).format(n=accuracy.n)
+            )
         self._old.setText(self.tr("Older than the settings: press Fit") if self._stale else "")
-        for label in (self._figures, self._more, self._old):
+        for label in (self._more, self._old):
             label.setVisible(bool(label.text()))
-        self.setToolTip(
-            ""
-            if accuracy is None
-            else self.tr(
-                "σ = √(Σ d² / (n − 1)) over all {n} original points, d the orthogonal distance to the surface; "
-                "the surface passes when σ is below the control error ε."
-            ).format(n=accuracy.n)
-        )
         self.setAccessibleName(self.text.replace("\n", ", "))
         self.update()
+
+    def _show_lamps(self, lamps: tuple[Lamp, ...]) -> None:
+        for k, (mark, label) in enumerate(self.lamps):
+            shown = k < len(lamps)
+            mark.setVisible(shown)
+            label.setVisible(shown)
+            mark.name = level_mark(lamps[k].level) if shown else "none"
+            label.setText(spoken(lamps[k].text) if shown else "")
+            label.setToolTip(spoken(lamps[k].title) if shown else "")
+            mark.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Paint the ground: tinted, barred at the left; hatched where stale."""
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         palette = self.palette()
-        colour = readable(QUIET if self._passed is None else PASS if self._passed else FAIL, palette)
+        colour = readable(_COLOURS[self._level], palette)
         ground = QColor(colour)
         ground.setAlpha(55 if is_dark(palette) else 28)
         box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
@@ -128,3 +154,8 @@ class VerdictBadge(QFrame):
             painter.drawRoundedRect(QRectF(0, 0, 5, self.height()), 2, 2)
         # Not when Python lets go of it: a traceback would hold it beyond the event.
         painter.end()
+
+
+def verdict_word(verdict: Verdict) -> str:
+    """Return the word of a verdict in the language of the windows."""
+    return spoken(verdict.word)

@@ -16,7 +16,7 @@ from geofit.data.settings import FitSettings
 from geofit.gui.view3d.layers import Legend, Swatch
 from geofit.report.style import FAIL, PASS, bands, kind_style
 
-__all__ = ["PointColours", "Ramp", "legible", "plain_points", "points_by", "ramp", "rgb", "seam_colours"]
+__all__ = ["SIZE", "PointColours", "Ramp", "legible", "plain_points", "points_by", "ramp", "rgb", "seam_colours"]
 
 Floats = NDArray[np.float64]
 Bytes = NDArray[np.uint8]

@@ -19,6 +19,7 @@ from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import next_below, seam_lines
 from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, holes_item, sections_item
 from geofit.gui.view3d.stage import Stage
+from geofit.project.listing import Listing
 from geofit.report.style import horizon_colours
 
 __all__ = ["Contents"]
@@ -36,6 +37,13 @@ class Contents:
         self.surfaces: dict[str, HorizonFit] = {}
         self.control: dict[str, list[tuple[str, int, int]]] = {}
         self._drawn: dict[str, Drawn] = {}
+        self._listed: dict[str, Listing] = {}
+
+    def show_listing(self, name: str, listing: Listing) -> None:
+        """Show all points of a horizon, excluded ones as ghosts, with their residuals."""
+        if self._listed.get(name) is not listing:
+            self._listed[name] = listing
+            self._show_points(name)
 
     def show_site(self, site: Site) -> None:
         """Show a site in place of the one before; surfaces of horizons that it does not have are removed."""
@@ -119,12 +127,13 @@ class Contents:
             self._show_points(name)
         else:
             self.points.pop(name, None)
+            self._listed.pop(name, None)
             self.stage.layers.remove(f"points:{name}")
 
     def clear(self) -> None:
         """Take everything away."""
         self.site = None
-        for known in (self.points, self.surfaces, self._drawn, self.control):
+        for known in (self.points, self.surfaces, self._drawn, self.control, self._listed):
             known.clear()
         self.stage.layers.clear()
 
@@ -179,7 +188,9 @@ class Contents:
 
     def residuals(self, name: str) -> Floats | None:
         """Return the residuals of a horizon's points, None where it has no checked surface of these points."""
-        surface = self.surfaces.get(name)
+        listed, surface = self._listed.get(name), self.surfaces.get(name)
+        if listed is not None and listed.points is self.points.get(name):
+            return listed.residual if np.isfinite(listed.residual).any() else None
         accuracy = surface.accuracy if surface is not None else None
         if accuracy is None or len(accuracy.residuals) != len(self.points[name]):
             return None
@@ -202,18 +213,21 @@ class Contents:
         return float(known[:, 2].max()) if len(known) else 0.0
 
     def _show_points(self, name: str) -> None:
-        points = self.points[name]
+        listed = self._listed.get(name)
+        points = self.points[name] if listed is None else listed.points
+        self.points[name] = points
         if not len(points):
             self.stage.layers.remove(f"points:{name}")
             return
         surface = self.surfaces.get(name)
-        if surface is not None and len(surface.points) == len(points):
+        if listed is None and surface is not None and len(surface.points) == len(points):
             points = self.points[name] = surface.points
         residuals = self.residuals(name)
         settings = surface.settings if surface is not None else FitSettings()
         choices = ("kind", *(("deviation",) if residuals is not None else ()), "elevation", "plain")
         layer = Layer(f"points:{name}", "points", name, self.colour(name), choices=choices, colour_by="kind")
-        self.stage.show(layer, lambda a, b: points_item(points, residuals, settings, a, b))
+        excluded = None if listed is None else listed.excluded
+        self.stage.show(layer, lambda a, b: points_item(points, residuals, settings, a, b, excluded))
 
     def _values(self, name: str, by: str) -> tuple[Floats, Floats] | None:
         """Return what a surface is coloured by, at the vertices of its fine and coarse triangles."""

@@ -17,7 +17,7 @@ from geofit.data.prediction import Suggestion
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.actors import Part, coloured, dots, lines, poly, ramped, shaded, triangles
-from geofit.gui.view3d.colouring import PointColours, points_by, ramp, rgb, seam_colours
+from geofit.gui.view3d.colouring import SIZE, PointColours, points_by, ramp, rgb, seam_colours
 from geofit.gui.view3d.item import Item, Look, extent
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import Shape
@@ -30,17 +30,34 @@ Floats = NDArray[np.float64]
 #: More points than BALLS are drawn flat and small, more than THIN thinned while the picture moves.
 BALLS, THIN = 20_000, 10_000
 SMALL = 2.0
+#: Colour by day and by night, and opacity, of points that take no part in the fit.
+GHOST, GHOSTLY = ("#5d6b7a", "#b9c4cf"), 0.3
 #: Diameter of a control point, logical pixels.
 CONTROL = 2.5
 #: Every so many isolines one is thicker.
 MAJOR = 5
 
 
-def points_item(points: PointSet, residuals: Floats | None, settings: FitSettings, layer: Layer, look: Look) -> Item:
-    """Points of a horizon, coloured as the layer says."""
+def points_item(
+    points: PointSet,
+    residuals: Floats | None,
+    settings: FitSettings,
+    layer: Layer,
+    look: Look,
+    excluded: NDArray[np.bool_] | None = None,
+) -> Item:
+    """Points of a horizon, coloured as the layer says; those of excluded rows are ghosts."""
     made = points_by(layer.colour_by, points, layer.colour, residuals, settings, look.dark)
     many = len(points) > BALLS
-    parts = [p for size in np.unique(made.size) for p in _cloud(points.xyz, made, made.size == size, many, look)]
+    used = np.ones(len(points), bool) if excluded is None else ~excluded
+    parts = [
+        part
+        for size in np.unique(made.size[used])
+        for part in _cloud(points.xyz, made, used & (made.size == size), many, look)
+    ]
+    if not used.all():
+        ghosts = dots(poly(points.xyz[~used] - look.origin), GHOST[look.dark], balls=not many)
+        parts.append(Part(ghosts, size=SIZE, opacity=GHOSTLY))
     return Item(parts, extent(points.xyz), targets=points.xyz, legend=made.legend)
 
 

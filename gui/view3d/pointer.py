@@ -19,6 +19,7 @@ from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, Measure
 from geofit.gui.view3d.words import word
 from geofit.gui.words import spoken
+from geofit.project.provenance import Row
 
 __all__ = ["Pointer"]
 
@@ -35,7 +36,7 @@ def _nothing() -> Ring | None:
 class Pointer(QObject):
     """Listens to the canvas's mouse; ``changed`` tells that the ring or the measure is another one."""
 
-    point_picked = Signal(str, int)
+    point_picked = Signal(str, object)
     control_picked = Signal(str, str, int, int)
     hole_picked = Signal(str)
     moved = Signal(float, float, float)
@@ -67,9 +68,9 @@ class Pointer(QObject):
         hit = self._sights.first(self._stage.items(), self._canvas.projector(), column, row, self._clip.box)
         return None if hit is None else hit.xyz
 
-    def choose(self, horizon: str, index: int | None) -> None:
-        """Put a ring about a point; None takes it away."""
-        self._about = _nothing if index is None else partial(self._about_point, horizon, int(index))
+    def choose(self, horizon: str, row: Row | None) -> None:
+        """Put a ring about a point; it stays there when other rows come or go. None takes it away."""
+        self._about = _nothing if row is None else partial(self._about_point, horizon, row)
         self.renew()
 
     def choose_control(self, horizon: str, patch: str, i: int, j: int) -> None:
@@ -93,14 +94,15 @@ class Pointer(QObject):
         self.ring = self._about()
         self.changed.emit()
 
-    def _about_point(self, horizon: str, index: int) -> Ring | None:
+    def _about_point(self, horizon: str, row: Row) -> Ring | None:
         points = self._contents.points.get(horizon)
-        if points is None or index >= len(points):
+        index = None if points is None else row.find(points)
+        if points is None or index is None:
             return None
         residuals = self._contents.residuals(horizon)
         where = points.hole[index] or points.section[index]
         text = f"{word(str(points.kind[index]))} {where}".strip() + f" · {points.xyz[index, 2]:.2f} m"
-        if residuals is not None:
+        if residuals is not None and np.isfinite(residuals[index]):
             text += f" · d {residuals[index]:+.3f} m".replace("-", "−")
         return Ring(points.xyz[index], text)
 
@@ -137,8 +139,9 @@ class Pointer(QObject):
         elif hit is None:
             return
         elif hit.layer.kind == "points":
-            self.choose(hit.layer.horizon, hit.which)
-            self.point_picked.emit(hit.layer.horizon, hit.which)
+            row = Row.of(self._contents.points[hit.layer.horizon], int(hit.which))
+            self.choose(hit.layer.horizon, row)
+            self.point_picked.emit(hit.layer.horizon, row)
         elif hit.layer.kind == "control":
             patch, i, j = self._contents.control[hit.layer.horizon][hit.which]
             self.choose_control(hit.layer.horizon, patch, i, j)

@@ -32,6 +32,8 @@ from geofit.gui.view3d.shoot import shoot
 from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, SectionPlane
 from geofit.gui.view3d.writing import Writing, theme_of
+from geofit.project.listing import Listing
+from geofit.project.provenance import Row
 from geofit.sampling.cut import section_line
 
 __all__ = ["SceneView"]
@@ -51,7 +53,7 @@ class SceneView(QWidget):
 
     Call :meth:`close` before the window that holds it is destroyed: it stops the timers and frees OpenGL's memory.
 
-    Signals: ``point_picked(horizon, index)``, ``control_picked(horizon, patch, i, j)``, ``hole_picked(name)``,
+    Signals: ``point_picked(horizon, row)``, ``control_picked(horizon, patch, i, j)``, ``hole_picked(name)``,
     ``pointer_moved(x, y, z)`` (nan off every surface), ``measured(text)``, ``section_changed(line)`` with a (k, 2)
     array.
 
@@ -61,7 +63,7 @@ class SceneView(QWidget):
         If no 3D view can be drawn on this machine.
     """
 
-    point_picked = Signal(str, int)
+    point_picked = Signal(str, object)
     control_picked = Signal(str, str, int, int)
     hole_picked = Signal(str)
     pointer_moved = Signal(float, float, float)
@@ -111,6 +113,11 @@ class SceneView(QWidget):
         """Show a site in place of the one before; what a person has chosen for its layers is kept."""
         self.contents.show_site(site)
         self._placed()
+
+    def show_listing(self, name: str, listing: Listing) -> None:
+        """Show all points of a horizon, excluded ones as ghosts, with their residuals."""
+        self.contents.show_listing(name, listing)
+        self.pointer.renew()
 
     def show_surface(
         self, surface: HorizonFit, uncertainty: Uncertainty | None = None, drawn: Drawn | None = None
@@ -194,10 +201,13 @@ class SceneView(QWidget):
             self._clip_moved()
         canvas.look(eye)
 
-    def focus_point(self, horizon: str, index: int) -> None:
+    def focus_point(self, horizon: str, row: Row) -> None:
         """Choose a point and move the eye to it, keeping the direction."""
-        self.highlight_point(horizon, index)
-        self._focus(self.contents.points[horizon].xyz[index])
+        self.highlight_point(horizon, row)
+        points = self.contents.points[horizon]
+        index = row.find(points)
+        if index is not None:
+            self._focus(points.xyz[index])
 
     def focus_hole(self, name: str) -> None:
         """Move the eye to the middle of a borehole or adit, keeping the direction."""
@@ -211,9 +221,9 @@ class SceneView(QWidget):
         """Move the eye to a place, keeping the direction."""
         self._focus(np.array([x, y, z]))
 
-    def highlight_point(self, horizon: str, index: int | None) -> None:
+    def highlight_point(self, horizon: str, row: Row | None) -> None:
         """Put a ring and its figures about a point; None takes it away."""
-        self.pointer.choose(horizon, index)
+        self.pointer.choose(horizon, row)
 
     def highlight_control(self, horizon: str, patch: str, i: int, j: int) -> None:
         """Put a mark and its elevation on a control point."""

@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt
 
 from geofit.fitting.edit import acted_on, adjust, support
 from geofit.gui.panels.adjust import AdjustPanel
+from geofit.project.provenance import Row
 
 
 @pytest.fixture
@@ -138,7 +139,7 @@ def test_a_data_point_is_pulled_by_a_share(panel, qtbot):
         panel.point.share.setValue(50)
     with qtbot.waitSignal(panel.pull_requested) as told:
         click(qtbot, panel.apply_button)
-    assert told.args == [worst, 0.5]
+    assert told.args == [Row.of(surface.points, worst), 0.5]
     exact = int(np.flatnonzero(surface.core)[0])
     panel.choose_point(exact)
     assert "meets this point already" in panel.point.about.text()

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QApplication
 
 from geofit.data.accuracy import Check, Conflict, ReadBack
 from geofit.gui.panels.checks import ChecksPanel
+from geofit.project.provenance import Row
 from geofit.site.order import Order
 
 
@@ -61,7 +62,7 @@ def test_a_conflict_leads_to_its_point(panel, qtbot):
     assert "gave way" in row.text(4)
     with qtbot.waitSignal(panel.point_chosen) as told:
         panel.tree.setCurrentItem(row)
-    assert told.args == [9]
+    assert told.args == [Row.of(fitted().points, 9)]
 
 
 def test_a_check_with_a_place_leads_there(panel, qtbot):

@@ -143,7 +143,7 @@ def test_05_the_scene_list_hides_fades_colours_and_zooms(shown):
 
 
 def test_06_settings_that_were_applied_make_the_result_stale(shown):
-    shown.window.fitting.set_settings(NAME, replace(shown.document.settings(NAME), epsilon=0.3))
+    shown.window.fitting.set_settings(NAME, replace(shown.document.settings(NAME), interior_tolerance=0.3))
     shown.idle()
     assert shown.document.stale(NAME)
     assert "settings" in str(shown.panels.verdict.text).lower()
@@ -154,7 +154,7 @@ def test_06_settings_that_were_applied_make_the_result_stale(shown):
 
 def test_07_work_tells_its_stages_and_can_be_stopped(shown, qtbot):
     document, bar = shown.document, shown.window.bar
-    shown.window.fitting.set_settings(NAME, replace(document.settings(NAME), epsilon=0.3))
+    shown.window.fitting.set_settings(NAME, replace(document.settings(NAME), interior_tolerance=0.3))
     shown.window.fitting.fit(NAME)
     assert bar.progress.isVisible()
     assert shown.window.actions_["stop"].isEnabled()
@@ -170,7 +170,7 @@ def test_08_table_and_view_choose_the_same_point(shown, qtbot):
     click(shown.view, place)
     assert shown.window.selecting.index() == index
     worst = fitted().accuracy.worst[0]
-    shown.panels.residuals.point_chosen.emit(worst)
+    shown.panels.residuals.point_chosen.emit(_row(shown, worst))
     assert shown.window.selecting.index() == worst
     assert f"{fitted().points.xyz[worst, 2]:.2f} m" in str(shown.view.pointer.ring.text)
 
@@ -190,7 +190,7 @@ def test_09_the_badge_and_the_bands_say_what_the_check_says(shown):
 def test_10_every_change_has_a_name_and_can_be_undone(shown):
     stack, first = shown.window.session.stack, shown.document.state
     shown.window.fitting.set_core(NAME, "none")
-    shown.window.fitting.exclude(NAME, _row(shown, 3))
+    shown.window.fitting.exclude(NAME, [_row(shown, 3)])
     assert stack.undoText() == f"Exclude {fitted().points.file[3]} row {fitted().points.row[3]} from {NAME}"
     stack.undo()
     assert stack.undoText() == f"Core of {NAME}"

@@ -7,6 +7,7 @@ from panel_samples import fitted, off_data
 from PySide6.QtCore import Qt
 
 from geofit.gui.panels.offdata import OffDataPanel
+from geofit.project.provenance import Row
 
 
 @pytest.fixture
@@ -57,7 +58,7 @@ def test_an_outlier_leads_to_its_point_even_when_sorted(panel, qtbot):
     assert panel.outliers.rows.columns[0].text(0) == str(points.describe(7))
     with qtbot.waitSignal(panel.point_chosen) as told:
         panel.outliers.selectRow(0)
-    assert told.args == [3]
+    assert told.args == [Row.of(points, 3)]
     with qtbot.assertNotEmitted(panel.point_chosen):
         panel.choose_point(7)
     assert panel.outliers.current == 0

@@ -13,7 +13,7 @@ from geofit import FitSettings
 from geofit.data.site import Orientations
 from geofit.io.project import open_project
 from geofit.project.building import make
-from geofit.project.commands import ExcludeRow, IncludeRow, PartAtFaults, SetSettings, SetSurface
+from geofit.project.commands import ExcludeRows, IncludeRows, PartAtFaults, SetSettings, SetSurface
 from geofit.project.document import Document
 from geofit.project.fault_blocks import measured, part_at_faults
 from geofit.project.ordering import comparable
@@ -103,7 +103,7 @@ def test_a_block_is_as_old_as_its_fault_and_its_site(parted):
     document.become(parted.state)
     assert not document.stale("T2 (A)")
     assert not document.unparted("T2 (A)")
-    other = SetSettings("F1", FitSettings(frame="best-plane", epsilon=0.2))
+    other = SetSettings("F1", FitSettings(frame="best-plane", interior_tolerance=0.2))
     other.redo(document)
     assert document.unparted("T2 (A)")
     assert document.stale("T2 (A)")
@@ -120,14 +120,14 @@ def test_excluded_rows_stay_excluded_however_the_horizon_is_parted_and_can_be_in
     document = opened()
     points = document.points("T2")
     first, second = Row.of(points, 3), Row.of(points, 40)
-    ExcludeRow("T2", first).redo(document)
+    ExcludeRows("T2", (first,)).redo(document)
     PartAtFaults("T2", dict(part(document).blocks)).redo(document)
     assert rows(document) == rows_of(points) - {first}
     home = next(name for name in BLOCKS if first.find(document.site.horizons[name]) is not None)
-    ExcludeRow("T2 (A)", second).redo(document)
+    ExcludeRows("T2 (A)", (second,)).redo(document)
     PartAtFaults("T2", dict(part(document).blocks)).redo(document)
     assert rows(document) == rows_of(points) - {first, second}
-    IncludeRow(home, first).redo(document)
+    IncludeRows(home, (first,)).redo(document)
     assert rows(document) == rows_of(points) - {second}
 
 
@@ -145,7 +145,7 @@ def test_excluded_rows_that_lie_in_no_block_are_told():
     points = document.points("T2")
     between = np.flatnonzero((off(*points.xyz.T) < 0) & (off(*(points.xyz - (300.0, 0, 0)).T) > 0))
     for index in between:
-        ExcludeRow("T2", Row.of(points, int(index))).redo(document)
+        ExcludeRows("T2", (Row.of(points, int(index)),)).redo(document)
     found = part(document)
     assert len(found.blocks) == 2
     (note,) = (note for note in found.notes if "in no block" in str(note))
@@ -232,7 +232,7 @@ def test_fit_all_parts_fits_and_measures(app, caplog):
     # By hand a block is changed as any horizon is.
     document.select("T2 (B)")
     before = document.surface("T2 (B)")
-    app.window.fitting.pull("T2 (B)", before.accuracy.worst[0], 1.0)
+    app.window.fitting.pull("T2 (B)", Row.of(before.points, before.accuracy.worst[0]), 1.0)
     app.idle()
     after = document.surface("T2 (B)")
     assert after is not before

@@ -12,6 +12,8 @@ from PySide6.QtCore import QItemSelectionModel, Qt
 from PySide6.QtWidgets import QApplication
 
 from geofit.gui.panels.residuals import ResidualTable
+from geofit.project.listing import listing as list_points
+from geofit.project.provenance import Row
 
 DISTANCE, HOLE = 1, 3
 
@@ -47,14 +49,14 @@ def test_going_to_a_row_tells_its_point(panel, qtbot):
     panel.show_surface(fitted())
     with qtbot.waitSignal(panel.point_chosen) as told:
         panel.table.selectRow(2)
-    assert told.args == [fitted().accuracy.worst[2]]
+    assert told.args == [Row.of(fitted().points, fitted().accuracy.worst[2])]
 
 
 def test_choosing_a_point_selects_its_row_and_tells_nobody(panel, qtbot):
     panel.show_surface(fitted())
     with qtbot.assertNotEmitted(panel.point_chosen):
-        panel.choose(200)
-        panel.choose(200)
+        panel.choose(Row.of(fitted().points, 200))
+        panel.choose(Row.of(fitted().points, 200))
     assert panel.table.current == 200
     assert panel.table.rows.source(panel.table.selectionModel().selectedRows()[0].row()) == 200
     top, bottom = panel.table.rowAt(0), panel.table.rowAt(panel.table.viewport().height() - 1)
@@ -63,7 +65,7 @@ def test_choosing_a_point_selects_its_row_and_tells_nobody(panel, qtbot):
 
 def test_sorting_keeps_the_chosen_point(panel):
     panel.show_surface(fitted())
-    panel.choose(123)
+    panel.choose(Row.of(panel._shown.listing.points, 123))
     panel.table.sortByColumn(HOLE, Qt.SortOrder.AscendingOrder)
     assert panel.table.current == 123
 
@@ -92,7 +94,7 @@ def test_a_point_that_the_filter_hides_is_said_to_be_hidden(panel, qtbot):
     panel.search.setText("ZK99")
     qtbot.waitUntil(lambda: panel.table.rows.rowCount() == 1)
     assert panel.count.text() == "Points: 1 of 100"
-    panel.choose(4)
+    panel.choose(Row.of(panel._shown.listing.points, 4))
     assert "hidden" in panel.count.text()
     assert panel.table.current is None
 
@@ -125,7 +127,7 @@ def test_export_writes_every_row_that_is_shown(panel, tmp_path):
 
 def test_the_menu_excludes_and_pulls(panel, qtbot):
     panel.show_surface(fitted())
-    panel.choose(17)
+    panel.choose(Row.of(fitted().points, 17))
     menu = panel.table.menu()
     words = [action.text() for action in menu.actions() if action.text()]
     assert len(words) == 4
@@ -133,7 +135,32 @@ def test_the_menu_excludes_and_pulls(panel, qtbot):
         menu.actions()[0].trigger()
     with qtbot.waitSignal(panel.pull_requested) as pulled:
         menu.actions()[1].trigger()
-    assert excluded.args == pulled.args == [17]
+    row = Row.of(fitted().points, 17)
+    assert excluded.args == [(row,)]
+    assert pulled.args == [row]
+
+
+def test_all_selected_rows_are_excluded_then_struck_listed_and_still_selected(panel, qtbot):
+    surface = fitted()
+    panel.show_surface(surface, list_points(surface.points, (), surface))
+    panel.table.select([3, 8, 21])
+    with qtbot.waitSignal(panel.exclude_requested) as excluded:
+        panel.table.menu().actions()[0].trigger()
+    rows = excluded.args[0]
+    assert {row.find(surface.points) for row in rows} == {3, 8, 21}
+    panel.show_surface(surface, list_points(surface.points, frozenset(rows), surface))
+    assert set(panel.chosen_rows()) == set(rows)
+    assert "excluded: 3" in str(panel.count.text())
+    panel.only_excluded.setChecked(True)
+    assert panel.table.rows.rowCount() == 3
+    index = panel.table.rows.index(0, 0)
+    assert panel.table.rows.data(index, Qt.ItemDataRole.FontRole).strikeOut()
+    assert panel.table.rows.data(index, Qt.ItemDataRole.ForegroundRole) is not None
+    panel.only_excluded.setChecked(False)
+    panel.table.select([5])
+    assert panel.table.rows.data(panel.table.currentIndex(), Qt.ItemDataRole.FontRole) is None
+    panel.table.select([3, 8])
+    assert "again" in str(panel.table.menu().actions()[0].text())
 
 
 def test_a_hundred_thousand_rows_are_sorted_as_arrays(panel, monkeypatch):

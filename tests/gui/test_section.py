@@ -273,7 +273,8 @@ def test_a_clicked_point_is_told(panel, qtbot):
     with qtbot.waitSignal(panel.point_chosen) as told:
         qtbot.mouseClick(panel.canvas, Qt.MouseButton.LeftButton, pos=place)
     name, found = told.args
-    xyz = sample_site().horizons[name].xyz[found]
+    points = sample_site().horizons[name]
+    xyz = points.xyz[found.find(points)]
     along, _ = panel._data.curtain.project(xyz[None, :2])
     assert np.hypot(*(panel.canvas.figure.axes[0].transData.transform([along[0], xyz[2]]) - [x, y])) < 8
 

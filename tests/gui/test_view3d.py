@@ -23,6 +23,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.site import Ground, Hole, Orientations, Section, Site
 from geofit.gui.view3d.colouring import rgb
+from geofit.project.provenance import Row
 from geofit.report.style import HORIZONS
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
@@ -167,7 +168,7 @@ def test_clicking_a_point_picks_it_and_rings_it(shown, qtbot, index):
     point = shown.contents.points["W"].xyz[index]
     with qtbot.waitSignal(shown.point_picked, timeout=2000) as told:
         click(shown, *drawn_at(shown, point))
-    assert told.args == ["W", index]
+    assert told.args == ["W", Row.of(shown.contents.points["W"], index)]
     assert f"{point[2]:.2f} m" in str(shown.pointer.ring.text)
     assert f"d {shown.contents.surfaces['W'].accuracy.residuals[index]:+.3f} m".replace("-", "−") in str(
         shown.pointer.ring.text
@@ -185,7 +186,7 @@ def test_of_two_points_in_line_the_one_in_front_is_picked(view, qtbot):
     settle(view, qtbot)
     with qtbot.waitSignal(view.point_picked, timeout=2000) as told:
         click(view, *drawn_at(view, points.xyz[0]))
-    assert told.args == ["W", 1]
+    assert told.args == ["W", Row.of(points, 1)]
 
 
 def test_clicking_a_hole_picks_it(shown, qtbot):
@@ -220,7 +221,7 @@ def test_the_mark_of_a_control_point_follows_the_surface(shown):
 
 
 def test_letting_go_of_a_control_point_leaves_other_rings(shown):
-    shown.highlight_point("W", 1)
+    shown.highlight_point("W", Row.of(shown.contents.points["W"], 1))
     shown.set_control_points("W")
     shown.set_control_points(None)
     assert shown.pointer.ring is not None
@@ -286,7 +287,7 @@ def test_measuring_gives_true_metres_under_exaggeration(shown, qtbot):
 
 def test_a_chosen_point_comes_to_the_middle_seen_from_the_same_side(shown, qtbot):
     before = shown.canvas.eye
-    shown.focus_point("W", 2)
+    shown.focus_point("W", Row.of(shown.contents.points["W"], 2))
     settle(shown, qtbot)
     np.testing.assert_allclose(drawn_at(shown, shown.contents.points["W"].xyz[2]), (320, 240), atol=0.5)
     assert (shown.canvas.eye.azimuth, shown.canvas.eye.height) == (before.azimuth, before.height)

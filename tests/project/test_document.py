@@ -20,8 +20,8 @@ from geofit.project.commands import (
     COMMANDS,
     AdjustControlPoint,
     ChangeWeight,
-    ExcludeRow,
-    IncludeRow,
+    ExcludeRows,
+    IncludeRows,
     PartAtFaults,
     PullToPoint,
     PushApart,
@@ -102,11 +102,11 @@ commands = st.one_of(
         PartAtFaults, st.just("low"), st.dictionaries(st.sampled_from(["low (A)", "low (B)"]), block, min_size=1)
     ),
     st.builds(SetSettings, st.just("low (A)"), settings_),
-    st.builds(ExcludeRow, st.just("low (A)"), rows),
+    st.builds(ExcludeRows, st.just("low (A)"), st.tuples(rows)),
     st.builds(SetSettings, st.just("low"), settings_),
     st.builds(SetCore, st.just("low"), cores),
-    st.builds(ExcludeRow, st.just("low"), rows),
-    st.builds(IncludeRow, st.just("low"), rows),
+    st.builds(ExcludeRows, st.just("low"), st.tuples(rows)),
+    st.builds(IncludeRows, st.just("low"), st.tuples(rows)),
     st.builds(SetSurface, recipes),
     st.builds(AdjustControlPoint, st.just("low"), st.text(max_size=4), st.integers(), st.integers(), numbers),
     st.builds(ChangeWeight, st.just("low"), st.text(max_size=4), st.integers(), st.integers(), st.floats(0.01, 100)),
@@ -152,8 +152,8 @@ def test_every_command_is_told_in_words_that_can_be_translated():
 
     recipe = document().recipe("low")
     samples = [
-        SetSettings("low", FitSettings()), SetCore("low", "all"), ExcludeRow("low", Row("a", 1)),
-        IncludeRow("low", Row("a", 1)), SetSurface(recipe), AdjustControlPoint("low", "core", 1, 2, 0.5),
+        SetSettings("low", FitSettings()), SetCore("low", "all"), ExcludeRows("low", (Row("a", 1),)),
+        IncludeRows("low", (Row("a", 1),)), SetSurface(recipe), AdjustControlPoint("low", "core", 1, 2, 0.5),
         ChangeWeight("low", "core", 1, 2, 0.5), PushApart(("low",), ("up", "low"), 0.5),
         PartAtFaults("low", {"low (A)": Part("low", "", (recipe,), (1,), "0-9", ())}),
         PullToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
@@ -182,7 +182,7 @@ def test_excluded_rows_take_no_part():
     opened = document()
     heard = []
     opened.points_changed.connect(heard.append)
-    command = ExcludeRow("low", Row("a.csv", 4, 1))
+    command = ExcludeRows("low", (Row("a.csv", 4, 1),))
     command.redo(opened)
     assert heard == ["low"]
     assert len(opened.points("low")) == 35
@@ -190,10 +190,10 @@ def test_excluded_rows_take_no_part():
     assert opened.site_in_use().horizons["low"] is opened.points("low")
     assert opened.site_in_use() is opened.site_in_use()
     with pytest.raises(DocumentError, match="already"):
-        ExcludeRow("low", Row("a.csv", 4, 1)).redo(opened)
+        ExcludeRows("low", (Row("a.csv", 4, 1),)).redo(opened)
     with pytest.raises(DocumentError, match=r"no horizon 'mid'.*up, low"):
-        ExcludeRow("mid", Row("a.csv", 4, 1)).redo(opened)
-    IncludeRow("low", Row("a.csv", 4, 1)).redo(opened)
+        ExcludeRows("mid", (Row("a.csv", 4, 1),)).redo(opened)
+    IncludeRows("low", (Row("a.csv", 4, 1),)).redo(opened)
     assert len(opened.points("low")) == 36
 
 
@@ -208,7 +208,7 @@ def test_results_go_stale_and_come_back():
     assert opened.surface("low") is surface
     assert not opened.stale("low")
     assert opened.dirty
-    other = SetSettings("low", FitSettings(epsilon=0.1))
+    other = SetSettings("low", FitSettings(interior_tolerance=0.2))
     other.redo(opened)
     assert opened.stale("low")
     other.undo(opened)

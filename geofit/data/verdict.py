@@ -1,0 +1,167 @@
+"""The verdict on a surface: three lamps (at the data, checks, away from the data) and the word that follows from them.
+
+Windows, console, STEP export and reports show what :func:`verdict_of` returns, so that they agree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from geofit.data.accuracy import Accuracy, Check, ReadBack
+from geofit.data.messages import Message, message
+from geofit.data.prediction import LeftOut, OffData
+
+__all__ = ["FAR", "LEAST_INSIDE", "Lamp", "Level", "Verdict", "verdict_of"]
+
+Level = Literal["none", "pass", "warning", "fail"]
+
+#: Share of left-out points that the 90 % band must contain, by the worst scheme; a wider band is no fault.
+LEAST_INSIDE = 0.85
+#: A left-out error from this many epsilons on turns the lamp red; above one epsilon it is amber.
+FAR = 10.0
+_WORDS: dict[Level, str] = {"none": "–", "pass": "PASS", "warning": "WARNING", "fail": "FAIL"}
+_ORDER: tuple[Level, ...] = ("none", "pass", "warning", "fail")
+_SCHEMES = {
+    "hole": message("verdict.holes", "holes left out"),
+    "section": message("verdict.sections", "sections left out"),
+    "block": message("verdict.blocks", "blocks left out"),
+}
+
+
+@dataclass(frozen=True)
+class Lamp:
+    """One of the three: what it is about, its level, and the figures behind it."""
+
+    title: Message
+    level: Level
+    text: Message
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Three lamps: ``data`` (sigma against epsilon), ``checks`` (n of m), ``away`` (left-out error, band coverage).
+
+    ``level`` is "fail" where sigma is not below epsilon, "warning" where it is and another lamp is amber or red,
+    "pass" where no lamp is; ``word`` is PASS, WARNING or FAIL. A lamp that was not examined does not count.
+    """
+
+    data: Lamp
+    checks: Lamp
+    away: Lamp
+
+    @property
+    def lamps(self) -> tuple[Lamp, Lamp, Lamp]:
+        """The lamps in their order."""
+        return self.data, self.checks, self.away
+
+    @property
+    def level(self) -> Level:
+        """What the lamps come to."""
+        if self.data.level != "pass":
+            return self.data.level
+        return "warning" if {"warning", "fail"} & {self.checks.level, self.away.level} else "pass"
+
+    @property
+    def word(self) -> str:
+        """PASS, WARNING or FAIL."""
+        return _WORDS[self.level]
+
+    @property
+    def text(self) -> Message:
+        """Everything in one sentence, the lamps that are not green first."""
+        worst = sorted(self.lamps, key=lambda lamp: -_ORDER.index(lamp.level))
+        return message("verdict.sentence", "{word}: {lamps}", word=self.word, lamps=tuple(lamp.text for lamp in worst))
+
+
+def verdict_of(
+    accuracy: Accuracy,
+    offdata: OffData | None = None,
+    read_back: ReadBack | None = None,
+    orders: Iterable[Check] = (),
+) -> Verdict:
+    """Return the verdict on a surface from all that is known of it.
+
+    Parameters
+    ----------
+    accuracy : Accuracy
+        Sigma, epsilon (m) and the checks of the surface.
+    offdata : OffData or None
+        Left-out errors; None: not examined.
+    read_back : ReadBack or None
+        The checks of the file, where one was written.
+    orders : iterable of Check
+        How the horizon lies to its neighbours.
+    """
+    checks = (*accuracy.checks, *(read_back.checks if read_back else ()), *orders)
+    return Verdict(_at_the_data(accuracy), _checks(checks), _away(offdata, accuracy.epsilon))
+
+
+def _at_the_data(a: Accuracy) -> Lamp:
+    figures = {"sigma": a.sigma, "epsilon": a.epsilon}
+    if a.passed:
+        text = message("verdict.below", "σ {sigma:#.3g} m < ε {epsilon:g} m", **figures)
+    elif a.sigma < a.epsilon:
+        text = message(
+            "verdict.runs-away",
+            "σ {sigma:#.3g} m < ε {epsilon:g} m, but the surface runs far beyond the elevations of its data",
+            **figures,
+        )
+    else:
+        text = message("verdict.not-below", "σ {sigma:#.3g} m ≥ ε {epsilon:g} m", **figures)
+    return Lamp(message("verdict.data", "At the data"), "pass" if a.passed else "fail", text)
+
+
+def _checks(checks: Sequence[Check]) -> Lamp:
+    title = message("verdict.checks", "Checks")
+    asked = [check for check in checks if check.passed is not None]
+    failed = tuple(dict.fromkeys(check.name for check in asked if not check.passed))
+    if not asked:
+        return Lamp(title, "none", message("verdict.no-checks", "no check applies"))
+    figures = {"passed": sum(bool(check.passed) for check in asked), "total": len(asked)}
+    if failed:
+        text = message("verdict.failed", "{passed} of {total} checks pass; failed: {names}", names=failed, **figures)
+        return Lamp(title, "warning", text)
+    return Lamp(title, "pass", message("verdict.passed", "{passed} of {total} checks pass", **figures))
+
+
+def _away(offdata: OffData | None, epsilon: float) -> Lamp:
+    title = message("verdict.away", "Away from the data")
+    known = () if offdata is None else tuple(one for one in offdata.left_out if np.isfinite(one.rms))
+    if not known:
+        text = message("verdict.not-examined", "not examined away from the data")
+        if offdata is not None:
+            text = message("verdict.cannot-examine", "the error away from the data cannot be estimated")
+        return Lamp(title, "none", text)
+    farthest = max(known, key=lambda one: one.rms)
+    ratio = farthest.rms / epsilon
+    level: Level = "pass" if ratio <= 1 else "warning" if ratio < FAR else "fail"
+    error = message(
+        "verdict.left-out-error",
+        "left-out error {error:#.3g} m = {ratio:.1f} ε ({scheme})",
+        error=farthest.rms,
+        ratio=ratio,
+        scheme=_SCHEMES[farthest.scheme],
+    )
+    worst = _least_inside(known)
+    if worst is None:
+        return Lamp(title, level, error)
+    if round(worst.inside, 2) < LEAST_INSIDE and level == "pass":
+        level = "warning"
+    text = message(
+        "verdict.left-out",
+        "{error}; the 90 % band contains {share:.0%} ({scheme})",
+        error=error,
+        share=worst.inside,
+        scheme=_SCHEMES[worst.scheme],
+    )
+    return Lamp(title, level, text)
+
+
+def _least_inside(known: Sequence[LeftOut]) -> LeftOut | None:
+    """Return the scheme whose left-out points lie least often inside the band."""
+    covered = [one for one in known if np.isfinite(one.inside)]
+    return min(covered, key=lambda one: one.inside, default=None)

@@ -1,0 +1,77 @@
+"""One verdict from three lamps: at the data, checks, away from the data."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from geofit.data.accuracy import Accuracy, Check
+from geofit.data.messages import message
+from geofit.data.prediction import LeftOut, OffData
+from geofit.data.verdict import verdict_of
+
+EPSILON = 0.5
+TEXT = message("test.text", "as asked")
+GOOD, BAD = Check("trend", True, 1.0, 2.0, "m", TEXT), Check("trend", False, 3.0, 2.0, "m", TEXT)
+SILENT = Check("order", None, 0.0, 0.0, "m", TEXT)
+
+
+def accuracy(sigma=0.03, checks=(GOOD, SILENT)):
+    return Accuracy(
+        n=9, sigma=sigma, epsilon=EPSILON, passed=sigma < EPSILON, max_abs=0.1, mean=0.0, residuals=np.zeros(9),
+        patch=np.full(9, "core"), by_patch={}, by_kind={}, by_hole={}, by_section={}, over={}, worst=(),
+        checks=tuple(checks),
+    )  # fmt: skip
+
+
+def off_data(rms=0.2, inside=0.9, others=()):
+    def one(scheme, rms, inside):
+        return LeftOut(scheme, 5, np.full(9, ""), np.zeros(9), np.ones(9), rms, rms, 0.0, 2 * rms, inside, inside, {})
+
+    return OffData((one("hole", rms, inside), *(one(*other) for other in others)), None, (), ())
+
+
+def test_all_green():
+    found = verdict_of(accuracy(), off_data())
+    assert [lamp.level for lamp in found.lamps] == ["pass", "pass", "pass"]
+    assert found.word == "PASS"
+    assert found.checks.text.params["total"] == 1, "a check that does not apply is not counted"
+
+
+@pytest.mark.parametrize(
+    ("given", "level", "lamp"),
+    [
+        ((accuracy(sigma=0.6), off_data()), "fail", "data"),
+        ((accuracy(checks=(GOOD, BAD)), off_data()), "warning", "checks"),
+        ((accuracy(), off_data(rms=0.8)), "warning", "away"),
+        ((accuracy(), off_data(inside=0.7)), "warning", "away"),
+        ((accuracy(), off_data(others=[("block", 0.3, 0.6)])), "warning", "away"),
+    ],
+)
+def test_the_word_follows_from_the_worst_lamp(given, level, lamp):
+    found = verdict_of(*given)
+    assert found.level == level
+    assert [name for name in ("data", "checks", "away") if getattr(found, name).level != "pass"] == [lamp]
+
+
+def test_a_left_out_error_of_ten_epsilons_is_red_and_said():
+    found = verdict_of(accuracy(), off_data(others=[("section", 10 * EPSILON, 0.9)]))
+    assert found.away.level == "fail"
+    assert found.word == "WARNING"
+    error = found.away.text.params["error"]
+    assert error.params["ratio"] == pytest.approx(10)
+    assert error.params["scheme"].code == "verdict.sections"
+    assert "10.0 ε" in str(found.text)
+
+
+def test_the_file_and_the_order_count_among_the_checks():
+    assert verdict_of(accuracy(), orders=[replace(BAD, name="order")]).checks.text.params["names"] == ("order",)
+
+
+def test_what_was_not_examined_is_no_fault():
+    found = verdict_of(accuracy())
+    assert found.away.level == "none"
+    assert found.word == "PASS"
+    assert found.away.text.code == "verdict.not-examined"

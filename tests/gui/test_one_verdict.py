@@ -1,0 +1,212 @@
+"""The verdict is the same in badge, tree, STEP dialog, console and report; points are chosen and excluded by rows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from panel_samples import SITE, fitted, off_data, sample_site
+from PySide6.QtCore import Qt
+
+from geofit.data.accuracy import Check
+from geofit.data.languages import EN
+from geofit.data.messages import message
+from geofit.gui.dialogs.export_step import ExportDialog
+from geofit.project.commands import SetSurface
+from geofit.project.provenance import Row
+
+NAME = "T3-T2"
+FAILED = Check("trend", False, 9.0, 1.0, "m", message("test.text", "it runs away"), ())
+
+
+@pytest.fixture
+def shown(app):
+    """The sample site with one surface of which a check fails, examined off its data."""
+    document = app.document
+    app.desktop.session.begin(sample_site(), SITE)
+    document.select(NAME)
+    recipe, surface = document.recipe(NAME), fitted()
+    accuracy = replace(surface.accuracy, checks=(*surface.accuracy.checks, FAILED))
+    document.put(recipe, surface.with_(accuracy=accuracy))
+    app.window.fitting.push(SetSurface(recipe))
+    app.idle()
+    app.panels, app.view = app.window.panels, app.window.panels.view
+    return app
+
+
+def tree_row(app):
+    head = app.panels.tree.items.item(0)
+    return next(head.child(k) for k in range(head.rowCount()) if head.child(k).text().startswith(NAME))
+
+
+def test_a_failed_check_is_amber_everywhere_and_in_the_same_words(shown, qtbot, capsys):
+    from geofit.cli.console import print_results
+    from geofit.report.chapters import document as chapters
+    from geofit.report.gather import accuracy_report
+
+    verdict = shown.window.showing.verdict(NAME)
+    said = str(verdict.checks.text)
+    assert "failed: trend" in said
+    badge = shown.panels.verdict
+    assert badge.text.splitlines()[0] == "WARNING"
+    assert badge._mark.name == "warning"
+    assert said in badge.text.splitlines()
+    row = tree_row(shown)
+    assert "WARNING" in row.data(Qt.ItemDataRole.AccessibleTextRole)
+    assert said in row.toolTip()
+    dialog = ExportDialog(shown.document.surfaces(), None, {NAME: verdict})
+    qtbot.addWidget(dialog)
+    assert dialog.horizons.item(0).text() == f"{NAME}   {verdict.text}"
+    result = shown.window.delivering._result(NAME, shown.document.surface(NAME))
+    assert result.verdict == verdict
+    print_results([result])
+    printed = capsys.readouterr()
+    assert "WARNING" in printed.out
+    assert said in printed.err + printed.out
+    report = accuracy_report([result], date="2026-11-22")
+    assert report.horizons[0].verdict == "WARNING"
+    assert report.horizons[0].lamps == verdict.lamps
+    pages = chapters(report, EN).chapters
+    assert repr(pages[0]).count("WARNING") >= 1
+    assert pages[2].verdict.word == "WARNING"
+    assert said in repr(pages[0])
+    assert said in repr(pages[2])
+
+
+def test_what_is_known_away_from_the_data_reaches_badge_and_tree(shown):
+    document = shown.document
+    found = off_data(3)
+    worst = replace(found.left_out[0], rms=10 * 0.5)
+    document.put_offdata(document.state.recipes[NAME], replace(found, left_out=(worst, *found.left_out[1:])))
+    shown.idle()
+    assert "10.0 ε" in str(shown.panels.verdict.text)
+    assert shown.panels.verdict.lamps[2][0].name == "failed"
+    assert "10.0 ε" in tree_row(shown).toolTip()
+
+
+def test_another_control_error_is_another_verdict_without_a_fit(shown):
+    document, surface = shown.document, shown.document.surface(NAME)
+    strict = replace(document.settings(NAME), epsilon=0.001)
+    shown.window.fitting.set_settings(NAME, strict)
+    shown.idle()
+    assert not document.stale(NAME)
+    assert document.surface(NAME).surface is surface.surface
+    assert shown.panels.verdict.text.splitlines()[0] == "FAIL"
+    assert "FAIL" in tree_row(shown).data(Qt.ItemDataRole.AccessibleTextRole)
+    shown.window.session.stack.undo()
+    shown.idle()
+    assert shown.panels.verdict.text.splitlines()[0] == "WARNING"
+
+
+def test_all_selected_rows_are_excluded_and_the_ring_stays(shown):
+    table, view, document = shown.panels.residuals.table, shown.view, shown.document
+    points = document.site.horizons[NAME]
+    chosen = Row.of(points, 40)
+    document.select(NAME, chosen)
+    shown.idle()
+    place = points.xyz[40]
+    np.testing.assert_array_equal(view.pointer.ring.xyz, place)
+    table.select([3, 40, 71])
+    shown.trigger("exclude")
+    shown.idle()
+    excluded = document.state.excluded[NAME]
+    assert {row.find(points) for row in excluded} == {3, 40, 71}
+    np.testing.assert_array_equal(view.pointer.ring.xyz, place)
+    assert shown.window.selecting.index() == 40
+    assert set(table.selected) == {3, 40, 71}
+    assert view.contents._listed[NAME].excluded.sum() == 3
+    item = {layer.key: item for layer, item in view._stage.items()}[f"points:{NAME}"]
+    assert min(part.opacity for part in item.parts) < 0.5, "ghosts"
+    shown.trigger("exclude")
+    shown.idle()
+    assert not document.state.excluded[NAME], "all of them were excluded: they take part again"
+    shown.window.session.stack.undo()
+    assert len(document.state.excluded[NAME]) == 3
+    shown.window.session.stack.undo()
+    assert not document.state.excluded.get(NAME)
+
+
+def test_a_project_that_is_still_reading_says_so_and_locks_fit(shown, qtbot, tmp_path):
+    window, panels = shown.window, shown.panels
+    window.files.save_to(tmp_path / "dam.geofit")
+    shown.idle()
+    window.files.close()
+    shown.idle()
+    window.files.open(tmp_path / "dam.geofit")
+    qtbot.waitUntil(lambda: shown.document.waiting(NAME) and "Reading" in str(panels.verdict.text), timeout=60_000)
+    assert not window.actions_["fit"].isEnabled()
+    assert not window.actions_["fit_all"].isEnabled()
+    assert not panels.fit.fit_button.isEnabled()
+    assert not panels.fit.all_button.isEnabled()
+    assert "being read" in str(panels.fit.banner.text)
+    assert "being read" in str(panels.residuals.pages.text)
+    shown.idle()
+    assert panels.verdict.text.splitlines()[0] == "PASS", "the file has the surface as it was fitted"
+    assert window.actions_["fit"].isEnabled()
+    assert panels.fit.fit_button.isEnabled()
+    assert str(panels.residuals.pages.text) == ""
+
+
+def test_stopping_the_reading_unlocks_fit(shown, qtbot, tmp_path):
+    shown.window.files.save_to(tmp_path / "dam.geofit")
+    shown.idle()
+    shown.window.files.close()
+    shown.idle()
+    shown.window.files.open(tmp_path / "dam.geofit")
+    qtbot.waitUntil(lambda: shown.document.waiting(NAME), timeout=60_000)
+    shown.trigger("stop")
+    shown.idle()
+    assert shown.panels.fit.fit_button.isEnabled()
+    assert "No surface yet" in str(shown.panels.verdict.text)
+
+
+def test_files_go_beside_the_project_and_messages_name_the_whole_path(shown, qtbot, tmp_path, monkeypatch):
+    from geofit.gui.dialogs.report import ReportDialog
+    from geofit.gui.preferences import Preferences
+
+    folder = tmp_path / "job"
+    folder.mkdir()
+    shown.window.files.save_to(folder / "dam.geofit")
+    shown.idle()
+    assert str(folder / "dam.geofit") in shown.window.statusBar().currentMessage()
+    assert Preferences().folder == str(folder)
+    seen = []
+
+    def drive(dialog):
+        seen.append((dialog.target if isinstance(dialog, ExportDialog) else dialog.folder).text())
+        if isinstance(dialog, ExportDialog):
+            qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+            qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+            seen.append(dialog.message.text())
+
+    monkeypatch.setattr(ExportDialog, "exec", drive)
+    monkeypatch.setattr(ReportDialog, "exec", drive)
+    shown.trigger("export_step")
+    shown.idle()
+    shown.trigger("report")
+    step = str(folder / f"{NAME}.step")
+    assert seen[0] == step
+    assert step in seen[1]
+    assert step in shown.window.statusBar().currentMessage()
+    assert seen[2] == str(folder / "report")
+    assert step in shown.panels.log.text.toPlainText()
+
+
+def test_status_bar_and_log_record_every_step(shown):
+    log, bar, fitting = shown.panels.log.text, shown.window.statusBar(), shown.window.fitting
+    assert f"Fit {NAME}: σ" in log.toPlainText()
+    row = Row.of(shown.document.site.horizons[NAME], 3)
+    fitting.exclude(NAME, [row])
+    assert bar.currentMessage() == f"Exclude {row.file} row {row.row} from {NAME}"
+    assert bar.currentMessage() in log.toPlainText()
+    shown.window.session.stack.undo()
+    assert bar.currentMessage().startswith("Undone: Exclude")
+    shown.window.session.stack.redo()
+    assert bar.currentMessage().startswith("Done again: Exclude")
+    assert bar.currentMessage() in log.toPlainText()
+    shown.window.session.stack.undo()
+    shown.idle()
+    fitting.pull(NAME, row, 0.5)
+    shown.idle()
+    assert f"Pull {NAME} to point" in log.toPlainText()
