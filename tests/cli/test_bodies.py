@@ -277,6 +277,41 @@ def test_cave_needs_a_radius_where_nothing_has_a_size(tmp_path, monkeypatch, cap
     assert run(monkeypatch, capsys, "cave", tmp_path / "bare.svx", *options)[0] == 0
 
 
+def test_cave_cut_by_horizons_and_beside_an_excavation(tmp_path, monkeypatch, capsys):
+    """A level tube below a dipping plane that leaves it at a known place, and a gallery 9 m above its axis."""
+    line = write(tmp_path / "tube.csv", "line,station,x,y,z,radius", [("T", n, 20.0 * n, 0, 100, 2) for n in range(6)])
+    gallery = [("G", "a", 50, -40, 109, 3), ("G", "b", 50, 40, 109, 3)]
+    plan = write(tmp_path / "gallery.csv", "line,station,x,y,z,radius", gallery)
+    # z = 100 + (x - 30) / 2: above the axis east of x = 30.
+    corners = [(x, y, 100 + (x - 30) / 2) for x, y in ((-50, -50), (150, -50), (150, 50), (-50, 50))]
+    vertices = "".join(f"VRTX {n} {x} {y} {z}\n" for n, (x, y, z) in enumerate(corners, 1))
+    (tmp_path / "dip.ts").write_text(
+        f"GOCAD TSurf 1\nHEADER {{\nname:dip\n}}\nTFACE\n{vertices}TRGL 1 2 3\nTRGL 1 3 4\nEND\n", encoding="utf-8"
+    )
+    options = ("--excavation", plan, "--horizon", tmp_path / "dip.ts", "--out", tmp_path / "o", "--json")
+    code, out, err = run(monkeypatch, capsys, "cave", line, *options)
+    assert code == 0, err
+    figures = json.loads(out)
+    above, below, unknown = figures["strata"]
+    assert (above["base"], below["top"], unknown["known"]) == ("dip", "dip", False)
+    assert above["length"] == pytest.approx(30, abs=1e-6)
+    assert below["length"] == pytest.approx(70, abs=1e-6)
+    cap = 2 / 3 * np.pi * 8
+    assert above["volume"] == pytest.approx(np.pi * 4 * 30 + cap, rel=0.01)
+    assert below["volume"] == pytest.approx(np.pi * 4 * 70 + cap, rel=0.01)
+    assert above["volume"] + below["volume"] == pytest.approx(figures["volume"]["volume"], rel=1e-9)
+    assert figures["clearance"]["least"] == pytest.approx(9 - 2 - 3, abs=0.1)
+    assert figures["clearance"]["point"] == pytest.approx([50, 0, 109], abs=1.01)
+    distances = [float(row["distance_m"]) for row in read(tmp_path / "o" / "tube_clearance.csv")]
+    assert min(distances) == pytest.approx(figures["clearance"]["least"], abs=1e-3)
+    assert [row["base"] for row in read(tmp_path / "o" / "tube_strata.csv")] == ["dip", "", ""]
+    assert figures["volume"]["p10"] < figures["volume"]["volume"] < figures["volume"]["p90"]
+    code, out, err = run(monkeypatch, capsys, "cave", line, *options[:-1])
+    assert code == 0, err
+    assert "above dip" in out + err
+    assert "least distance to the excavation" in out + err
+
+
 @pytest.mark.skipif(not (DATA / "caves").is_dir(), reason="needs the real data sets (GEOFIT_DATA)")
 def test_cave_fulford(tmp_path, monkeypatch, capsys):
     options = ("--spacing", "2", "--out", tmp_path, "--json")
