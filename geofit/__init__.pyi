@@ -23,10 +23,12 @@ from geofit.io.export.write import write_surface as write_surface
 from geofit.io.picks import read_points as read_points
 from geofit.io.site_file import read_site as read_site
 from geofit.io.surface_files import read_surface as read_surface
+from geofit.io.volume_slices import open_volume as open_volume
 from geofit.io.volumes import read_volume as read_volume
 from geofit.medial.fit import metaballs as metaballs
 from geofit.pores.balls import maximal_balls as maximal_balls
 from geofit.pores.extraction import pore_network as pore_network
+from geofit.pores.sliced import SlicedVolume as SlicedVolume
 from geofit.pores.surface import pore_surface as pore_surface
 from geofit.pores.volume import RockVolume as RockVolume
 from geofit.prediction.bands import band as band

@@ -26,4 +26,5 @@ from geofit.io.source import Source as Source
 from geofit.io.surface_files import read_surface as read_surface
 from geofit.io.surface_files import read_surfaces as read_surfaces
 from geofit.io.survex import read_survex as read_survex
+from geofit.io.volume_slices import open_volume as open_volume
 from geofit.io.volumes import read_volume as read_volume

@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 
-__all__ = ["read_meta_image", "shape_and_type"]
+__all__ = ["map_meta_image", "read_meta_image", "shape_and_type"]
 
+#: A header is shorter than this, bytes.
+_HEADER = 100_000
 _SIZES = {1: "u1", 2: "<u2", 4: "<f4", 8: "<f8"}
 _META_TYPES = {
     "MET_UCHAR": "u1", "MET_CHAR": "i1", "MET_USHORT": "u2", "MET_SHORT": "i2", "MET_UINT": "u4", "MET_INT": "i4",
@@ -87,6 +89,39 @@ def read_meta_image(path: Path, data: bytes | None) -> tuple[NDArray[Any], tuple
     The header counts the fastest axis first, and states the spacing in millimetres.
     """
     content = path.read_bytes() if data is None else data
+    header, end, stored, sizes = _meta_header(content, path)
+    local = header["ElementDataFile"]
+    voxels = content[end:] if local.upper() == "LOCAL" else (path.parent / local).read_bytes()
+    if header.get("CompressedData", "").lower() == "true":
+        voxels = zlib.decompress(voxels)
+    found, _ = shape_and_type(local, len(voxels), sizes[::-1], stored.str, path)
+    return np.frombuffer(voxels, stored).reshape(found), _meta_edges(header)
+
+
+def map_meta_image(path: Path) -> tuple[NDArray[Any], tuple[float, float, float] | None]:
+    """Map the voxels of a MetaImage into memory instead of reading them; see :func:`read_meta_image`."""
+    with path.open("rb") as stream:
+        header, end, stored, sizes = _meta_header(stream.read(_HEADER), path)
+    if header.get("CompressedData", "").lower() == "true":
+        raise InputError(
+            message("import.compressed-slices", "its voxels are compressed and cannot be read slice by slice"),
+            message("import.save-uncompressed", "Save the image without compression."),
+            file=str(path),
+        )
+    local = header["ElementDataFile"]
+    inside = local.upper() == "LOCAL"
+    file, offset = (path, end) if inside else (path.parent / local, 0)
+    found, _ = shape_and_type(local, file.stat().st_size - offset, sizes[::-1], stored.str, path)
+    return np.memmap(file, stored, "r", offset, found), _meta_edges(header)
+
+
+def _meta_edges(header: dict[str, str]) -> tuple[float, float, float] | None:
+    spacing = [float(word) for word in header.get("ElementSpacing", header.get("ElementSize", "")).split()]
+    return (spacing[2] / 1000, spacing[1] / 1000, spacing[0] / 1000) if len(spacing) == 3 else None
+
+
+def _meta_header(content: bytes, path: Path) -> tuple[dict[str, str], int, np.dtype[Any], list[int]]:
+    """Return the entries of a header, where the voxels begin, their type, and their number along each axis."""
     header: dict[str, str] = {}
     end = 0
     while "ElementDataFile" not in header:
@@ -114,12 +149,4 @@ def read_meta_image(path: Path, data: bytes | None) -> tuple[NDArray[Any], tuple
             message("import.export-volume-scalar", "Export the volume as a scalar image with three axes."),
             file=str(path),
         )
-    local = header["ElementDataFile"]
-    voxels = content[end:] if local.upper() == "LOCAL" else (path.parent / local).read_bytes()
-    if header.get("CompressedData", "").lower() == "true":
-        voxels = zlib.decompress(voxels)
-    stored = np.dtype(order + kind)
-    found, _ = shape_and_type(local, len(voxels), sizes[::-1], stored.str, path)
-    spacing = [float(word) for word in header.get("ElementSpacing", header.get("ElementSize", "")).split()]
-    edges = (spacing[2] / 1000, spacing[1] / 1000, spacing[0] / 1000) if len(spacing) == 3 else None
-    return np.frombuffer(voxels, stored).reshape(found), edges
+    return header, end, np.dtype(order + kind), sizes

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 
-__all__ = ["read_tiff", "read_tiff_folder"]
+__all__ = ["read_pages", "read_tiff", "read_tiff_folder", "slice_files"]
 
 
 def read_tiff(source: Any, name: str) -> NDArray[Any]:
@@ -42,26 +42,42 @@ def read_tiff(source: Any, name: str) -> NDArray[Any]:
                     message("import.save-stack-tiff", "Save the stack as a TIFF with one page a slice, or as raw."),
                     file=name,
                 )
-            out = np.empty((count, *first.shape), first.dtype)
-            for page in range(count):
-                image.seek(page)
-                slice_ = _page(image, name)
-                if slice_.shape != first.shape:
-                    raise InputError(
-                        message(
-                            "import.page-pixels-first",
-                            "page {page} has {size} pixels, the first has {first}",
-                            page=page + 1,
-                            size=" x ".join(map(str, slice_.shape)),
-                            first=" x ".join(map(str, first.shape)),
-                        ),
-                        message("import.export-slices-same", "Export all slices with the same size."),
-                        file=name,
-                    )
-                out[page] = slice_
-            return out
+            return _pages(image, name, range(count), first)
     finally:
         Image.MAX_IMAGE_PIXELS = limit
+
+
+def read_pages(source: Any, name: str, pages: range) -> NDArray[Any]:
+    """Return some pages of a TIFF file as slices along axis 0."""
+    from PIL import Image
+
+    limit, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None
+    try:
+        with Image.open(source) as image:
+            return _pages(image, name, pages, _page(image, name))
+    finally:
+        Image.MAX_IMAGE_PIXELS = limit
+
+
+def _pages(image: Any, name: str, pages: range, first: NDArray[Any]) -> NDArray[Any]:
+    out = np.empty((len(pages), *first.shape), first.dtype)
+    for row, page in enumerate(pages):
+        image.seek(page)
+        slice_ = _page(image, name)
+        if slice_.shape != first.shape:
+            raise InputError(
+                message(
+                    "import.page-pixels-first",
+                    "page {page} has {size} pixels, the first has {first}",
+                    page=page + 1,
+                    size=" x ".join(map(str, slice_.shape)),
+                    first=" x ".join(map(str, first.shape)),
+                ),
+                message("import.export-slices-same", "Export all slices with the same size."),
+                file=name,
+            )
+        out[row] = slice_
+    return out
 
 
 def _page(image: Any, name: str) -> NDArray[Any]:
@@ -75,8 +91,8 @@ def _page(image: Any, name: str) -> NDArray[Any]:
     return values
 
 
-def read_tiff_folder(path: Path) -> NDArray[Any]:
-    """Return the TIFF files of a folder as slices along axis 0, in the order of the numbers in their names."""
+def slice_files(path: Path) -> list[Path]:
+    """Return the TIFF files of a folder in the order of the numbers in their names."""
     files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff")]
     if not files:
         raise InputError(
@@ -85,6 +101,12 @@ def read_tiff_folder(path: Path) -> NDArray[Any]:
             file=str(path),
         )
     files.sort(key=lambda file: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name)])
+    return files
+
+
+def read_tiff_folder(path: Path) -> NDArray[Any]:
+    """Return the TIFF files of a folder as slices along axis 0, in the order of the numbers in their names."""
+    files = slice_files(path)
     slices = [read_tiff(file, file.name) for file in files]
     odd = next((file for file, slice_ in zip(files, slices, strict=True) if slice_.shape != slices[0].shape), None)
     if odd is not None:

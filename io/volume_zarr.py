@@ -5,18 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.io.extra import need
 
-__all__ = ["read_zarr"]
+__all__ = ["open_zarr"]
 
 
-def read_zarr(path: Path, name: str | None) -> NDArray[Any]:
-    """Return an array of a zarr store; ``name`` is its place in a group, such as "0" in OME-Zarr."""
+def open_zarr(path: Path, name: str | None) -> Any:
+    """Return, unread, an array of a zarr store; ``name`` is its place in a group, such as "0" in OME-Zarr."""
     zarr = need(
         "zarr", "volumes", message("import.reading-zarr-store", "Reading the zarr store {file}", file=path.name)
     )
@@ -37,4 +34,4 @@ def read_zarr(path: Path, name: str | None) -> NDArray[Any]:
                 file=str(path),
             )
         node = node[names[0]]
-    return np.asarray(node[...])
+    return node

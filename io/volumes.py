@@ -23,7 +23,7 @@ from geofit.io.volume_tiff import read_tiff, read_tiff_folder
 from geofit.pores.memory import check_memory
 from geofit.pores.volume import RockVolume, VolumeError
 
-__all__ = ["read_volume", "read_voxels"]
+__all__ = ["RAW", "TIFF", "is_zarr", "read_volume", "read_voxels"]
 
 TIFF = (".tif", ".tiff")
 RAW = (".raw", ".bin", ".dat")
@@ -121,16 +121,16 @@ def read_voxels(
 
 
 def _read_folder(path: Path, name: str | None) -> NDArray[Any]:
-    if (
-        path.suffix == ".zarr"
-        or (path / ".zarray").exists()
-        or (path / "zarr.json").exists()
-        or (path / ".zgroup").exists()
-    ):
-        from geofit.io.volume_zarr import read_zarr
+    if is_zarr(path):
+        from geofit.io.volume_zarr import open_zarr
 
-        return read_zarr(path, name)
+        return np.asarray(open_zarr(path, name)[...])
     return read_tiff_folder(path)
+
+
+def is_zarr(path: Path) -> bool:
+    """Return whether a folder is a zarr store."""
+    return path.suffix == ".zarr" or any((path / file).exists() for file in (".zarray", "zarr.json", ".zgroup"))
 
 
 def _read_bytes(

@@ -8,11 +8,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.caves.adjust import AdjustedSurvey
 from geofit.caves.body import PassageBody
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 
-__all__ = ["Clearance", "clearance"]
+__all__ = ["Clearance", "clearance", "excavation_points"]
 
 Floats = NDArray[np.float64]
 
@@ -118,6 +119,18 @@ def clearance(
         tuple(adjusted.survey.stations[i] for i in closest.tolist()),
         np.linalg.norm(adjusted.sigma, axis=1)[closest],
     )
+
+
+def excavation_points(excavation: AdjustedSurvey, step: float = 1.0) -> tuple[Floats, float]:
+    """Return points (n, 3) along all shots of a planned excavation, no farther apart than a step, and its radius.
+
+    The radius is that of its largest section: the distance of the farthest wall from the axis, metres.
+    """
+    from geofit.caves.sections import sections
+
+    survey, found = excavation.survey, sections(excavation)
+    parts = [_along(excavation.xyz[[survey.start[shot], survey.end[shot]]], step) for shot in found.shot.tolist()]
+    return np.unique(np.vstack(parts), axis=0), float(found.walls.max())
 
 
 def _along(corners: Floats, step: float) -> Floats:

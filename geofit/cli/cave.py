@@ -12,6 +12,7 @@ from geofit.cli.console import guarded, listening, print_counts, print_issues, p
 from geofit.cli.options import Json, Out
 
 if TYPE_CHECKING:
+    from geofit.caves.strata import Stratum
     from geofit.project.cave_run import CaveRun
 
 __all__ = ["cave"]
@@ -30,16 +31,37 @@ def cave(
     spacing: Annotated[
         float | None, typer.Option(help="Spacing of the triangles, m. Default: 3/8 of the median diameter.")
     ] = None,
+    excavation: Annotated[
+        Path | None,
+        typer.Option(
+            help="Planned excavation, a table of its axis with its section: gives the distance to it."
+        ),
+    ] = None,
+    horizon: Annotated[
+        list[Path] | None,
+        typer.Option(help="Surface (STEP, IGES, BREP, TSurf) that cuts the passages; repeat from the top down."),
+    ] = None,
     as_json: Json = False,
 ) -> int:
-    """Adjust a cave survey and give its passages a volume and a surface."""
+    """Adjust a cave survey; give volume, surface, strata and distance to an excavation."""
+    from geofit.io.surface_files import read_surfaces
     from geofit.project.cave_run import read_survey, run_cave
 
     measured = read_survey(survey)
+    planned = None if excavation is None else read_survey(excavation)
+    horizons = {name: surface for path in horizon or () for name, surface in read_surfaces(path).items()}
     print_issues(measured.issues)
     print_counts(measured.counts)
     with listening() as progress:
-        run = run_cave(measured, out, radius=radius, spacing=spacing, progress=progress)
+        run = run_cave(
+            measured,
+            out,
+            radius=radius,
+            spacing=spacing,
+            excavation=planned,
+            horizons=horizons,
+            progress=progress,
+        )
     if as_json:
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:
@@ -82,6 +104,27 @@ def _print(run: CaveRun) -> None:
         print_table(header, cells, left=(0, 5))
         if len(loops) > SHOWN:
             say(f"The {SHOWN} worst of {len(loops)} loops; the others are in the table of loops.")
+    if run.strata:
+        cut = [_stratum(part) for part in run.strata if part.known or part.volume > 0 or part.length > 0]
+        print_table(("stratum", "length, m", "volume, m3"), cut)
+    if run.clearance is not None:
+        away, n = run.clearance, run.clearance.nearest
+        rows = [
+            ("least distance to the excavation, m", f"{away.least:.2f} ± {away.sigma[n]:.2f}"),
+            ("at", ", ".join(f"{value:.1f}" for value in away.points[n])),
+            ("nearest station", away.station[n]),
+        ]
+        print_table(("planned excavation", ""), rows)
     if filled:
         shown = ", ".join(f"{wall.station} {wall.wall} {wall.distance:.2f} m" for wall in filled[:SHOWN])
         say(f"Walls filled from neighbours: {shown}{', ...' if len(filled) > SHOWN else ''}; all are in a table.")
+
+
+def _stratum(part: Stratum) -> tuple[str, str, str]:
+    if not part.known:
+        name = "a horizon has no height"
+    elif part.top and part.base:
+        name = f"{part.top} – {part.base}"
+    else:
+        name = f"above {part.base}" if part.base else f"below {part.top}"
+    return name, f"{part.length:.1f}", f"{part.volume:.0f}"

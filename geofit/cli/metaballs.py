@@ -9,7 +9,7 @@ import typer
 from geofit.cli.app import app
 from geofit.cli.console import guarded, listening, print_json, print_table, say
 from geofit.cli.options import Json, Out
-from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, open_volume, stem_of
+from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
 
 __all__ = ["metaballs"]
 
@@ -26,9 +26,10 @@ def metaballs(
     as_json: Json = False,
 ) -> int:
     """Cover pore voxels with metaballs on their medial axis."""
+    from geofit.io.volumes import read_volume
     from geofit.project.metaballs_run import run_metaballs
 
-    volume = open_volume(source, pore, voxel, shape)
+    volume = read_volume(**read_options(source, pore, voxel, shape))
     with listening() as progress:
         run = run_metaballs(volume, out, stem_of(source), max_balls=balls, progress=progress)
     if as_json:

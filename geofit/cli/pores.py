@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
 
 from geofit.cli.app import app
 from geofit.cli.console import guarded, listening, print_json, print_table, say
 from geofit.cli.options import Json, Out
-from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, open_volume, stem_of
+from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
 
 if TYPE_CHECKING:
     from geofit.pores.table import PoreFigures
     from geofit.project.pores_run import PoresRun
 
 __all__ = ["pores"]
+
+NETWORK_K = "network permeability along axis 0, 1, 2, mD"
 
 
 @app.command()
@@ -24,19 +28,25 @@ def pores(
     pore: PoreLabel,
     voxel: VoxelEdge = None,
     shape: Shape = None,
+    slabs: Annotated[
+        bool, typer.Option("--slabs", help="Leave the volume on the disk: balls and network, but no surface.")
+    ] = False,
     as_json: Json = False,
 ) -> int:
     """Extract pores, throats and the pore surface; compare the rock before and after."""
+    from geofit.io.volume_slices import open_volume
+    from geofit.io.volumes import read_volume
     from geofit.project.pores_run import run_pores
 
-    volume = open_volume(source, pore, voxel, shape)
+    options = read_options(source, pore, voxel, shape)
+    volume = open_volume(**options) if slabs else read_volume(**options)
     with listening() as progress:
         run = run_pores(volume, out, stem_of(source), progress)
     if as_json:
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:
         _print(run)
-    for text in run.table.before.network.messages if run.table.before.network else ():
+    for text in run.permeability.messages:
         say(text)
     say(f"Files: {', '.join(file.name for file in run.files)} in {out}")
     return 0
@@ -45,16 +55,21 @@ def pores(
 def _print(run: PoresRun) -> None:
     network = run.network
     counts = {
-        "maximal balls": len(run.balls),
+        "maximal balls": "–" if run.balls is None else len(run.balls),
         "pores": len(network.pores),
         "throats": len(network.throats),
         "pores without a path to a face, left out": len(network.dropped),
         "mean coordination": f"{network.coordination.mean():.2f}" if len(network.pores) else "–",
     }
     print_table(("network", "count"), [(name, str(count)) for name, count in counts.items()])
+    if run.table is None:
+        along = ", ".join(f"{k:.4g}" for k in run.permeability.millidarcy)
+        rows = [("porosity, %", f"{100 * run.volume.porosity:.2f}"), (NETWORK_K, along)]
+        print_table(("figure", "voxels"), rows)
+        return
     before, after = _column(run.table.before), _column(run.table.after)
-    rows = [(name, value, after[name]) for name, value in before.items()]
-    print_table(("figure", "voxels", "rebuilt"), rows)
+    columns = [(name, value, after[name]) for name, value in before.items()]
+    print_table(("figure", "voxels", "rebuilt"), columns)
 
 
 def _column(figures: PoreFigures) -> dict[str, str]:
@@ -71,5 +86,5 @@ def _column(figures: PoreFigures) -> dict[str, str]:
         "Kozeny permeability, mD": f"{figures.kozeny / MILLIDARCY:.4g}",
     }
     if figures.network is not None:
-        rows["network permeability along axis 0, 1, 2, mD"] = ", ".join(f"{k:.4g}" for k in figures.network.millidarcy)
+        rows[NETWORK_K] = ", ".join(f"{k:.4g}" for k in figures.network.millidarcy)
     return rows

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -11,10 +11,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.files import legible
 from geofit.data.messages import message
 
-if TYPE_CHECKING:
-    from geofit.pores.volume import RockVolume
-
-__all__ = ["PoreLabel", "Shape", "VolumeFile", "VoxelEdge", "open_volume", "stem_of"]
+__all__ = ["PoreLabel", "Shape", "VolumeFile", "VoxelEdge", "read_options", "stem_of"]
 
 VolumeFile = Annotated[
     Path, typer.Argument(metavar="VOLUME", help="tif, raw, mhd, npy, npz, zarr (also .gz, .zip), folder of slices.")
@@ -26,23 +23,21 @@ VoxelEdge = Annotated[
 Shape = Annotated[str | None, typer.Option(help="Raw file: voxels along each axis, slowest first: 200,200,100.")]
 
 
-def open_volume(source: Path, pore: list[float], voxel: str | None, shape: str | None) -> RockVolume:
-    """Read the volume that the options describe.
+def read_options(source: Path, pore: list[float], voxel: str | None, shape: str | None) -> dict[str, Any]:
+    """Return the options of a volume as :func:`geofit.read_volume` and :func:`geofit.open_volume` take them.
 
     Raises
     ------
     SettingsError
         If the voxel or the shape is not a list of numbers.
     """
-    from geofit.io.volumes import read_volume
-
     edges = None if voxel is None else _numbers(voxel, "--voxel")
-    return read_volume(
-        source,
-        pore=pore[0] if len(pore) == 1 else pore,
-        voxel=edges[0] if edges is not None and len(edges) == 1 else edges,
-        shape=None if shape is None else [round(n) for n in _numbers(shape, "--shape")],
-    )
+    return {
+        "path": source,
+        "pore": pore[0] if len(pore) == 1 else pore,
+        "voxel": edges[0] if edges is not None and len(edges) == 1 else edges,
+        "shape": None if shape is None else [round(n) for n in _numbers(shape, "--shape")],
+    }
 
 
 def stem_of(source: Path) -> str:

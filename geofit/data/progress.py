@@ -7,7 +7,7 @@ from typing import Protocol
 from geofit.data.errors import Cancelled
 from geofit.data.messages import Message, message
 
-__all__ = ["Progress", "tell"]
+__all__ = ["Progress", "tell", "within"]
 
 
 class Progress(Protocol):
@@ -29,3 +29,14 @@ def tell(progress: Progress | None, stage: str | Message, fraction: float) -> No
         raise Cancelled(
             message("run.cancelled", "Stopped by the caller during '{stage}'. Nothing was written.", stage=stage)
         )
+
+
+def within(progress: Progress | None, first: float, last: float) -> Progress | None:
+    """Return a listener for a part of a task that runs from ``first`` to ``last`` of the whole."""
+    if progress is None:
+        return None
+
+    def listen(stage: str | Message, fraction: float) -> bool | None:
+        return progress(stage, first + (last - first) * fraction)
+
+    return listen

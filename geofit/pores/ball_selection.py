@@ -11,36 +11,65 @@ from numpy.typing import NDArray
 from geofit.pores.ball_tables import DIRECTIONS, inclusion_table, signed_directions
 from geofit.pores.distance import sums_of_squares
 
-__all__ = ["exact", "paper"]
+__all__ = ["BLOCK", "BallSearch", "block_maxima", "exact", "paper"]
 
 
 #: Edge of the blocks that share one bound of the balls around them, voxels.
-_BLOCK = 8
+BLOCK = 8
 
 
 def exact(reach2: NDArray[Any]) -> NDArray[np.int64]:
     """Return the flat indices of the maximal balls of a squared distance map of cubic voxels, in ascending order."""
-    largest = int(reach2.max(initial=0))
-    # A ball can be included in a larger one, so the directions go by the largest ball that reaches a voxel.
-    needed = [entry for entry in DIRECTIONS if entry[3] <= largest] or [(1, 0, 0, 0)]
-    generators = np.array([entry[:3] for entry in needed], dtype=np.int64)
-    tables = np.array([inclusion_table(g0, g1, g2, largest) for g0, g1, g2 in generators], dtype=np.int32)
-    directions, source = signed_directions(generators)
-    from_ = np.array([entry[3] for entry in needed])[source]
-    order = np.argsort(from_, kind="stable")
-    counts = np.searchsorted(from_[order], _covering_blocks(reach2), side="right")
-    return _maximal(reach2, directions[order], source[order], tables, counts)
+    search = BallSearch(block_maxima(reach2, 0))
+    return search.balls(reach2, 0, 0, len(reach2))
 
 
-def _covering_blocks(reach2: NDArray[Any]) -> NDArray[np.int64]:
-    """Return for each block of voxels an upper bound of the F² of the balls that cover any of its voxels."""
-    shape = [-(-n // _BLOCK) for n in reach2.shape]
-    largest = np.zeros(shape, np.int64)
-    for i in range(shape[0]):
-        slab = reach2[i * _BLOCK : (i + 1) * _BLOCK].max(axis=0)
-        rows = np.maximum.reduceat(slab, np.arange(0, slab.shape[0], _BLOCK), axis=0)
-        largest[i] = np.maximum.reduceat(rows, np.arange(0, slab.shape[1], _BLOCK), axis=1)
-    return _spread(largest)
+class BallSearch:
+    """The search for maximal balls in a volume, of which a slab is at hand at a time.
+
+    Parameters
+    ----------
+    largest : ndarray of int
+        Largest F² of each block of voxels of the whole volume; see :func:`block_maxima`.
+    """
+
+    #: Slices that a slab needs on both sides.
+    REACH = max(entry[0] for entry in DIRECTIONS)
+
+    def __init__(self, largest: NDArray[np.int64]) -> None:
+        most = int(largest.max(initial=0))
+        # A ball can be included in a larger one, so the directions go by the largest ball that reaches a voxel.
+        needed = [entry for entry in DIRECTIONS if entry[3] <= most] or [(1, 0, 0, 0)]
+        generators = np.array([entry[:3] for entry in needed], dtype=np.int64)
+        self._tables = np.array([inclusion_table(g0, g1, g2, most) for g0, g1, g2 in generators], dtype=np.int32)
+        directions, source = signed_directions(generators)
+        from_ = np.array([entry[3] for entry in needed])[source]
+        order = np.argsort(from_, kind="stable")
+        self._directions, self._source = directions[order], source[order]
+        self._counts = np.searchsorted(from_[order], _spread(largest), side="right")
+
+    def balls(self, reach2: NDArray[Any], low: int, first: int, end: int) -> NDArray[np.int64]:
+        """Return the flat indices, in the whole volume, of the maximal balls in slices ``first`` ... ``end - 1``.
+
+        ``reach2`` begins with slice ``low`` and reaches beyond those slices by ``REACH``, or to the end of the volume.
+        """
+        found = _maximal(
+            reach2, first - low, end - low, low, self._directions, self._source, self._tables, self._counts
+        )
+        return found + low * reach2.shape[1] * reach2.shape[2]
+
+
+def block_maxima(reach2: NDArray[Any], first: int) -> NDArray[np.int64]:
+    """Return the largest F² of each block of voxels of a slab that begins with slice ``first`` of the volume.
+
+    Blocks count from the low corner of the volume; the first row of blocks is that of the slab's first slice.
+    """
+    rows = (first + np.arange(len(reach2))) // BLOCK - first // BLOCK
+    out = np.zeros((int(rows[-1]) + 1, *(-(-n // BLOCK) for n in reach2.shape[1:])), np.int64)
+    for row, slice_ in zip(rows.tolist(), reach2, strict=True):
+        strips = np.maximum.reduceat(slice_, np.arange(0, slice_.shape[0], BLOCK), axis=0)
+        np.maximum(out[row], np.maximum.reduceat(strips, np.arange(0, slice_.shape[1], BLOCK), axis=1), out=out[row])
+    return out
 
 
 @njit(cache=True)
@@ -53,7 +82,7 @@ def _spread(largest: NDArray[np.int64]) -> NDArray[np.int64]:
             for k in range(n2):
                 value = largest[i, j, k]
                 # Voxels of two blocks are nearer than their corners are by one block less a voxel.
-                reach = int((np.sqrt(value) - 1.0) / _BLOCK) + 1
+                reach = int((np.sqrt(value) - 1.0) / BLOCK) + 1
                 for a in range(max(i - reach, 0), min(i + reach + 1, n0)):
                     for b in range(max(j - reach, 0), min(j + reach + 1, n1)):
                         for c in range(max(k - reach, 0), min(k + reach + 1, n2)):
@@ -64,6 +93,9 @@ def _spread(largest: NDArray[np.int64]) -> NDArray[np.int64]:
 @njit(cache=True)
 def _maximal(
     reach2: NDArray[Any],
+    first: int,
+    end: int,
+    low: int,
     directions: NDArray[np.int64],
     source: NDArray[np.int64],
     tables: NDArray[np.int32],
@@ -75,7 +107,7 @@ def _maximal(
     margin = np.abs(directions).max()
     kept = np.empty(1024, np.int64)
     count = 0
-    for i in range(n0):
+    for i in range(first, end):
         for j in range(n1):
             row_inside = margin <= i < n0 - margin and margin <= j < n1 - margin
             for k in range(n2):
@@ -85,7 +117,7 @@ def _maximal(
                     continue
                 inside = row_inside and margin <= k < n2 - margin
                 included = False
-                for d in range(counts[i // _BLOCK, j // _BLOCK, k // _BLOCK]):
+                for d in range(counts[(i + low) // BLOCK, j // BLOCK, k // BLOCK]):
                     if not inside:
                         a, b, c = i + directions[d, 0], j + directions[d, 1], k + directions[d, 2]
                         if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:

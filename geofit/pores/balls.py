@@ -16,7 +16,9 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
+from geofit.pores import slabs
 from geofit.pores.distance import Border, border_walls, squared_distance, sums_of_squares
+from geofit.pores.slabs import Slices
 from geofit.pores.volume import RockVolume, VolumeError
 
 __all__ = ["BallRule", "MaximalBalls", "balls_of_distance", "maximal_balls"]
@@ -74,7 +76,7 @@ class MaximalBalls:
 
 
 def maximal_balls(
-    volume: RockVolume,
+    volume: Slices,
     *,
     rule: BallRule | None = None,
     border: Border = "closed",
@@ -84,8 +86,8 @@ def maximal_balls(
 
     Parameters
     ----------
-    volume : RockVolume
-        The pore space.
+    volume : RockVolume or SlicedVolume
+        The pore space. With the exact rule a large one is worked through in slabs.
     rule : {"exact", "paper", "cover"}, optional
         ``"exact"``: every ball that no other ball includes (default for cubic voxels). ``"paper"``: the article's
         comparison R2 + distance <= L1, which loses voxels; compare ``union()`` with the volume. ``"cover"``: from large
@@ -104,7 +106,7 @@ def maximal_balls(
     Raises
     ------
     VolumeError
-        If the rule needs cubic voxels and these are not.
+        If the rule needs cubic voxels and these are not, or the whole volume in memory.
 
     Notes
     -----
@@ -134,10 +136,43 @@ def maximal_balls(
             )
         )
     border_walls(border)
+    if volume.porosity == 1:
+        border = "closed"
+    if rule == "exact" and (not isinstance(volume, RockVolume) or volume.pore.size > slabs.VOXELS):
+        return _assembled(*_in_slabs(volume, border, progress), rule, volume.edges, volume.shape)
+    if not isinstance(volume, RockVolume):
+        raise VolumeError(
+            message(
+                "pores.rule-needs-whole",
+                "rule='{rule}' needs the whole volume in memory, and this one is read slab by slab. Read a part of it "
+                "with read_volume; for cubic voxels rule='exact' works in slabs.",
+                rule=rule,
+            )
+        )
     tell(progress, "distance", 0.0)
-    reach2 = squared_distance(volume.pore, border if not volume.pore.all() else "closed", volume.edges)
+    reach2 = squared_distance(volume.pore, border, volume.edges)
     tell(progress, "balls", 0.4)
     return balls_of_distance(reach2, rule, volume.edges)
+
+
+def _in_slabs(volume: Slices, border: Border, progress: Progress | None) -> tuple[NDArray[np.int64], NDArray[Any]]:
+    """Return the flat indices and F² of the maximal balls, from two passes over the slabs."""
+    from geofit.pores.ball_selection import BLOCK, BallSearch, block_maxima
+
+    # Blocks at the seam of two slabs get a row from each.
+    rows: dict[int, NDArray[np.int64]] = {}
+    for first, _, _, found in slabs.distance_slabs(volume, border, 0, progress):
+        for row, maxima in enumerate(block_maxima(found, first), first // BLOCK):
+            rows[row] = np.maximum(rows.get(row, 0), maxima)
+    search = BallSearch(np.array([rows[row] for row in sorted(rows)]))
+    kept, values = [], []
+    for first, end, before, found in slabs.distance_slabs(volume, border, search.REACH, progress):
+        tell(progress, "balls", first / volume.shape[0])
+        low = first - before
+        balls = search.balls(found, low, first, end)
+        kept.append(balls)
+        values.append(found.ravel()[balls - low * found.shape[1] * found.shape[2]])
+    return np.concatenate(kept), np.concatenate(values)
 
 
 def balls_of_distance(reach2: NDArray[Any], rule: BallRule, edges: tuple[float, float, float]) -> MaximalBalls:
@@ -151,14 +186,26 @@ def balls_of_distance(reach2: NDArray[Any], rule: BallRule, edges: tuple[float, 
         kept = ball_selection.paper(reach2)
     else:
         kept = ball_painting.covering(reach2, np.square(edges))
-    values = reach2.ravel()[kept]
+    return _assembled(kept, reach2.ravel()[kept], rule, edges, (shape[0], shape[1], shape[2]))
+
+
+def _assembled(
+    kept: NDArray[np.int64],
+    values: NDArray[Any],
+    rule: BallRule,
+    edges: tuple[float, float, float],
+    shape: tuple[int, int, int],
+) -> MaximalBalls:
+    """Sort balls, given by flat index and F², from large to small."""
+    from geofit.pores.ball_painting import farthest_squares
+
     order = np.argsort(-values, kind="stable")
     kept, values = kept[order], values[order]
     centre = np.stack(np.unravel_index(kept, shape), axis=1).astype(np.int32)
     if edges == (1.0, 1.0, 1.0):
         radius2: NDArray[Any] = sums_of_squares(int(values[0]) if len(values) else 0)[values]
     else:
-        radius2 = ball_painting.farthest_squares(values, np.square(edges))
+        radius2 = farthest_squares(values, np.square(edges))
     for array in (centre, radius2, values):
         array.flags.writeable = False
-    return MaximalBalls(centre, radius2, values, edges, (shape[0], shape[1], shape[2]), rule)
+    return MaximalBalls(centre, radius2, values, edges, shape, rule)

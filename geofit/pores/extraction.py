@@ -9,10 +9,13 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
+from geofit.pores import slabs
 from geofit.pores.balls import MaximalBalls, maximal_balls
-from geofit.pores.distance import Border, border_walls, squared_distance
+from geofit.pores.distance import Border, border_walls
 from geofit.pores.memory import check_memory
 from geofit.pores.network import FaceThroats, PoreNetwork, Pores, Throats
+from geofit.pores.packed import PackedSpace, slots, unpacked
+from geofit.pores.slabs import Slices, packed_distances
 from geofit.pores.volume import RockVolume, VolumeError
 
 __all__ = ["DEFAULT_R_MIN", "DEFAULT_TAU", "Hierarchy", "pore_network"]
@@ -23,12 +26,13 @@ Hierarchy = Literal["merge-tree", "paper"]
 DEFAULT_R_MIN = 1.25
 DEFAULT_TAU = 0.85
 
-#: Memory that a network needs for each voxel of the volume: distances, labels, order of flooding, windows.
-_BYTES = 16
+#: Memory of a network: bytes for each pore voxel (distances, basins, order of flooding, windows), for each voxel of the
+#: bits, for each voxel of the basins that a whole volume hands on, and for each voxel of the slab at hand.
+_PORE, _VOXEL, _WHOLE, _SLAB = 32, 0.2, 4, 6
 
 
 def pore_network(
-    volume: RockVolume,
+    volume: Slices,
     balls: MaximalBalls | None = None,
     *,
     r_min: float = DEFAULT_R_MIN,
@@ -41,8 +45,8 @@ def pore_network(
 
     Parameters
     ----------
-    volume : RockVolume
-        The pore space.
+    volume : RockVolume or SlicedVolume
+        The pore space. A large one is worked through in slabs; the network is the same.
     balls : MaximalBalls, optional
         Of this volume with this border. Only ``hierarchy="paper"`` needs them, and computes them if they are absent;
         the merge tree works on the distance map that they come from.
@@ -60,12 +64,13 @@ def pore_network(
     Returns
     -------
     PoreNetwork
-        If any pore is connected to a face of the sample, those that are not are listed in ``dropped``.
+        If any pore is connected to a face of the sample, those that are not are listed in ``dropped``. Of a
+        SlicedVolume it has no ``pore_of``.
 
     Raises
     ------
     VolumeError
-        If a parameter is out of its range.
+        If a parameter is out of its range, or the memory does not suffice.
 
     Notes
     -----
@@ -101,40 +106,42 @@ def pore_network(
             )
         )
     border_walls(border)
+    size, whole = int(np.prod(volume.shape)), isinstance(volume, RockVolume)
     check_memory(
-        _BYTES * volume.pore.size,
-        message("pores.network-voxels", "The network of {count} voxels", count=volume.pore.size),
+        int(_PORE * size * volume.porosity + _VOXEL * size + _WHOLE * size * whole + _SLAB * min(size, slabs.VOXELS)),
+        message("pores.network-voxels", "The network of {count} voxels", count=size),
     )
-    if volume.pore.all():
+    if volume.porosity == 1:
         border = "closed"
     tell(progress, "distance", 0.0)
-    levels, values, by_edges, by_corners = basins.levels_of(
-        squared_distance(volume.pore, border, volume.edges), volume.edges
-    )
+    space, reach2 = packed_distances(volume, border, progress)
+    levels, values, by_edges, by_corners = basins.levels_of(reach2, volume.edges)
+    del reach2
     radius_at = np.sqrt(values.astype(np.float64)) - 0.5
     tell(progress, "basins", 0.2)
-    label, peaks = basins.flood(levels, by_edges, by_corners)
-    radius = radius_at[levels.ravel()[peaks]]
+    label, peaks = basins.flood(space, levels, by_edges, by_corners)
+    radius = radius_at[levels[slots(space, peaks)]]
     tell(progress, "merging", 0.7)
     if hierarchy == "paper":
         from geofit.pores.paper_hierarchy import super_balls
 
         if balls is None:
             balls = maximal_balls(volume, border=border)
-        pore = super_balls(balls, label, len(peaks))
+        pore = super_balls(balls, space, label, len(peaks))
     else:
-        pairs, saddle = merge_tree.saddles(levels, label, len(peaks), by_edges, by_corners, basins.OFFSETS)
+        pairs, saddle = merge_tree.saddles(space, levels, label, len(peaks), by_edges, by_corners, basins.OFFSETS)
         pore = merge_tree.merge(pairs - 1, radius_at[saddle], radius, r_min, tau)
     first = np.full(int(pore.max()) + 1, len(pore))
     np.minimum.at(first, pore, np.arange(len(pore)))
-    _renumber(label, np.concatenate([[0], pore + 1]))
+    label = (pore + 1).astype(np.int32)[label - 1]
     tell(progress, "throats", 0.8)
     settings = {"r_min": r_min, "tau": tau, "border": border, "hierarchy": hierarchy}
-    return _assembled(volume, label, levels, radius_at, peaks[first], settings)
+    return _assembled(volume, space, label, levels, radius_at, peaks[first], settings)
 
 
 def _assembled(
-    volume: RockVolume,
+    volume: Slices,
+    space: PackedSpace,
     pore_of: NDArray[np.int32],
     levels: NDArray[np.int32],
     radius_at: NDArray[np.float64],
@@ -150,8 +157,8 @@ def _assembled(
     from geofit.pores.windows import inner_windows, outer_windows
 
     count = len(peaks)
-    inner, outer = inner_windows(pore_of, levels, count), outer_windows(pore_of, levels)
-    own = own_saddle(inner, pore_of, levels, radius_at)
+    inner, outer = inner_windows(space, pore_of, levels, count), outer_windows(space, pore_of, levels)
+    own = own_saddle(inner, space, pore_of, levels, radius_at)
     faces = np.zeros((count, 6), dtype=bool)
     faces[outer.first, outer.second] = True
     links = coo_array((np.ones(len(inner.first)), (inner.first, inner.second)), shape=(count, count))
@@ -166,15 +173,14 @@ def _assembled(
 
     edges = np.array(volume.edges)
     centre = np.stack(np.unravel_index(peaks, volume.shape), axis=1).astype(np.int32)
-    # Slice by slice: counting converts to eight bytes a voxel.
-    size = sum(np.bincount(slice_.ravel(), minlength=count + 1) for slice_ in pore_of)[1:] * edges.prod()
-    radius = radius_at[levels.ravel()[peaks]]
+    size = np.bincount(pore_of, minlength=count + 1)[1:] * edges.prod()
+    radius = radius_at[levels[slots(space, peaks)]]
     number = np.cumsum(kept) - 1
-    _renumber(pore_of, np.concatenate([[0], np.where(kept, number + 1, 0)]))
+    pore_of = np.where(kept, number + 1, 0).astype(np.int32)[pore_of - 1]
 
     free = np.zeros((count, 3))
-    inscribed = np.maximum(widest_balls(peaks, free, volume.pore, edges, centre.astype(float)) - 0.5, radius)
-    sections = measure(inner, volume, radius_at, in_faces=False)
+    inscribed = np.maximum(widest_balls(peaks, free, space, edges, centre.astype(float)) - 0.5, radius)
+    sections = measure(inner, space, edges, radius_at, in_faces=False)
     use = kept[inner.first] & own
     to_centre = np.stack(
         [np.linalg.norm((sections.middle - centre[end]) * edges, axis=1) for end in (inner.first, inner.second)], axis=1
@@ -189,7 +195,7 @@ def _assembled(
         sections.middle[use],
         sections.conductance[use],
     )
-    sections = measure(outer, volume, radius_at, in_faces=True)
+    sections = measure(outer, space, edges, radius_at, in_faces=True)
     to_face = np.linalg.norm((sections.middle - centre[outer.first]) * edges, axis=1)
     use = kept[outer.first]
     face_throats = FaceThroats(
@@ -215,15 +221,8 @@ def _assembled(
         volume.shape,
         volume.voxel,
         settings,
-        pore_of,
+        unpacked(space, pore_of) if isinstance(volume, RockVolume) else None,
     )
-
-
-def _renumber(label: NDArray[np.int32], numbers: NDArray[np.int64]) -> None:
-    """Replace labels in place, slice by slice."""
-    new = numbers.astype(np.int32)
-    for slice_ in label:
-        slice_[...] = new[slice_]
 
 
 def _pores(columns: tuple[NDArray[Any], ...], kept: NDArray[np.bool_]) -> Pores:

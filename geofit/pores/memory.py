@@ -50,8 +50,8 @@ def check_memory(needed: int, task: str | Message) -> None:
         raise VolumeError(
             message(
                 "pores.memory-free-take",
-                "{task} needs {needed:.1f} GB of memory, and {free:.1f} GB are free. Take a part of the volume, or "
-                "close other programs.",
+                "{task} needs {needed:.1f} GB of memory, and {free:.1f} GB are free. Leave the volume on the disk "
+                "(geofit.open_volume, geofit pores --slabs), take a part of it, or close other programs.",
                 task=task,
                 needed=needed / 1e9,
                 free=free / 1e9,

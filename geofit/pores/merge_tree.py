@@ -13,11 +13,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from geofit.pores.packed import PackedSpace, slot
+
 __all__ = ["merge", "saddles"]
 
 
 @njit(cache=True)
-def _slot(keys: NDArray[np.int64], key: int) -> int:
+def _place(keys: NDArray[np.int64], key: int) -> int:
     """Return the place of a key in an open-addressing table, or the free place where it belongs."""
     mask = len(keys) - 1
     place = ((key * 0x9E3779B1) >> 7) & mask
@@ -28,6 +30,7 @@ def _slot(keys: NDArray[np.int64], key: int) -> int:
 
 @njit(cache=True)
 def saddles(
+    space: PackedSpace,
     levels: NDArray[np.int32],
     label: NDArray[np.int32],
     basins: int,
@@ -43,47 +46,48 @@ def saddles(
         Numbers of two basins, the smaller one first.
     level : ndarray of int32, shape (m,)
     """
-    n0, n1, n2 = levels.shape
+    n0, n1, n2 = space.shape
+    steps = offsets[:, 0] * (n1 * n2) + offsets[:, 1] * n2 + offsets[:, 2]
     size = 1024
     keys = np.full(size, -1, np.int64)
     widest = np.zeros(size, np.int32)
     count = 0
-    for i in range(n0):
-        for j in range(n1):
-            for k in range(n2):
-                own = label[i, j, k]
-                if own == 0:
+    for here in range(n0 * n1 * n2):
+        row = slot(space, here)
+        if row < 0:
+            continue
+        own, level = np.int64(label[row]), levels[row]
+        i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
+        inside = 0 < i < n0 - 1 and 0 < j < n1 - 1 and 0 < k < n2 - 1
+        for d in range(26):
+            if not inside:
+                a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
+                if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
                     continue
-                level = levels[i, j, k]
-                for d in range(26):
-                    a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
-                    if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
-                        continue
-                    other = label[a, b, c]
-                    # Each pair is seen from both sides; the side with the smaller number takes it.
-                    if other <= own:
-                        continue
-                    there = levels[a, b, c]
-                    if d >= 6 and max(level, there) < (by_edges if d < 18 else by_corners):
-                        continue
-                    saddle = min(level, there)
-                    key = own * (basins + 1) + other
-                    place = _slot(keys, key)
-                    if keys[place] == -1:
-                        keys[place] = key
-                        count += 1
-                        widest[place] = saddle
-                        if 2 * count > size:
-                            size *= 2
-                            new_keys = np.full(size, -1, np.int64)
-                            new_widest = np.zeros(size, np.int32)
-                            for old in range(len(keys)):
-                                if keys[old] != -1:
-                                    new = _slot(new_keys, keys[old])
-                                    new_keys[new], new_widest[new] = keys[old], widest[old]
-                            keys, widest = new_keys, new_widest
-                    elif saddle > widest[place]:
-                        widest[place] = saddle
+            there = slot(space, here + steps[d])
+            # Each pair is seen from both sides; the side with the smaller number takes it.
+            if there < 0 or label[there] <= own:
+                continue
+            if d >= 6 and max(level, levels[there]) < (by_edges if d < 18 else by_corners):
+                continue
+            saddle = min(level, levels[there])
+            key = own * (basins + 1) + label[there]
+            place = _place(keys, key)
+            if keys[place] == -1:
+                keys[place] = key
+                count += 1
+                widest[place] = saddle
+                if 2 * count > size:
+                    size *= 2
+                    new_keys = np.full(size, -1, np.int64)
+                    new_widest = np.zeros(size, np.int32)
+                    for old in range(len(keys)):
+                        if keys[old] != -1:
+                            new = _place(new_keys, keys[old])
+                            new_keys[new], new_widest[new] = keys[old], widest[old]
+                    keys, widest = new_keys, new_widest
+            elif saddle > widest[place]:
+                widest[place] = saddle
     pairs = np.empty((count, 2), np.int64)
     level_of = np.empty(count, np.int32)
     row = 0

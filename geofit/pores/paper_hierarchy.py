@@ -12,18 +12,21 @@ from numba import njit
 from numpy.typing import NDArray
 
 from geofit.pores.balls import MaximalBalls
+from geofit.pores.packed import PackedSpace, slots
 
 __all__ = ["super_balls"]
 
 
-def super_balls(balls: MaximalBalls, label: NDArray[np.int32], basins: int) -> NDArray[np.int64]:
+def super_balls(balls: MaximalBalls, space: PackedSpace, label: NDArray[np.int32], basins: int) -> NDArray[np.int64]:
     """Return for each basin of the distance map the pore, that is the super ball, that it belongs to.
 
     Parameters
     ----------
     balls : MaximalBalls
+    space : PackedSpace
+        The pore space.
     label : ndarray of int32
-        Basin of each voxel, counted from 1.
+        Basin of each pore voxel, counted from 1.
     basins : int
         Number of basins, the widest first.
 
@@ -32,8 +35,8 @@ def super_balls(balls: MaximalBalls, label: NDArray[np.int32], basins: int) -> N
     ndarray of int64, shape (basins,)
         Pores count from 0 in the order of their widest basins. A basin belongs to the super ball of its largest ball.
     """
-    family = _families(balls.centre, np.sqrt(balls.radius2.astype(np.float64)), np.array(balls.edges), label.shape)
-    basin = label[tuple(balls.centre.T)] - 1
+    family = _families(balls.centre, np.sqrt(balls.radius2.astype(np.float64)), np.array(balls.edges), balls.shape)
+    basin = label[slots(space, np.ravel_multi_index(tuple(balls.centre.T), balls.shape))] - 1
     # Balls are listed from large to small: the first of a basin is its largest.
     largest = np.full(basins, len(balls))
     np.minimum.at(largest, basin, np.arange(len(balls)))

@@ -9,8 +9,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from geofit.pores.duct import OUTSIDE, PORE, ROCK, duct_conductance
+from geofit.pores.packed import PackedSpace
 from geofit.pores.spots import widest_balls
-from geofit.pores.volume import RockVolume
 from geofit.pores.windows import Windows
 
 __all__ = ["Sections", "measure"]
@@ -27,13 +27,18 @@ class Sections(NamedTuple):
     conductance: NDArray[np.float64]
 
 
-def measure(windows: Windows, volume: RockVolume, radius_at: NDArray[np.float64], *, in_faces: bool) -> Sections:
+def measure(
+    windows: Windows, space: PackedSpace, edges: NDArray[np.float64], radius_at: NDArray[np.float64], *, in_faces: bool
+) -> Sections:
     """Return the sections of windows.
 
     Parameters
     ----------
     windows : Windows
-    volume : RockVolume
+    space : PackedSpace
+        The pore space.
+    edges : ndarray of float, shape (3,)
+        Edge lengths of a voxel, in units of the shortest one.
     radius_at : ndarray of float
         Radius of a ball of each level.
     in_faces : bool
@@ -44,7 +49,6 @@ def measure(windows: Windows, volume: RockVolume, radius_at: NDArray[np.float64]
         empty = np.zeros(0)
         return Sections(empty, empty, empty, empty, np.zeros((0, 3)), empty)
     begin = windows.start[:-1]
-    edges = np.array(volume.edges)
     face_area = edges.prod() / edges
     radius = radius_at[np.maximum.reduceat(windows.level, begin)]
     vector = np.zeros((count, 3))
@@ -53,15 +57,14 @@ def measure(windows: Windows, volume: RockVolume, radius_at: NDArray[np.float64]
         vector[:, axis] = np.add.reduceat(turned, begin)
     # A window that closes on itself has no border curve, and so no vector; it is at least as wide as its ball.
     area = np.maximum(np.linalg.norm(vector, axis=1), np.maximum(np.pi * radius**2, face_area.min()))
-    index = np.stack(np.unravel_index(windows.voxel, volume.shape), axis=1).astype(np.float64)
+    index = np.stack(np.unravel_index(windows.voxel, tuple(space.shape.tolist())), axis=1).astype(np.float64)
     index[np.arange(len(index)), windows.axis] += np.where(in_faces & (windows.sign < 0), -0.5, 0.5)
     faces = np.diff(windows.start)
     middle = np.stack([np.add.reduceat(index[:, axis], begin) for axis in range(3)], axis=1) / faces[:, None]
-    shape = np.array(volume.shape)
     conductance, perimeter = _ducts(
-        windows.start, windows.voxel, windows.axis, windows.sign, vector, volume.pore, edges, shape
+        windows.start, windows.voxel, windows.axis, windows.sign, vector, edges, space.shape
     )
-    inscribed = np.maximum(_inscribed(windows, index, vector, volume.pore, edges) - 0.5, radius)
+    inscribed = np.maximum(_inscribed(windows, index, vector, space, edges) - 0.5, radius)
     return Sections(radius, inscribed, area, perimeter, middle, conductance)
 
 
@@ -69,7 +72,7 @@ def _inscribed(
     windows: Windows,
     index: NDArray[np.float64],
     vector: NDArray[np.float64],
-    pore: NDArray[np.bool_],
+    space: PackedSpace,
     edges: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Return the distance to the rock from the best place of each window near the middle of its widest faces."""
@@ -80,7 +83,7 @@ def _inscribed(
     gap = np.where(widest, ((index - np.repeat(middle, faces, axis=0)) ** 2).sum(axis=1), np.inf)
     face = np.lexsort((gap, np.repeat(np.arange(len(begin)), faces)))[begin]
     normal = vector / np.maximum(np.linalg.norm(vector, axis=1), 1e-9)[:, None]
-    return widest_balls(windows.voxel[face], normal, pore, edges, index[face])
+    return widest_balls(windows.voxel[face], normal, space, edges, index[face])
 
 
 @njit(cache=True)
@@ -90,7 +93,6 @@ def _ducts(
     axis: NDArray[np.int8],
     sign: NDArray[np.int8],
     vector: NDArray[np.float64],
-    pore: NDArray[np.bool_],
     edges: NDArray[np.float64],
     shape: NDArray[np.int64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

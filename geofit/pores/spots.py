@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from geofit.pores.packed import PackedSpace, slot
 from geofit.pores.windows import Windows
 
 __all__ = ["own_saddle", "widest_balls"]
@@ -20,7 +21,7 @@ _STRIP = 0.5
 def widest_balls(
     voxel: NDArray[np.int64],
     normal: NDArray[np.float64],
-    pore: NDArray[np.bool_],
+    space: PackedSpace,
     edges: NDArray[np.float64],
     start_at: NDArray[np.float64],
 ) -> NDArray[np.float64]:
@@ -32,12 +33,13 @@ def widest_balls(
         Flat index of the voxel in which the distance to the rock is known to be large.
     normal : ndarray of float, shape (n, 3)
         The centre moves only across this direction; zero: it moves freely.
-    pore : ndarray of bool, shape (n0, n1, n2)
+    space : PackedSpace
+        The pore space.
     edges : ndarray of float, shape (3,)
     start_at : ndarray of float, shape (n, 3)
         Place from which the search starts, in indices; within a voxel of ``voxel``.
     """
-    n0, n1, n2 = pore.shape
+    n0, n1, n2 = space.shape
     out = np.zeros(len(voxel))
     for row in range(len(voxel)):
         here = voxel[row]
@@ -56,7 +58,7 @@ def widest_balls(
                     shell = abs(a - i) == reach or abs(b - j) == reach
                     step = 1 if shell else max(2 * reach, 1)
                     for c in range(k - reach, k + reach + 1, step):
-                        if c < 0 or c >= n2 or pore[a, b, c]:
+                        if c < 0 or c >= n2 or slot(space, (a * n1 + b) * n2 + c) >= 0:
                             continue
                         x, y, z = (a - i) * edges[0], (b - j) * edges[1], (c - k) * edges[2]
                         gap = np.sqrt(x * x + y * y + z * z)
@@ -121,7 +123,11 @@ def _nearest(rocks: NDArray[np.float64], count: int, px: float, py: float, pz: f
 
 
 def own_saddle(
-    windows: Windows, pore_of: NDArray[np.int32], levels: NDArray[np.int32], radius_at: NDArray[np.float64]
+    windows: Windows,
+    space: PackedSpace,
+    pore_of: NDArray[np.int32],
+    levels: NDArray[np.int32],
+    radius_at: NDArray[np.float64],
 ) -> NDArray[np.bool_]:
     """Return which windows are throats of their own.
 
@@ -135,9 +141,7 @@ def own_saddle(
         np.add.reduceat(np.where(windows.axis == a, windows.sign, 0).astype(float), begin) ** 2 for a in range(3)
     )
     strip = np.sqrt(area2) < _STRIP * np.pi * radius_at[np.maximum.reduceat(windows.level, begin)] ** 2
-    third = _wider_third(
-        windows.start, windows.voxel, windows.axis, windows.level, windows.first, windows.second, pore_of, levels, strip
-    )
+    third = _wider_third(windows, space, pore_of, levels, strip)
     widest = np.maximum.reduceat(windows.level, begin)
     kept = np.ones(len(third), dtype=bool)
     present: dict[tuple[int, int], int] = {}
@@ -157,18 +161,15 @@ def own_saddle(
 
 @njit(cache=True)
 def _wider_third(
-    start: NDArray[np.int64],
-    voxel: NDArray[np.int64],
-    axis: NDArray[np.int8],
-    level: NDArray[np.int32],
-    first: NDArray[np.int64],
-    second: NDArray[np.int64],
+    windows: Windows,
+    space: PackedSpace,
     pore_of: NDArray[np.int32],
     levels: NDArray[np.int32],
     strip: NDArray[np.bool_],
 ) -> NDArray[np.int64]:
     """Return the third pore that is wider at the widest place of each window, or -1."""
-    n0, n1, n2 = levels.shape
+    n0, n1, n2 = space.shape
+    start, voxel, axis, level = windows.start, windows.voxel, windows.axis, windows.level
     out = np.full(len(start) - 1, -1, np.int64)
     for window in range(len(start) - 1):
         top = level[start[window] : start[window + 1]].max()
@@ -181,10 +182,13 @@ def _wider_third(
             for a in range(max(i - 1, 0), min(p + 2, n0)):
                 for b in range(max(j - 1, 0), min(q + 2, n1)):
                     for c in range(max(k - 1, 0), min(r + 2, n2)):
-                        other = pore_of[a, b, c] - 1
-                        if other < 0 or other == first[window] or other == second[window]:
+                        place = slot(space, (a * n1 + b) * n2 + c)
+                        if place < 0:
                             continue
-                        wider = levels[a, b, c]
+                        other = pore_of[place] - 1
+                        if other == windows.first[window] or other == windows.second[window]:
+                            continue
+                        wider = levels[place]
                         if wider > best or (wider == best and 0 <= other < out[window]):
                             best, out[window] = wider, other
     return out

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import GeofitError
 from geofit.data.messages import message
 
-__all__ = ["RockVolume", "VolumeError", "label_shares"]
+__all__ = ["RockVolume", "VolumeError", "label_shares", "pore_mask", "voxel_edges"]
 
 _SHOWN = 8
 
@@ -68,16 +68,20 @@ class RockVolume:
     ) -> None:
         values = np.asarray(array)
         _check_array(values)
-        mask = _pore_mask(values, pore)
+        mask = pore_mask(values, pore)
         mask.flags.writeable = False
         object.__setattr__(self, "pore", mask)
-        object.__setattr__(self, "voxel", _voxel_edges(voxel))
+        object.__setattr__(self, "voxel", voxel_edges(voxel))
 
     @property
     def shape(self) -> tuple[int, int, int]:
         """Number of voxels along each axis."""
         n0, n1, n2 = self.pore.shape
         return n0, n1, n2
+
+    def slab(self, first: int, end: int) -> NDArray[np.bool_]:
+        """Return the slices ``first`` ... ``end - 1``, True in pores."""
+        return self.pore[first:end]
 
     @property
     def porosity(self) -> float:
@@ -160,11 +164,11 @@ def _check_array(values: NDArray[Any]) -> None:
         )
 
 
-def _pore_mask(values: NDArray[Any], pore: Any) -> NDArray[np.bool_]:
-    """Return the pore voxels, or raise if the label leaves a doubt."""
+def pore_mask(values: NDArray[Any], pore: Any, shares: dict[Any, float] | None = None) -> NDArray[np.bool_]:
+    """Return the pore voxels, or raise if the label leaves a doubt; ``shares`` are those of the values, if known."""
     several = isinstance(pore, Collection) and not isinstance(pore, str | bytes)
     if pore is None or not several:
-        shares = label_shares(values)
+        shares = shares or label_shares(values)
         if pore is None:
             raise VolumeError(
                 message(
@@ -195,7 +199,7 @@ def _pore_mask(values: NDArray[Any], pore: Any) -> NDArray[np.bool_]:
                 "pores.voxel-pore-value",
                 "No voxel has the pore value {pore}; the volume has the values {labels}. Check which value is pore.",
                 pore=list(pore) if several and len(pore) <= _SHOWN else pore,
-                labels=_listed(label_shares(values)),
+                labels=_listed(shares or label_shares(values)),
             )
         )
     return np.ascontiguousarray(mask)
@@ -206,7 +210,8 @@ def _listed(shares: dict[Any, float]) -> str:
     return shown if len(shares) <= _SHOWN else f"{shown}, ..."
 
 
-def _voxel_edges(voxel: float | Collection[float] | None) -> tuple[float, float, float]:
+def voxel_edges(voxel: float | Collection[float] | None) -> tuple[float, float, float]:
+    """Return the edges of a voxel, or raise if they are missing or not lengths."""
     if voxel is None:
         raise VolumeError(
             message(

@@ -12,6 +12,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from geofit.pores.packed import PackedSpace, slot, slots
+
 __all__ = ["Windows", "inner_windows", "outer_windows"]
 
 
@@ -34,34 +36,36 @@ class Windows(NamedTuple):
     level: NDArray[np.int32]
 
 
-def inner_windows(pore_of: NDArray[np.int32], levels: NDArray[np.int32], pores: int) -> Windows:
+def inner_windows(space: PackedSpace, pore_of: NDArray[np.int32], levels: NDArray[np.int32], pores: int) -> Windows:
     """Return the windows between pores; ``pore_of`` counts from 1."""
-    key, voxel, axis, sign, level = _inner_faces(pore_of, levels, _count_inner(pore_of), pores + 1)
-    found = _grouped(pore_of.shape, key, voxel, axis, sign, level, pores + 1)
+    count = _inner_faces(space, pore_of, levels, 0, pores + 1)[0]
+    _, key, voxel, axis, sign, level = _inner_faces(space, pore_of, levels, count, pores + 1)
+    found = _grouped(space.shape, key, voxel, axis, sign, level, pores + 1)
     return found._replace(second=found.second - 1)
 
 
-def outer_windows(pore_of: NDArray[np.int32], levels: NDArray[np.int32]) -> Windows:
+def outer_windows(space: PackedSpace, pore_of: NDArray[np.int32], levels: NDArray[np.int32]) -> Windows:
     """Return the windows of pores in the six faces of the sample."""
     keys, voxels, axes, signs, found = [], [], [], [], []
-    edge = np.array([pore_of.shape[1] * pore_of.shape[2], pore_of.shape[2], 1])
+    steps = np.array([space.shape[1] * space.shape[2], space.shape[2], 1])
     for face in range(6):
         axis, high = divmod(face, 2)
-        end = pore_of.shape[axis] - 1 if high else 0
-        pores = np.asarray(pore_of.take(end, axis=axis))
-        mask = pores > 0
-        keys.append(pores[mask].astype(np.int64) * 8 + face)
-        p, q = np.nonzero(mask)
-        voxels.append(end * edge[axis] + p * np.delete(edge, axis)[0] + q * np.delete(edge, axis)[1])
-        axes.append(np.full(int(mask.sum()), axis, np.int8))
-        signs.append(np.full(int(mask.sum()), 1 if high else -1, np.int8))
-        found.append(np.asarray(levels.take(end, axis=axis))[mask])
+        across = [other for other in range(3) if other != axis]
+        rows, columns = (np.arange(space.shape[other]) * steps[other] for other in across)
+        voxel = ((space.shape[axis] - 1) * steps[axis] * high + rows[:, None] + columns).ravel()
+        place = slots(space, voxel)
+        voxel, place = voxel[place >= 0], place[place >= 0]
+        keys.append(pore_of[place].astype(np.int64) * 8 + face)
+        voxels.append(voxel)
+        axes.append(np.full(len(voxel), axis, np.int8))
+        signs.append(np.full(len(voxel), 1 if high else -1, np.int8))
+        found.append(levels[place])
     key, voxel, level = np.concatenate(keys), np.concatenate(voxels), np.concatenate(found)
-    return _grouped(pore_of.shape, key, voxel, np.concatenate(axes), np.concatenate(signs), level, 8)
+    return _grouped(space.shape, key, voxel, np.concatenate(axes), np.concatenate(signs), level, 8)
 
 
 def _grouped(
-    shape: tuple[int, ...],
+    shape: NDArray[np.int64],
     key: NDArray[np.int64],
     voxel: NDArray[np.int64],
     axis: NDArray[np.int8],
@@ -90,53 +94,36 @@ def _grouped(
 
 
 @njit(cache=True)
-def _count_inner(pore_of: NDArray[np.int32]) -> int:
-    n0, n1, n2 = pore_of.shape
-    count = 0
-    for i in range(n0):
-        for j in range(n1):
-            for k in range(n2):
-                own = pore_of[i, j, k]
-                if own == 0:
-                    continue
-                if i + 1 < n0 and pore_of[i + 1, j, k] != own and pore_of[i + 1, j, k] > 0:
-                    count += 1
-                if j + 1 < n1 and pore_of[i, j + 1, k] != own and pore_of[i, j + 1, k] > 0:
-                    count += 1
-                if k + 1 < n2 and pore_of[i, j, k + 1] != own and pore_of[i, j, k + 1] > 0:
-                    count += 1
-    return count
-
-
-@njit(cache=True)
 def _inner_faces(
-    pore_of: NDArray[np.int32], levels: NDArray[np.int32], count: int, base: int
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int8], NDArray[np.int8], NDArray[np.int32]]:
-    n0, n1, n2 = pore_of.shape
+    space: PackedSpace, pore_of: NDArray[np.int32], levels: NDArray[np.int32], count: int, base: int
+) -> tuple[int, NDArray[np.int64], NDArray[np.int64], NDArray[np.int8], NDArray[np.int8], NDArray[np.int32]]:
+    """Return how many voxel faces part two pores, and the first ``count`` of them."""
+    n0, n1, n2 = space.shape
+    steps = (n1 * n2, n2, 1)
     key, voxel = np.empty(count, np.int64), np.empty(count, np.int64)
     axis, sign = np.empty(count, np.int8), np.empty(count, np.int8)
     level = np.empty(count, np.int32)
     row = 0
-    for i in range(n0):
-        for j in range(n1):
-            for k in range(n2):
-                own = pore_of[i, j, k]
-                if own == 0:
-                    continue
-                for d in range(3):
-                    a, b, c = i + (d == 0), j + (d == 1), k + (d == 2)
-                    if a == n0 or b == n1 or c == n2:
-                        continue
-                    other = pore_of[a, b, c]
-                    if other == 0 or other == own:
-                        continue
-                    key[row] = np.int64(min(own, other)) * base + max(own, other)
-                    voxel[row] = (i * n1 + j) * n2 + k
-                    axis[row] = d
-                    sign[row] = 1 if own < other else -1
-                    level[row] = min(levels[i, j, k], levels[a, b, c])
-                    row += 1
-    return key, voxel, axis, sign, level
+    for here in range(n0 * n1 * n2):
+        place = slot(space, here)
+        if place < 0:
+            continue
+        own = pore_of[place]
+        for d in range(3):
+            if here // steps[d] % space.shape[d] == space.shape[d] - 1:
+                continue
+            there = slot(space, here + steps[d])
+            if there < 0 or pore_of[there] == own:
+                continue
+            if row < count:
+                other = pore_of[there]
+                key[row] = np.int64(min(own, other)) * base + max(own, other)
+                voxel[row] = here
+                axis[row] = d
+                sign[row] = 1 if own < other else -1
+                level[row] = min(levels[place], levels[there])
+            row += 1
+    return row, key, voxel, axis, sign, level
 
 
 @njit(cache=True)

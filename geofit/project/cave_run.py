@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,8 @@ from geofit.project.body_files import folder_for, write_figures, write_triangles
 if TYPE_CHECKING:
     from geofit.caves.adjust import AdjustedSurvey
     from geofit.caves.body import PassageBody
+    from geofit.caves.clearance import Clearance
+    from geofit.caves.strata import Horizon, Stratum
     from geofit.caves.survey import Survey
     from geofit.caves.uncertainty import VolumeEstimate
 
@@ -27,12 +29,17 @@ COARSER = 3.0
 
 @dataclass(frozen=True, eq=False)
 class CaveRun:
-    """Passages of a survey, their volume, the spacing of their triangles (metres), and the files."""
+    """Passages of a survey, their volume, the spacing of their triangles (metres), and the files.
+
+    ``strata`` are the parts between horizons, ``clearance`` the distances of a planned excavation, if asked for.
+    """
 
     body: PassageBody
     volume: VolumeEstimate
     spacing: float
     files: tuple[Path, ...]
+    strata: tuple[Stratum, ...] = ()
+    clearance: Clearance | None = None
 
     @property
     def adjusted(self) -> AdjustedSurvey:
@@ -64,10 +71,23 @@ class CaveRun:
             "loops": plain(loops),
             "filled_walls": plain(self.body.sections.filled),
             "volume": {**plain(estimate), "sigma": estimate.sigma, "p10": estimate.p10, "p90": estimate.p90},
+            "strata": plain(self.strata),
+            "clearance": None if self.clearance is None else _nearest(self.clearance),
             "mesh_spacing": self.spacing,
             "thinner_than_mesh": [list(shot) for shot in self.body.thinner_than(self.spacing)],
             "version": __version__,
         }
+
+
+def _nearest(clearance: Clearance) -> dict[str, Any]:
+    n = clearance.nearest
+    return {
+        "least": clearance.least,
+        "sigma": float(clearance.sigma[n]),
+        "station": clearance.station[n],
+        "point": clearance.points[n].tolist(),
+        "wall": clearance.wall[n].tolist(),
+    }
 
 
 def read_survey(path: Path) -> Survey:
@@ -97,12 +117,15 @@ def run_cave(
     *,
     radius: float | None = None,
     spacing: float | None = None,
+    excavation: Survey | None = None,
+    horizons: Mapping[str, Horizon] | None = None,
     progress: Progress | None = None,
 ) -> CaveRun:
     """Adjust a survey, make its passages a body, and write it.
 
     The files: ``NAME_stations.csv``, ``NAME_loops.csv``, ``NAME_filled_walls.csv``, the body as ``NAME.stl`` and
-    ``.vtp``, and ``NAME.json`` with the figures.
+    ``.vtp``, and ``NAME.json`` with the figures; ``NAME_strata.csv`` with horizons, ``NAME_clearance.csv`` with an
+    excavation.
 
     Parameters
     ----------
@@ -114,6 +137,10 @@ def run_cave(
         Distance of the walls of a survey without walls, metres.
     spacing : float, optional
         Spacing of the triangles, metres; by default three eighths of the median diameter.
+    excavation : Survey, optional
+        A planned excavation with the size of its section, whose distance from the passages is wanted.
+    horizons : mapping of str to surface, optional
+        Horizons from the top down that cut the passages into strata.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
 
@@ -126,6 +153,8 @@ def run_cave(
     """
     from geofit.caves.adjust import adjust
     from geofit.caves.body import centreline_body
+    from geofit.caves.clearance import clearance, excavation_points
+    from geofit.caves.strata import strata
     from geofit.caves.uncertainty import volume_estimate
 
     tell(progress, "adjust", 0.0)
@@ -136,12 +165,21 @@ def run_cave(
     tell(progress, "triangles", 0.5)
     step = COARSER * body.fine if spacing is None else spacing
     triangles = body.triangulate(step)
+    parts: tuple[Stratum, ...] = ()
+    if horizons:
+        tell(progress, "strata", 0.7)
+        parts = strata(body, horizons)
+    away = None
+    if excavation is not None:
+        tell(progress, "clearance", 0.8)
+        points, size = excavation_points(adjust(excavation))
+        away = clearance(body, points, polyline=False, radius=size)
     tell(progress, "files", 0.9)
     name = Path(survey.name).stem
     stem = folder_for(out) / file_stems([name])[name]
-    tables = _write_tables(body, stem)
+    tables = (*_write_tables(body, stem), *_write_cuts(parts, away, stem))
     figures = stem.with_name(f"{stem.name}.json")
-    run = CaveRun(body, volume, step, (figures, *tables, *write_triangles(triangles, stem)))
+    run = CaveRun(body, volume, step, (figures, *tables, *write_triangles(triangles, stem)), parts, away)
     write_figures(run.figures(), figures)
     return run
 
@@ -171,6 +209,23 @@ def _write_tables(body: PassageBody, stem: Path) -> tuple[Path, ...]:
             ((filled.station, filled.wall, f"{filled.distance:.3f}") for filled in body.sections.filled),
         ),
     )
+
+
+def _write_cuts(parts: Sequence[Stratum], away: Clearance | None, stem: Path) -> tuple[Path, ...]:
+    files = []
+    if parts:
+        rows = ((p.top, p.base, "yes" if p.known else "no", f"{p.length:.3f}", f"{p.volume:.3f}") for p in parts)
+        path = stem.with_name(f"{stem.name}_strata.csv")
+        files.append(_table(path, ("top", "base", "known", "length_m", "volume_m3"), rows))
+    if away is not None:
+        places = zip(away.points.tolist(), away.distance.tolist(), away.wall.tolist(), strict=True)
+        cells = (
+            (*(f"{v:.3f}" for v in (*point, distance, *wall)), station, f"{sigma:.3f}")
+            for (point, distance, wall), station, sigma in zip(places, away.station, away.sigma.tolist(), strict=True)
+        )
+        header = ("x", "y", "z", "distance_m", "wall_x", "wall_y", "wall_z", "station", "sigma_m")
+        files.append(_table(stem.with_name(f"{stem.name}_clearance.csv"), header, cells))
+    return tuple(files)
 
 
 def _table(path: Path, header: Sequence[str], rows: Iterable[Sequence[str]]) -> Path:

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 
 from geofit.data.accuracy import plain
 from geofit.data.files import file_stems
-from geofit.data.progress import Progress, tell
+from geofit.data.progress import Progress, tell, within
 from geofit.project.body_files import folder_for, write_figures, write_triangles
 
 if TYPE_CHECKING:
     from geofit.pores.balls import MaximalBalls
     from geofit.pores.network import PoreNetwork
+    from geofit.pores.permeability import Permeability
+    from geofit.pores.sliced import SlicedVolume
     from geofit.pores.surface import PoreSurface
     from geofit.pores.table import BeforeAfter
     from geofit.pores.volume import RockVolume
@@ -23,13 +25,17 @@ __all__ = ["PoresRun", "run_pores"]
 
 @dataclass(frozen=True, eq=False)
 class PoresRun:
-    """Pore space of a rock volume: maximal balls, network, surface, figures before and after, files."""
+    """Pore space of a rock volume: maximal balls, network, surface, figures before and after, files.
 
-    volume: RockVolume
-    balls: MaximalBalls
+    A volume that is read slab by slab has neither surface nor table, which need all voxels at once.
+    """
+
+    volume: RockVolume | SlicedVolume
+    balls: MaximalBalls | None
     network: PoreNetwork
-    surface: PoreSurface
-    table: BeforeAfter
+    permeability: Permeability
+    surface: PoreSurface | None
+    table: BeforeAfter | None
     files: tuple[Path, ...]
 
     def figures(self) -> dict[str, Any]:
@@ -40,24 +46,26 @@ class PoresRun:
         return {
             "shape": plain(self.volume.shape),
             "voxel": plain(self.volume.voxel),
-            "maximal_balls": len(self.balls),
+            "porosity": self.volume.porosity,
+            "maximal_balls": None if self.balls is None else len(self.balls),
             "pores": len(network.pores),
             "throats": len(network.throats),
             "dropped_pores": len(network.dropped),
             "mean_coordination": float(network.coordination.mean()) if len(network.pores) else 0.0,
             "percolates": plain(network.percolates),
             "settings": plain(network.settings),
-            **plain(self.table),
+            "network_permeability": plain(self.permeability.square_metres),
+            **(plain(self.table) if self.table is not None else {}),
             "version": __version__,
         }
 
 
-def run_pores(volume: RockVolume, out: Path, name: str, progress: Progress | None = None) -> PoresRun:
+def run_pores(volume: RockVolume | SlicedVolume, out: Path, name: str, progress: Progress | None = None) -> PoresRun:
     """Extract balls, network and surface of a pore space and write them.
 
     The files: ``NAME_pores.csv``, ``_throats.csv``, ``_face_throats.csv`` and ``_dropped.csv``, ``NAME_openpnm.json``,
     Statoil's ``NAME_node1.dat`` to ``NAME_link2.dat``, ``NAME_network.vtp``, the surface as ``NAME_surface.stl`` and
-    ``.vtp``, and ``NAME.json`` with the figures.
+    ``.vtp``, and ``NAME.json`` with the figures. A volume that is read slab by slab gets no surface.
 
     Parameters
     ----------
@@ -78,26 +86,31 @@ def run_pores(volume: RockVolume, out: Path, name: str, progress: Progress | Non
     from geofit.io.export.network import write_network_csv, write_network_vtp, write_openpnm_json, write_statoil
     from geofit.pores.balls import maximal_balls
     from geofit.pores.extraction import pore_network
+    from geofit.pores.permeability import network_permeability
     from geofit.pores.surface import pore_surface
     from geofit.pores.table import before_after
+    from geofit.pores.volume import RockVolume
 
     stem = folder_for(out) / file_stems([name])[name]
-    tell(progress, "maximal balls", 0.0)
-    balls = maximal_balls(volume)
-    tell(progress, "network", 0.2)
-    network = pore_network(volume)
-    tell(progress, "surface", 0.4)
-    surface = pore_surface(volume, network)
-    tell(progress, "figures", 0.5)
-    table = before_after(volume, network, surface)
+    balls = None
+    if volume.cubic or isinstance(volume, RockVolume):
+        balls = maximal_balls(volume, progress=within(progress, 0.0, 0.2))
+    network = pore_network(volume, progress=within(progress, 0.2, 0.4))
+    tell(progress, "permeability", 0.4)
+    permeability = network_permeability(network)
+    surface, table = None, None
+    if isinstance(volume, RockVolume):
+        surface = pore_surface(volume, network, progress=within(progress, 0.4, 0.5))
+        table = before_after(volume, network, surface, progress=within(progress, 0.5, 0.8))
     tell(progress, "files", 0.8)
     openpnm, lines = stem.with_name(f"{stem.name}_openpnm.json"), stem.with_name(f"{stem.name}_network.vtp")
     tables = write_network_csv(network, out, stem.name)
     write_openpnm_json(network, openpnm)
     write_network_vtp(network, lines)
     statoil = write_statoil(network, out, stem.name)
-    triangles = write_triangles(surface.triangulate(), stem.with_name(f"{stem.name}_surface"))
     figures = stem.with_name(f"{stem.name}.json")
-    run = PoresRun(volume, balls, network, surface, table, (figures, *tables, openpnm, *statoil, lines, *triangles))
+    triangles = write_triangles(surface.triangulate(), stem.with_name(f"{stem.name}_surface")) if surface else ()
+    files = (figures, *tables, openpnm, *statoil, lines, *triangles)
+    run = PoresRun(volume, balls, network, permeability, surface, table, files)
     write_figures(run.figures(), figures)
     return run

@@ -131,6 +131,88 @@ def test_pores_counts_two_chambers_and_their_throat(rock, tmp_path, monkeypatch,
     assert not any(path.name.startswith(".") for path in (tmp_path / "o").iterdir())
 
 
+def test_pores_in_slabs_finds_the_same_network_without_a_surface(rock, tmp_path, monkeypatch, capsys):
+    found = {}
+    for way in ("whole", "slabs"):
+        options = ("--pore", "0", "--voxel", "1e-6", "--out", tmp_path / way, "--json")
+        code, out, err = run(monkeypatch, capsys, "pores", rock, *options, *(["--slabs"] if way == "slabs" else []))
+        assert code == 0, err
+        found[way] = json.loads(out)
+    for name in ("pores", "throats", "maximal_balls", "network_permeability", "porosity"):
+        assert found["slabs"][name] == found["whole"][name]
+    for table in ("pores", "throats", "face_throats", "dropped"):
+        name = f"rock_9x9x20_{table}.csv"
+        assert (tmp_path / "slabs" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    assert not list((tmp_path / "slabs").glob("*surface*"))
+    code, out, err = run(monkeypatch, capsys, "pores", rock, *options[:4], "--slabs", "--out", tmp_path / "o")
+    assert code == 0, err
+    assert "network permeability" in out + err
+
+
+@pytest.mark.parametrize(
+    ("values", "options", "words"),
+    [
+        pytest.param([1, 1], ("--pore", "0"), ("No voxel", "pore"), id="no pore voxel"),
+        pytest.param([0, 1, 2], ("--pore", "0"), ("3 different values", "pore=["), id="three labels"),
+    ],
+)
+@pytest.mark.parametrize("slabs", [(), ("--slabs",)])
+def test_volumes_that_leave_a_doubt_are_errors_with_a_remedy(
+    values, options, words, slabs, tmp_path, monkeypatch, capsys
+):
+    np.array(values, np.uint8).repeat(60 // len(values)).tofile(tmp_path / "v_3x4x5.raw")
+    where = ("--voxel", "1e-6", "--out", tmp_path / "o")
+    code, _, err = run(monkeypatch, capsys, "pores", tmp_path / "v_3x4x5.raw", *options, *where, *slabs)
+    assert code == 2
+    assert all(word in " ".join(err.split()) for word in words), err
+    assert not (tmp_path / "o").exists()
+
+
+def test_no_percolating_axis_is_a_result_with_its_reason(tmp_path, monkeypatch, capsys):
+    grains = np.ones((12, 12, 12), np.uint8)
+    grains[3:9, 3:9, 3:9] = 0
+    grains.tofile(tmp_path / "closed_12x12x12.raw")
+    options = ("--pore", "0", "--voxel", "1e-6", "--out", tmp_path / "o")
+    code, out, err = run(monkeypatch, capsys, "pores", tmp_path / "closed_12x12x12.raw", *options)
+    assert code == 0, err
+    said = " ".join((out + err).split())
+    for axis in range(3):
+        assert f"does not connect the two faces of axis {axis}" in said
+    assert "A larger sample or a finer scan may show a path" in said
+    assert json.loads((tmp_path / "o" / "closed_12x12x12.json").read_text())["network_permeability"] == [0.0] * 3
+
+
+def test_a_volume_larger_than_memory_names_the_slabs_as_remedy(rock, tmp_path, monkeypatch, capsys):
+    options = ("--pore", "0", "--voxel", "1e-6", "--out", tmp_path / "o")
+    monkeypatch.setattr("geofit.pores.memory.available_memory", lambda: 1000)
+    code, _, err = run(monkeypatch, capsys, "pores", rock, *options)
+    assert code == 2
+    assert "--slabs" in err
+    # The slab way needs less than the volume: it is asked for the memory of pores and of one slab.
+    from geofit.io.volume_slices import open_volume
+    from geofit.pores import pore_network, slabs
+    from geofit.pores.volume import VolumeError
+
+    volume = open_volume(rock, pore=0, voxel=1e-6)
+    with pytest.raises(VolumeError, match="memory"):
+        pore_network(volume)
+    monkeypatch.setattr(slabs, "VOXELS", 200)
+    monkeypatch.setattr("geofit.pores.memory.available_memory", lambda: int(32 * 692 + 0.2 * 1620 + 6 * 200) + 1)
+    assert len(pore_network(volume).pores) == 2
+
+
+def test_a_survey_with_an_unconnected_station_names_it(tmp_path, monkeypatch, capsys):
+    (tmp_path / "cave.svx").write_text(
+        "*begin c\n*data normal from to tape compass clino\n1 2 5 0 0\n2 3 5 90 0\n8 9 4 0 0\n*end c\n",
+        encoding="utf-8",
+    )
+    code, _, err = run(monkeypatch, capsys, "cave", tmp_path / "cave.svx", "--radius", "1", "--out", tmp_path / "o")
+    assert code == 2
+    assert "c.8" in err
+    assert "c.9" in err
+    assert not list((tmp_path / "o").rglob("*.*"))
+
+
 def test_pores_never_guesses_the_voxel_or_the_label(rock, tmp_path, monkeypatch, capsys):
     code, _, err = run(monkeypatch, capsys, "pores", rock, "--pore", "0", "--out", tmp_path / "o")
     assert (code, "voxel" in err) == (2, True)
@@ -193,6 +275,41 @@ def test_cave_needs_a_radius_where_nothing_has_a_size(tmp_path, monkeypatch, cap
     assert (code, "radius" in err) == (2, True)
     options = ("--radius", "1", "--out", tmp_path / "o")
     assert run(monkeypatch, capsys, "cave", tmp_path / "bare.svx", *options)[0] == 0
+
+
+def test_cave_cut_by_horizons_and_beside_an_excavation(tmp_path, monkeypatch, capsys):
+    """A level tube below a dipping plane that leaves it at a known place, and a gallery 9 m above its axis."""
+    line = write(tmp_path / "tube.csv", "line,station,x,y,z,radius", [("T", n, 20.0 * n, 0, 100, 2) for n in range(6)])
+    gallery = [("G", "a", 50, -40, 109, 3), ("G", "b", 50, 40, 109, 3)]
+    plan = write(tmp_path / "gallery.csv", "line,station,x,y,z,radius", gallery)
+    # z = 100 + (x - 30) / 2: above the axis east of x = 30.
+    corners = [(x, y, 100 + (x - 30) / 2) for x, y in ((-50, -50), (150, -50), (150, 50), (-50, 50))]
+    vertices = "".join(f"VRTX {n} {x} {y} {z}\n" for n, (x, y, z) in enumerate(corners, 1))
+    (tmp_path / "dip.ts").write_text(
+        f"GOCAD TSurf 1\nHEADER {{\nname:dip\n}}\nTFACE\n{vertices}TRGL 1 2 3\nTRGL 1 3 4\nEND\n", encoding="utf-8"
+    )
+    options = ("--excavation", plan, "--horizon", tmp_path / "dip.ts", "--out", tmp_path / "o", "--json")
+    code, out, err = run(monkeypatch, capsys, "cave", line, *options)
+    assert code == 0, err
+    figures = json.loads(out)
+    above, below, unknown = figures["strata"]
+    assert (above["base"], below["top"], unknown["known"]) == ("dip", "dip", False)
+    assert above["length"] == pytest.approx(30, abs=1e-6)
+    assert below["length"] == pytest.approx(70, abs=1e-6)
+    cap = 2 / 3 * np.pi * 8
+    assert above["volume"] == pytest.approx(np.pi * 4 * 30 + cap, rel=0.01)
+    assert below["volume"] == pytest.approx(np.pi * 4 * 70 + cap, rel=0.01)
+    assert above["volume"] + below["volume"] == pytest.approx(figures["volume"]["volume"], rel=1e-9)
+    assert figures["clearance"]["least"] == pytest.approx(9 - 2 - 3, abs=0.1)
+    assert figures["clearance"]["point"] == pytest.approx([50, 0, 109], abs=1.01)
+    distances = [float(row["distance_m"]) for row in read(tmp_path / "o" / "tube_clearance.csv")]
+    assert min(distances) == pytest.approx(figures["clearance"]["least"], abs=1e-3)
+    assert [row["base"] for row in read(tmp_path / "o" / "tube_strata.csv")] == ["dip", "", ""]
+    assert figures["volume"]["p10"] < figures["volume"]["volume"] < figures["volume"]["p90"]
+    code, out, err = run(monkeypatch, capsys, "cave", line, *options[:-1])
+    assert code == 0, err
+    assert "above dip" in out + err
+    assert "least distance to the excavation" in out + err
 
 
 @pytest.mark.skipif(not (DATA / "caves").is_dir(), reason="needs the real data sets (GEOFIT_DATA)")

@@ -1,0 +1,142 @@
+"""Rock volumes that stay on the disk, read slice by slice: raw, npy, MetaImage, TIFF, folders of slices, zarr."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.errors import InputError
+from geofit.data.messages import message
+from geofit.io.volume_raw import map_meta_image, shape_and_type
+from geofit.io.volume_tiff import slice_files
+from geofit.io.volume_zarr import open_zarr
+from geofit.io.volumes import RAW, TIFF, is_zarr
+from geofit.pores.sliced import SlicedVolume, Voxels
+
+__all__ = ["open_volume"]
+
+
+class _TiffPages:
+    """Pages of a TIFF file, or files of one slice each, as slices along axis 0."""
+
+    def __init__(self, files: list[Path]) -> None:
+        from PIL import Image
+
+        with Image.open(files[0]) as image:
+            self._pages = getattr(image, "n_frames", 1) if len(files) == 1 else 1
+            width, height = image.size
+        self._files = files
+        self.shape = (len(files) * self._pages, height, width)
+
+    def __getitem__(self, slices: slice) -> NDArray[Any]:
+        from geofit.io.volume_tiff import read_pages
+
+        first, end, _ = slices.indices(self.shape[0])
+        if len(self._files) == 1:
+            return read_pages(self._files[0], self._files[0].name, range(first, end))
+        found = [read_pages(file, file.name, range(1))[0] for file in self._files[first:end]]
+        for file, slice_ in zip(self._files[first:end], found, strict=True):
+            if slice_.shape != self.shape[1:]:
+                raise InputError(
+                    message(
+                        "import.size-differs-first",
+                        "its size differs from that of the first slice, {first}",
+                        first=self._files[0].name,
+                    ),
+                    message("import.export-slices-same", "Export all slices with the same size."),
+                    file=str(file),
+                )
+        return np.stack(found)
+
+
+def open_volume(
+    path: str | PathLike[str],
+    *,
+    pore: Any | Collection[Any] | None = None,
+    voxel: float | Sequence[float] | None = None,
+    shape: Sequence[int] | None = None,
+    dtype: str | None = None,
+    name: str | None = None,
+) -> SlicedVolume:
+    """Open a rock volume without reading it into memory.
+
+    Parameters
+    ----------
+    path : path
+        A raw, npy, mhd, mha or TIFF file, a folder of TIFF slices, or a zarr store. Packed files (gz, zip, npz) have to
+        be unpacked first.
+    pore, voxel, shape, dtype, name
+        As for :func:`read_volume`.
+
+    Returns
+    -------
+    SlicedVolume
+        For :func:`geofit.pore_network` and :func:`geofit.maximal_balls`, which work through it slab by slab; edges in
+        metres.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, packed, damaged, of an unknown kind, or its shape is unknown.
+    VolumeError
+        As for :func:`read_volume`.
+
+    Notes
+    -----
+    Formats: ``docs/formats_in.md``.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = (Path(folder) / "rock_2x3x4.raw").write_bytes(bytes(range(2)) * 12)
+    ...     open_volume(Path(folder) / "rock_2x3x4.raw", pore=0, voxel=5e-6).porosity
+    0.5
+    """
+    path = Path(path)
+    if not path.exists():
+        raise InputError(
+            message("import.file-folder", "there is no such file or folder"),
+            message("import.check-path", "Check the path."),
+            file=str(path),
+        )
+    try:
+        values, stated = _voxels(path, shape, dtype, name)
+        return SlicedVolume(values, pore=pore, voxel=stated if voxel is None else voxel)
+    except OSError as error:
+        raise InputError(
+            message("import.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
+            message("import.copy-export-again", "Copy or export it again."),
+            file=str(path),
+        ) from None
+
+
+def _voxels(
+    path: Path, shape: Sequence[int] | None, dtype: str | None, name: str | None
+) -> tuple[Voxels, tuple[float, float, float] | None]:
+    kind = path.suffix.lower()
+    if path.is_dir():
+        return (open_zarr(path, name) if is_zarr(path) else _TiffPages(slice_files(path))), None
+    if kind in TIFF:
+        return _TiffPages([path]), None
+    if kind == ".npy":
+        return np.load(path, mmap_mode="r", allow_pickle=False), None
+    if kind in (".mhd", ".mha"):
+        return map_meta_image(path)
+    if kind in RAW:
+        found, stored = shape_and_type(path.name, path.stat().st_size, shape, dtype, path)
+        return np.memmap(path, stored, "r", shape=found), None
+    raise InputError(
+        message(
+            "import.not-slice-by-slice",
+            "files ending in '{ending}' cannot be read slice by slice",
+            ending=kind,
+        ),
+        message("import.unpack-volume", "Unpack the file, or convert it to raw, npy, tif or zarr."),
+        file=str(path),
+    )
