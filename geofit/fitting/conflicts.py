@@ -10,7 +10,7 @@ from geofit.data.accuracy import Conflict
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 
-__all__ = ["settle"]
+__all__ = ["near_pairs", "settle"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -48,7 +48,7 @@ def settle(
         One for each point that gives way, exact duplicates included.
     """
     kept = np.ones(len(points), dtype=bool)
-    pairs = _near_pairs(place, distance)
+    pairs = near_pairs(place, distance)
     if not len(pairs):
         return kept, ()
     met = np.unique(pairs)
@@ -67,7 +67,7 @@ def settle(
     return kept, tuple(conflicts)
 
 
-def _near_pairs(place: Floats, distance: float) -> Ints:
+def near_pairs(place: Floats, distance: float) -> Ints:
     """Return (m, 2) indices, ascending in each row, of the places nearer to each other than a distance.
 
     A sweep along the longest axis, strip by strip, each so narrow that few places stand abreast. Two places on both

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError
+from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, inverse_squares, spread, sum_squares
 from geofit.data.messages import message
 from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Optimum, plane_coefficients
 from geofit.splines import bspline
@@ -100,25 +101,32 @@ class Smoothed:
     plane: Floats
 
 
-def plane_trend(plane: Floats, z: Floats, weight: Floats) -> Floats:
+def plane_trend(plane: Rows, z: Rows, weight: Floats) -> Floats:
     """Return (3,) or (3, k) coefficients of the plane 1, u, v of weighted least squares, least slope first.
 
     Collinear points leave the slope across them at zero.
     """
-    root = np.sqrt(weight)
-    centre = weight @ plane / weight.sum()
-    matrix = np.stack([root, *(root * (plane - centre).T)]).T
-    solution: Floats = np.linalg.lstsq(matrix, z.reshape(len(z), -1) * root[:, None], rcond=1e-9)[0]
+    centre = sum(w @ part for part, w in blocks(plane, weight)) / sum(float(w.sum()) for (w,) in blocks(weight))
+    triangles = []
+    for part, values, w in blocks(plane, z, weight):
+        root = np.sqrt(w)
+        matrix = np.stack([root, *(root * (part - centre).T)]).T
+        whole = np.column_stack([matrix, values.reshape(len(values), -1) * root[:, None]])
+        # What the rows of a block say to least squares is in the triangle of their QR decomposition.
+        triangles.append(whole if len(plane) <= BLOCK else np.linalg.qr(whole, mode="r"))
+    rows = np.concatenate(triangles)
+    solution: Floats = np.linalg.lstsq(rows[:, :3], rows[:, 3:], rcond=1e-9)[0]
     solution[0] -= centre @ solution[1:]
     return solution.reshape(3, *z.shape[1:])
 
 
 def relative_noise(accuracy: Floats) -> Floats:
     """Return each point's noise against that of the median stated accuracy; 1 where none is stated."""
-    stated = np.isfinite(accuracy)
+    stated = np.isfinite(accuracy if accuracy.strides != (0,) else accuracy[:1])
+    if not stated.any():
+        return everywhere(1.0, len(accuracy))
     ratio = np.ones(len(accuracy))
-    if stated.any():
-        ratio[stated] = np.clip(accuracy[stated] / float(np.median(accuracy[stated])), 0.1, 10.0)
+    ratio[stated] = np.clip(accuracy[stated] / float(np.median(accuracy[stated])), 0.1, 10.0)
     return ratio
 
 
@@ -127,18 +135,23 @@ def precision_band(space: TensorSpace, field: Field) -> Floats:
     return field.rho * MaternPrecision(space, field.alpha).band(field.kappa, field.stretch)
 
 
-def drift_of(plane: Floats) -> Floats:
+def drift_of(plane: Rows) -> Floats:
     """Return (3, r) the combinations of 1, u, v that (n, 2) places determine: no slope across a line of points."""
-    centre = plane.mean(axis=0)
-    _, size, axes = np.linalg.svd(plane - centre, full_matrices=False)
+    if isinstance(plane, np.ndarray) and len(plane) <= BLOCK:
+        centre = plane.mean(axis=0)
+        _, size, axes = np.linalg.svd(plane - centre, full_matrices=False)
+    else:
+        centre, products = covariance(plane)
+        squares, columns = np.linalg.eigh(products)
+        size, axes = np.sqrt(np.maximum(squares[::-1], 0.0)), columns.T[::-1]
     known = axes[size > _NARROW * math.sqrt(len(plane))]
     return np.column_stack([[1.0, 0.0, 0.0], *([-(centre @ axis), *axis] for axis in known)])
 
 
 def choose(
     space: TensorSpace,
-    plane: Floats,
-    z: Floats,
+    plane: Rows,
+    z: Rows,
     noise: Floats,
     smoothing: float | None = None,
     known: Field | None = None,
@@ -176,9 +189,9 @@ def choose(
     turned = wide.shape[1] > wide.shape[0]
     if turned:
         wide, plane, known = wide.turned, plane[:, ::-1], known and known.turned
-    weight = 1 / noise**2
+    weight = inverse_squares(noise)
     band, right = wide.normal_equations(plane, z, weight)
-    square = float((weight @ (z.reshape(len(z), -1) ** 2)).sum())
+    square = sum_squares(z, weight)
     drift = plane_coefficients(wide) @ drift_of(plane)
 
     def likelihood(alpha: int) -> Likelihood:
@@ -199,9 +212,9 @@ def choose(
             size=space.size,
         )
         raise FitError(text)
-    spread, own = float(np.std(z, axis=0).max()), math.sqrt(best.variance)
-    contradictory = not few and own > CONTRADICTION * max(spread, FINEST)
-    field = Field(best.alpha, best.kappa, best.rho, best.stretch, own, contradictory, spread)
+    scatter, own = spread(z), math.sqrt(best.variance)
+    contradictory = not few and own > CONTRADICTION * max(scatter, FINEST)
+    field = Field(best.alpha, best.kappa, best.rho, best.stretch, own, contradictory, scatter)
     return (field.turned if turned else field), best.value
 
 
@@ -256,7 +269,7 @@ def restricted(space: TensorSpace, coefficients: Floats) -> Floats:
     return np.ascontiguousarray(net).reshape(space.size, *coefficients.shape[1:])
 
 
-def smooth(space: TensorSpace, field: Field, plane: Floats, z: Floats, weight: Floats) -> Smoothed:
+def smooth(space: TensorSpace, field: Field, plane: Rows, z: Rows, weight: Floats) -> Smoothed:
     """Return a chosen field on any space: heights about the trend, metres, with the plane of the likelihood."""
     wide = widened(space)
     turned = wide.shape[1] > wide.shape[0]

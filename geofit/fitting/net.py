@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtri
 
+from geofit.data.long_arrays import inverse_squares
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -22,7 +23,7 @@ from geofit.fitting.assemble import multiply_knots
 from geofit.fitting.field import ENOUGH, Field, Smoothed, choose, plane_trend, precision_band, relative_noise, smooth
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.parametrize import Chart
-from geofit.fitting.partition import Split
+from geofit.fitting.partition import CLOUD, Split
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -178,7 +179,7 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, T
 
 def smoothed(data: Data, space: TensorSpace, field: Field) -> Smoothed:
     """Return a chosen field on a space."""
-    return smooth(space, field, data.plane, data.value, 1 / relative_noise(data.accuracy) ** 2)
+    return smooth(space, field, data.plane, data.value, inverse_squares(relative_noise(data.accuracy)))
 
 
 def approximate_all(
@@ -236,7 +237,7 @@ class Periphery:
         misfit = _misfit(space, coefficients, plane, value)
         limit = self._limit(misfit)
         # A tolerance finer than the data's own contradiction is reported, not chased; nor is a given smoothing.
-        chased = not self.field.contradictory and self.settings.smoothing == "auto"
+        chased = not self.field.contradictory and self.settings.smoothing == "auto" and len(self.data.plane) <= CLOUD
         rounds = self.settings.max_iterations if chased else 0
         if chased and (misfit > limit).any():
             space, coefficients = self._narrowed(space, coefficients, plane[misfit > limit])
@@ -348,7 +349,7 @@ class Periphery:
     def _bent_notes(self) -> tuple[Message, ...]:
         """Say where meeting the points costs more between them than it gains at them."""
         noise, tolerance = self.field.noise, self.settings.interior_tolerance
-        chased = not self.field.contradictory and self.settings.smoothing == "auto"
+        chased = not self.field.contradictory and self.settings.smoothing == "auto" and len(self.data.plane) <= CLOUD
         if not chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
             return ()
         note = message(
@@ -374,6 +375,8 @@ class Periphery:
                 "the data contradict each other by about {noise:.2f} m, which is not chased",
                 noise=noise,
             )
+        elif len(self.data.plane) > CLOUD:
+            reason = message("fit.cloud-not-chased", "the points of a cloud are not met one by one")
         elif self.settings.smoothing != "auto":
             reason = message("fit.smoothing-given", "the smoothing is given")
         note = message(

@@ -12,7 +12,7 @@ from scipy.spatial import KDTree
 
 from geofit.data.messages import Message, message
 
-__all__ = ["Split", "split_all", "split_auto", "split_none", "split_rectangle"]
+__all__ = ["CLOUD", "Split", "split_all", "split_auto", "split_none", "split_rectangle"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -26,6 +26,8 @@ CONTRAST = 2.0
 FEWEST = 20
 #: More points than these are not interpolated without being asked: they outnumber any sensible control net.
 MOST = 2_000
+#: More points than these are a cloud, not a survey: no core of it is interpolated, and no point of it chased.
+CLOUD = 100 * MOST
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,6 +98,8 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
             n=n,
         )
         return split_none(plane, words)
+    if n > CLOUD:
+        return _uniform(plane, area, message("fit.cloud-of-points", "{n} points are a cloud", n=n))
     spacing = np.asarray(KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0])[:, -1]
     limit = _otsu(np.log(np.maximum(spacing, 1e-9)))
     if limit is None:

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
+from geofit.data.long_arrays import Rows, blocks
 from geofit.splines import bspline
 
 __all__ = ["CellSums", "cell_sums"]
@@ -51,21 +52,69 @@ class CellSums:
         return max(self.squares + float((local * twice).sum()), 0.0)
 
 
-def cell_sums(knots_u: Floats, knots_v: Floats, degree: int, plane: Floats, z: Floats, weight: Floats) -> CellSums:
+def cell_sums(knots_u: Floats, knots_v: Floats, degree: int, plane: Rows, z: Rows, weight: Floats) -> CellSums:
     """Sum (n, 2) places with heights (n,) and weights (n,) by the cells of two knot vectors."""
     cells_u, cells_v = np.unique(knots_u), np.unique(knots_v)
     shape = len(cells_u) - 1, len(cells_v) - 1
-    count = shape[0] * shape[1]
+    total = _Moments.none(shape[0] * shape[1], degree)
+    for parts in blocks(plane, z, weight):
+        total.add(_moments(cells_u, cells_v, degree, *parts))
+    grid = total.sums.reshape(*shape, *total.sums.shape[1:])
+    moments, heights = grid[..., : 2 * degree + 1], grid[..., : degree + 1, 2 * degree + 1 :]
+    return _of_basis(knots_u, knots_v, degree, moments, heights, total.mean, total.squares)
+
+
+@dataclass(eq=False)
+class _Moments:
+    """Sums of Legendre polynomials over the points of each cell, heights counted from the cell's mean.
+
+    ``sums`` (cells, 2p + 1, 3p + 2): of w P_i(u) P_j(v), then of w P_i(u) P_j(v) (z - mean); ``count``, ``mean``
+    (cells,); ``squares`` the sum of all w (z - mean)^2.
+    """
+
+    sums: Floats
+    count: Floats
+    mean: Floats
+    squares: float
+
+    @classmethod
+    def none(cls, cells: int, p: int) -> _Moments:
+        """Return the sums of no points."""
+        return cls(np.zeros((cells, 2 * p + 1, 3 * p + 2)), np.zeros(cells), np.zeros(cells), 0.0)
+
+    def add(self, other: _Moments) -> None:
+        """Add the sums of other points; both count their heights from the common mean then."""
+        count = self.count + other.count
+        mean = (self.count * self.mean + other.count * other.mean) / np.maximum(count, 1)
+        for part in (self, other):
+            part.move(mean)
+        self.sums += other.sums
+        self.count = count
+        self.squares += other.squares
+
+    def move(self, mean: Floats) -> None:
+        """Count heights from another mean of each cell."""
+        shift = np.where(self.count > 0, self.mean - mean, 0.0)
+        heights = self.sums.shape[1]
+        weights, first = self.sums[:, 0, 0], self.sums[:, 0, heights]
+        self.squares += float((shift * (2 * first + shift * weights)).sum())
+        self.sums[:, :, heights:] += shift[:, None, None] * self.sums[:, :, : self.sums.shape[2] - heights]
+        self.mean = mean
+
+
+def _moments(cells_u: Floats, cells_v: Floats, p: int, plane: Floats, z: Floats, weight: Floats) -> _Moments:
+    shape = len(cells_u) - 1, len(cells_v) - 1
+    found = _Moments.none(shape[0] * shape[1], p)
+    if not len(z):
+        return found
     cell = bspline.intervals(cells_u, plane[:, 0]) * shape[1] + bspline.intervals(cells_v, plane[:, 1])
-    order = np.argsort(cell.astype(np.min_scalar_type(count)), kind="stable")
+    order = np.argsort(cell.astype(np.min_scalar_type(len(found.count))), kind="stable")
     cell, plane, z, weight = cell[order], plane.take(order, axis=0), z[order], weight[order]
     starts = np.flatnonzero(np.diff(cell, prepend=-1))
-    mean = np.zeros(count)
-    mean[cell[starts]] = np.add.reduceat(z, starts) / np.diff(starts, append=len(z))
-    z -= mean[cell]
-
-    p = degree
-    sums = np.zeros((count, 2 * p + 1, 3 * p + 2))
+    found.count[cell[starts]] = np.diff(starts, append=len(z))
+    found.mean[cell[starts]] = np.add.reduceat(z, starts) / found.count[cell[starts]]
+    z -= found.mean[cell]
+    found.squares = float(weight @ (z * z))
     for start in range(0, len(z), _CHUNK):
         part = slice(start, start + _CHUNK)
         first = np.flatnonzero(np.diff(cell[part], prepend=-1))
@@ -77,10 +126,8 @@ def cell_sums(knots_u: Floats, knots_v: Floats, degree: int, plane: Floats, z: F
         np.multiply(right[: p + 1], z[part], out=right[2 * p + 1 :])
         left *= weight[part]
         for k, low, high in zip(at.tolist(), first.tolist(), ends.tolist(), strict=True):
-            sums[k] += left[:, low:high] @ right[:, low:high].T
-    grid = sums.reshape(*shape, *sums.shape[1:])
-    moments, heights = grid[..., : 2 * p + 1], grid[..., : p + 1, 2 * p + 1 :]
-    return _of_basis(knots_u, knots_v, p, moments, heights, mean, float(weight @ (z * z)))
+            found.sums[k] += left[:, low:high] @ right[:, low:high].T
+    return found
 
 
 def _of_basis(

@@ -19,6 +19,7 @@ from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
+from geofit.data.long_arrays import Rows
 from geofit.data.messages import message
 from geofit.splines import bspline
 from geofit.splines.sums import CellSums, cell_sums
@@ -86,9 +87,9 @@ class TensorSpace:
         pointer = np.arange(len(index) + 1) * index.shape[1]
         return csr_array((values.ravel(), index.ravel(), pointer), shape=(len(index), self.size))
 
-    def normal_equations(self, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
+    def normal_equations(self, plane: Rows, z: Rows, weight: Floats) -> tuple[Floats, Floats]:
         """Return the band of X' W X, (bandwidth + 1, size), and X' W z, (size,) or (size, k)."""
-        if len(plane) < CELLWISE or z.ndim > 1:
+        if isinstance(plane, np.ndarray) and isinstance(z, np.ndarray) and (len(plane) < CELLWISE or z.ndim > 1):
             return self._by_points(plane, z, weight)
         return self.equations(self.sums(plane, z, weight))
 
@@ -107,7 +108,7 @@ class TensorSpace:
         band = _sums(place, blocks[lower], (self.bandwidth + 1) * self.size)
         return band.reshape(self.bandwidth + 1, self.size)
 
-    def sums(self, plane: Floats, z: Floats, weight: Floats) -> CellSums:
+    def sums(self, plane: Rows, z: Rows, weight: Floats) -> CellSums:
         """Return what (n,) heights at (n, 2) places say, summed by cells."""
         return cell_sums(self.knots_u, self.knots_v, self.degree, plane, z, weight)
 

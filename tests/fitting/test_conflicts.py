@@ -9,7 +9,7 @@ from scipy.spatial import KDTree
 from scipy.spatial.distance import pdist
 
 from geofit import PointSet
-from geofit.fitting.conflicts import _near_pairs, settle
+from geofit.fitting.conflicts import near_pairs, settle
 
 
 def settled(xyz, distance=0.01, **columns):
@@ -127,11 +127,11 @@ def test_pairs_are_those_of_a_tree(n, size, columns):
     place = np.random.default_rng(n).uniform(0, size, (n, columns)) + np.array([3e6, 5e5, 100.0])[:columns]
     for distance in (0.01, 0.3):
         wanted = KDTree(place).query_pairs(distance, output_type="ndarray")
-        found = _near_pairs(place, distance)
+        found = near_pairs(place, distance)
         assert {tuple(pair) for pair in found.tolist()} == {tuple(pair) for pair in wanted.tolist()}
         assert len(found) == len(wanted)
 
 
 def test_places_in_one_line_are_paired_across_the_borders_of_strips():
     place = np.column_stack([np.zeros(500), np.arange(500) * 0.009])
-    assert len(_near_pairs(place, 0.01)) == 499
+    assert len(near_pairs(place, 0.01)) == 499
