@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import zlib
 from collections.abc import Sequence
@@ -12,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.files import is_file
+from geofit.data.messages import Verbatim, message
 
 __all__ = ["read_meta_image", "shape_and_type"]
 
@@ -115,11 +117,24 @@ def read_meta_image(path: Path, data: bytes | None) -> tuple[NDArray[Any], tuple
             file=str(path),
         )
     local = header["ElementDataFile"]
-    voxels = content[end:] if local.upper() == "LOCAL" else (path.parent / local).read_bytes()
-    if header.get("CompressedData", "").lower() == "true":
-        voxels = zlib.decompress(voxels)
     stored = np.dtype(order + kind)
+    voxels = content[end:] if local.upper() == "LOCAL" else _beside(path, local).read_bytes()
+    if header.get("CompressedData", "").lower() == "true":
+        # One byte more than the header states is enough to see that it is wrong.
+        voxels = zlib.decompressobj().decompress(voxels, max(math.prod(sizes), 0) * stored.itemsize + 1)
     found, _ = shape_and_type(local, len(voxels), sizes[::-1], stored.str, path)
     spacing = [float(word) for word in header.get("ElementSpacing", header.get("ElementSize", "")).split()]
     edges = (spacing[2] / 1000, spacing[1] / 1000, spacing[0] / 1000) if len(spacing) == 3 else None
     return np.frombuffer(voxels, stored).reshape(found), edges
+
+
+def _beside(path: Path, name: str) -> Path:
+    """Return a file in the header's folder: a header from a stranger reads nothing elsewhere."""
+    place = path.parent / name
+    if re.search(r"[/\\:\0]", name) or not is_file(place):
+        raise InputError(
+            message("import.header-names-file", "its header names the file '{name}'", name=Verbatim(name)),
+            message("import.raw-file-beside", "Put the raw file into the header's folder, and name it without a path."),
+            file=str(path),
+        )
+    return place

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.files import is_file
 from geofit.data.messages import message
 
 __all__ = ["read_tiff", "read_tiff_folder"]
@@ -77,7 +78,7 @@ def _page(image: Any, name: str) -> NDArray[Any]:
 
 def read_tiff_folder(path: Path) -> NDArray[Any]:
     """Return the TIFF files of a folder as slices along axis 0, in the order of the numbers in their names."""
-    files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff")]
+    files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff") and is_file(file)]
     if not files:
         raise InputError(
             message("import.folder-tiff-slice", "the folder has no TIFF slice"),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from geofit.data.errors import SettingsError
-from geofit.data.files import legible
+from geofit.data.legible import legible
 from geofit.data.messages import message
 
 if TYPE_CHECKING:
