@@ -160,11 +160,10 @@ def _read_bytes(
     source: Any = path if data is None else BytesIO(data)
     if kind in TIFF:
         return read_tiff(source, path.name), None
-    if kind == ".npy":
-        return np.load(source, allow_pickle=False), None
-    if kind == ".npz":
-        with np.load(source, allow_pickle=False) as arrays:
-            return arrays[_one_of(list(arrays.files), name, path)], None
+    if kind in (".npy", ".npz"):
+        with path.open("rb") if data is None else BytesIO(data) as stream:  # numpy leaves a damaged file open
+            loaded: Any = np.load(stream, allow_pickle=False)
+            return loaded if kind == ".npy" else loaded[_one_of(list(loaded.files), name, path)], None
     if kind in (".mhd", ".mha"):
         return read_meta_image(path, data)
     if kind in RAW:
