@@ -71,6 +71,7 @@ def load_boundary(source: Source, journal: Journal) -> Floats:
 
 
 def _from_table(source: Source, journal: Journal) -> Floats:
+    before = len(journal.issues)
     rows = read_rows(source, BOUNDARY, journal)
     corners = np.column_stack(rows.places())
     if RING in rows.table.header and len(set(rows.table.columns[rows.table.header.index(RING)])) > 1:
@@ -84,7 +85,7 @@ def _from_table(source: Source, journal: Journal) -> Floats:
         )
     rows.close()
     if rows.table.read > rows.ok.sum():
-        bad = next(issue for issue in journal.issues if issue.file == source.name and issue.severity == "error")
+        bad = next(issue for issue in journal.issues[before:] if issue.severity == "error")
         raise InputError(
             message(
                 "import.corner-boundary-cannot-read",
@@ -124,7 +125,7 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
         )
     try:
         corners = np.array([corner[:2] for corner in rings[0]], dtype=np.float64)
-    except (ValueError, TypeError):
+    except (ValueError, TypeError, OverflowError):
         corners = np.empty((0, 0))
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
         raise InputError(

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.errors import InputError
-from geofit.data.files import legible
+from geofit.data.legible import legible
 from geofit.data.messages import EMPTY, Message, Verbatim, message
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, plain_name

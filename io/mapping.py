@@ -12,6 +12,7 @@ from typing import Any
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
 from geofit.data.messages import Verbatim, message
+from geofit.data.numbers import shown
 from geofit.io.columns import SCHEMAS
 from geofit.io.hints import nearest
 from geofit.io.parser_words import told_by
@@ -181,7 +182,7 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
             message("import.see-docs-formats-md", "See docs/formats_in.md."),
             file=source.name,
         ) from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # also a number of more than 4,300 digits
         what, line = told_by(error)
         raise InputError(
             message("import.mapping-no-toml", "The mapping is no TOML: {error}", error=what),
@@ -249,7 +250,7 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
                 message("import.correct-value", "Correct its value."),
                 file=file,
                 column=key,
-                value=str(value),
+                value=shown(value),
             )
     for key in ("file", "kind"):
         if key not in table:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from geofit.data.files import legible
 from geofit.data.labels import Labels
+from geofit.data.legible import legible
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell

@@ -27,15 +27,19 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
+from uuid import uuid4
 
 from geofit import __version__
 from geofit.data.accuracy import plain
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems, replacing
+from geofit.data.legible import legible
 from geofit.data.messages import message
+from geofit.data.numbers import is_finite, shown
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.parser_words import told_by
+from geofit.io.source import Source
 
 __all__ = [
     "VERSION",
@@ -223,15 +227,7 @@ def open_project(path: str | PathLike[str]) -> Project:
     """
     source = Path(path)
     try:
-        data = json.loads(source.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise InputError(
-            message(
-                "project.project-cannot-read", "The project cannot be read: {error}", error=error.strerror or str(error)
-            ),
-            message("import.check-path", "Check the path."),
-            file=str(source),
-        ) from None
+        data = json.loads(Source(path=source, name=legible(str(source))).read().decode("utf-8"))
     except (ValueError, RecursionError) as error:
         what, line = told_by(error)
         raise InputError(
@@ -270,7 +266,7 @@ def open_project(path: str | PathLike[str]) -> Project:
         for older in range(version, VERSION):
             data = MIGRATIONS[older](data)
         return _project(data)
-    except (KeyError, TypeError, ValueError, AttributeError, SettingsError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError, AttributeError, SettingsError) as error:
         raise InputError(
             message(
                 "project.project-not-hold-version",
@@ -318,7 +314,9 @@ def _entry(kind: type[_Entry], values: Mapping[str, Any]) -> _Entry:
         value = getattr(entry, one.name)
         allowed = _TYPES[str(one.type)]
         if not isinstance(value, allowed) or (isinstance(value, bool) and bool not in allowed):
-            raise TypeError(f"{one.name} is {value!r:.60}")
+            raise TypeError(f"{one.name} is {shown(value):.60}")
+        if isinstance(value, (int, float)) and not isinstance(value, bool) and not is_finite(value):
+            raise ValueError(f"{one.name} is {shown(value):.60}")
         if one.name == "path" and "\0" in str(value):
             raise ValueError("a path has a NUL character")
     if isinstance(entry, ProjectResult):
@@ -378,7 +376,8 @@ def _write_surface(name: str, surface: HorizonFit, target: Path) -> ProjectResul
             file=str(folder),
         ) from None
     stem = file_stems([name])[name]
-    draft = folder / f".{stem}.draft.step"
+    # Its own name: another window may save the same project.
+    draft = folder / f".{stem}.{uuid4().hex[:8]}.draft.step"
     try:
         store_step({name: surface}, draft)
         digest = _sha256(draft)

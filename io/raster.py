@@ -32,7 +32,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a raster without georeference is refused below
-            with rasterio.open(source.path) as raster:
+            with rasterio.open(source.path, driver="GTiff") as raster:
                 band = raster.read(1, masked=True)
                 place, crs, bands = raster.transform, raster.crs, raster.count
     except (rasterio.errors.RasterioError, OSError, ValueError, MemoryError) as error:

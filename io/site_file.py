@@ -223,7 +223,7 @@ def _parse(data: bytes, name: str) -> dict[str, Any]:
             message("import.see-docs-site-file", "See docs/site_file.md."),
             file=name,
         ) from None
-    except tomllib.TOMLDecodeError as error:
+    except ValueError as error:  # also a number of more than 4,300 digits
         what, line = told_by(error)
         raise InputError(
             message("import.site-file-no-toml", "The site file is no TOML: {error}", error=what),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -10,6 +9,7 @@ from typing import Any
 
 from geofit.data.errors import InputError
 from geofit.data.messages import Message, Verbatim, message
+from geofit.data.numbers import is_finite, shown
 from geofit.data.settings import FitSettings
 from geofit.io.hints import nearest
 from geofit.io.mapping import ColumnMapping
@@ -63,7 +63,13 @@ class Reader:
 
     def fail(self, reason: Message, remedy: Message, key: str | None = None, value: Any = None) -> InputError:
         """Return the error for a key."""
-        return InputError(reason, remedy, file=self.file, column=key, value=None if value is None else str(value))
+        return InputError(
+            reason,
+            remedy,
+            file=self.file,
+            column=key,
+            value=None if value is None else value if isinstance(value, str) else shown(value),
+        )
 
     def keys(self, table: Mapping[str, Any], allowed: Iterable[str], where: Message | str) -> None:
         """Refuse keys that are not allowed, naming the nearest that is."""
@@ -86,7 +92,7 @@ class Reader:
         value = table.get(key)
         if value is None:
             return None
-        numeric = isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+        numeric = is_finite(value)
         if not (numeric if kind is float else isinstance(value, kind)):
             raise self.fail(
                 message(

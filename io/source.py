@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from geofit.data.errors import InputError
-from geofit.data.files import is_file, legible
+from geofit.data.files import is_file
+from geofit.data.legible import legible
 from geofit.data.messages import message
 
 __all__ = ["Source", "as_source"]

@@ -15,6 +15,7 @@ import numpy as np
 from geofit.caves.shots import ShotList, polar
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
+from geofit.data.files import is_file
 from geofit.data.messages import EMPTY, Message, Verbatim, message
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
@@ -92,7 +93,9 @@ class _Reader:
         path = source.path.parent / name
         if not path.exists() and path.with_name(path.name + ".svx").exists():
             path = path.with_name(path.name + ".svx")
-        if depth >= _DEEPEST or not path.exists():
+        # A survey from a stranger reads nothing outside its folder.
+        beside = path.resolve().is_relative_to(self.source.path.parent.resolve())
+        if depth >= _DEEPEST or not beside or not is_file(path):
             raise InputError(
                 message("import.included-file-cannot", "The included file {name} cannot be read", name=Verbatim(name)),
                 message(

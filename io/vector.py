@@ -20,12 +20,15 @@ __all__ = ["RING", "layer_names", "read_features"]
 
 #: Header of the column with the running number of the line or ring that a vertex belongs to.
 RING = "ring"
+#: How a shapefile, a GeoPackage and GeoJSON begin.
+_BEGINNINGS = (b"\x00\x00\x27\x0a", b"SQLite format 3\x00", b"{")
 
 
 def layer_names(source: Source) -> tuple[str, ...]:
     """Return the layers of a file that have a geometry."""
-    source.read()
+    data = source.read()
     pyogrio = need("pyogrio", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
+    _recognise(source, data)
     try:
         layers = pyogrio.list_layers(source.path)
     except (pyogrio.errors.DataSourceError, OSError, ValueError) as error:
@@ -43,8 +46,9 @@ def read_features(source: Source, journal: Journal) -> Table:
     InputError
         If the file cannot be read, or the places are longitude and latitude and no target system is named.
     """
-    journal.read(source)
+    data = journal.read(source)
     pyogrio = need("pyogrio", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
+    _recognise(source, data)
     import shapely
 
     try:
@@ -90,6 +94,16 @@ def read_features(source: Source, journal: Journal) -> Table:
     # An attribute that is called like a coordinate stays, under another name.
     header += [f"{name} (attribute)" if name.casefold() in {"x", "y", "z", RING} else name for name in attributes]
     return table_of(source, journal, header, rows, malformed=malformed, crs=crs)
+
+
+def _recognise(source: Source, data: bytes) -> None:
+    """Refuse other contents: GDAL goes by them, not by the ending, and some formats name files elsewhere."""
+    if not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_BEGINNINGS):
+        raise InputError(
+            message("import.map-other-contents", "The file is no shapefile, GeoPackage or GeoJSON"),
+            message("import.open-gis-save-geopackage", "Open it in a GIS and save it as GeoPackage."),
+            file=source.name,
+        )
 
 
 def _rings(shape: Any) -> list[Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import zlib
 from collections.abc import Sequence
@@ -12,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import message
+from geofit.data.files import is_file
+from geofit.data.messages import Verbatim, message
 
 __all__ = ["map_meta_image", "read_meta_image", "shape_and_type"]
 
@@ -91,9 +93,10 @@ def read_meta_image(path: Path, data: bytes | None) -> tuple[NDArray[Any], tuple
     content = path.read_bytes() if data is None else data
     header, end, stored, sizes = _meta_header(content, path)
     local = header["ElementDataFile"]
-    voxels = content[end:] if local.upper() == "LOCAL" else (path.parent / local).read_bytes()
+    voxels = content[end:] if local.upper() == "LOCAL" else _beside(path, local).read_bytes()
     if header.get("CompressedData", "").lower() == "true":
-        voxels = zlib.decompress(voxels)
+        # One byte more than the header states is enough to see that it is wrong.
+        voxels = zlib.decompressobj().decompress(voxels, max(math.prod(sizes), 0) * stored.itemsize + 1)
     found, _ = shape_and_type(local, len(voxels), sizes[::-1], stored.str, path)
     return np.frombuffer(voxels, stored).reshape(found), _meta_edges(header)
 
@@ -110,7 +113,7 @@ def map_meta_image(path: Path) -> tuple[NDArray[Any], tuple[float, float, float]
         )
     local = header["ElementDataFile"]
     inside = local.upper() == "LOCAL"
-    file, offset = (path, end) if inside else (path.parent / local, 0)
+    file, offset = (path, end) if inside else (_beside(path, local), 0)
     found, _ = shape_and_type(local, file.stat().st_size - offset, sizes[::-1], stored.str, path)
     return np.memmap(file, stored, "r", offset, found), _meta_edges(header)
 
@@ -150,3 +153,15 @@ def _meta_header(content: bytes, path: Path) -> tuple[dict[str, str], int, np.dt
             file=str(path),
         )
     return header, end, np.dtype(order + kind), sizes
+
+
+def _beside(path: Path, name: str) -> Path:
+    """Return a file in the header's folder: a header from a stranger reads nothing elsewhere."""
+    place = path.parent / name
+    if re.search(r"[/\\:\0]", name) or not is_file(place):
+        raise InputError(
+            message("import.header-names-file", "its header names the file '{name}'", name=Verbatim(name)),
+            message("import.raw-file-beside", "Put the raw file into the header's folder, and name it without a path."),
+            file=str(path),
+        )
+    return place

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.files import is_file
 from geofit.data.messages import message
 
 __all__ = ["read_pages", "read_tiff", "read_tiff_folder", "slice_files"]
@@ -93,7 +94,7 @@ def _page(image: Any, name: str) -> NDArray[Any]:
 
 def slice_files(path: Path) -> list[Path]:
     """Return the TIFF files of a folder in the order of the numbers in their names."""
-    files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff")]
+    files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff") and is_file(file)]
     if not files:
         raise InputError(
             message("import.folder-tiff-slice", "the folder has no TIFF slice"),

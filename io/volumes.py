@@ -16,7 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.errors import InputError
+from geofit.data.errors import GeofitError, InputError
+from geofit.data.files import is_file
 from geofit.data.messages import message
 from geofit.io.volume_raw import read_meta_image, shape_and_type
 from geofit.io.volume_tiff import read_tiff, read_tiff_folder
@@ -28,6 +29,8 @@ __all__ = ["RAW", "TIFF", "is_zarr", "read_volume", "read_voxels"]
 TIFF = (".tif", ".tiff")
 RAW = (".raw", ".bin", ".dat")
 #: What can be read, for messages.
+#: Bytes that are unpacked before memory is looked at again.
+_PART = 1 << 26
 KINDS = "raw, mhd, mha, tif, npy, npz, zarr, also as .gz or in a .zip"
 
 
@@ -105,14 +108,20 @@ def read_voxels(
             message("import.check-path", "Check the path."),
             file=str(path),
         )
+    if not path.is_dir() and not is_file(path):
+        raise InputError(
+            message("import.pipe-device-not", "It is a pipe or a device, not a file"),
+            message("import.name-a-file", "Name a file."),
+            file=str(path),
+        )
     try:
         if path.is_dir():
             return _read_folder(path, name), None
         check_memory(path.stat().st_size, message("import.reading", "Reading {file}", file=path.name))
         return _read_bytes(path, path.name, None, shape, dtype, name)
-    except (OSError, EOFError, ValueError, zipfile.BadZipFile) as error:
-        if isinstance(error, VolumeError):
-            raise
+    except GeofitError:
+        raise
+    except Exception as error:  # each library that unpacks has errors of its own
         raise InputError(
             message("import.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
             message("import.copy-export-again", "Copy or export it again."),
@@ -145,17 +154,16 @@ def _read_bytes(
     kind = Path(file).suffix.lower()
     if kind == ".gz":
         with gzip.open(path if data is None else BytesIO(data)) as stream:
-            return _read_bytes(path, file[:-3], stream.read(), shape, dtype, name)
+            return _read_bytes(path, file[:-3], _unpacked(stream, path), shape, dtype, name)
     if kind == ".zip":
         return _read_zip(path, data, shape, dtype, name)
     source: Any = path if data is None else BytesIO(data)
     if kind in TIFF:
         return read_tiff(source, path.name), None
-    if kind == ".npy":
-        return np.load(source, allow_pickle=False), None
-    if kind == ".npz":
-        with np.load(source, allow_pickle=False) as arrays:
-            return arrays[_one_of(list(arrays.files), name, path)], None
+    if kind in (".npy", ".npz"):
+        with path.open("rb") if data is None else BytesIO(data) as stream:  # numpy leaves a damaged file open
+            loaded: Any = np.load(stream, allow_pickle=False)
+            return loaded if kind == ".npy" else loaded[_one_of(list(loaded.files), name, path)], None
     if kind in (".mhd", ".mha"):
         return read_meta_image(path, data)
     if kind in RAW:
@@ -169,6 +177,16 @@ def _read_bytes(
         message("import.export-volume", "Export the volume as one of: {kinds}.", kinds=KINDS),
         file=str(path),
     )
+
+
+def _unpacked(stream: gzip.GzipFile, path: Path) -> bytes:
+    """Return what a stream unpacks to, as long as it fits into memory: a small file may unpack to any length."""
+    parts, size = [], 0
+    while part := stream.read(_PART):
+        size += len(part)
+        check_memory(2 * size, message("import.reading", "Reading {file}", file=path.name))
+        parts.append(part)
+    return b"".join(parts)
 
 
 def _read_zip(

@@ -1,8 +1,9 @@
-"""A short, seeded part of benchmarks/fuzz.py, and five planted bugs that it must find."""
+"""A short, seeded part of benchmarks/fuzz.py, and planted bugs that it must find."""
 
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -11,53 +12,83 @@ import pytest
 BENCHMARKS = Path(__file__).resolve().parents[1] / "benchmarks"
 
 
-@pytest.fixture
-def fuzz(monkeypatch):
-    monkeypatch.syspath_prepend(str(BENCHMARKS))
-    import fuzz
-
-    yield fuzz
-    for name in ("fuzz", "fuzz_import"):
-        sys.modules.pop(name, None)
-
-
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory):
+def fuzz():
+    """Give the module of the benchmarks, with its groups of files."""
     sys.path.insert(0, str(BENCHMARKS))
     try:
         import fuzz
 
-        return fuzz.originals(tmp_path_factory.mktemp("sound"))
+        yield fuzz
     finally:
         sys.path.remove(str(BENCHMARKS))
-        for name in ("fuzz", "fuzz_import"):
-            sys.modules.pop(name, None)
+        for name in [name for name in sys.modules if name.split(".")[0] in ("fuzz", "fuzzing")]:
+            del sys.modules[name]
 
 
-def test_messy_sites_end_in_results_or_a_geofit_error(fuzz, tmp_path):
-    outcomes, failures = fuzz.run(15, 11, lambda case: fuzz.fit_one(case, tmp_path))
+@pytest.fixture(scope="module")
+def files(fuzz, tmp_path_factory):
+    """Give a function that returns the cases of a group, its sound files made once."""
+    known = {}
+
+    def of(group, *names):
+        if group not in known:
+            known[group] = fuzz.Files(getattr(fuzz, group), tmp_path_factory.mktemp(group))
+        made = known[group]
+        return fuzz.Files(made.group, made.folder, names or tuple(sorted(made.sound)), made.sound)
+
+    return of
+
+
+def test_messy_sites_end_in_results_or_a_geofit_error(fuzz):
+    outcomes, failures = fuzz.run(15, 11, fuzz.sites.fit_one, 60)
     assert not failures, "\n".join(failures)
     assert outcomes["fitted"] >= 5
 
 
-def test_damaged_files_end_in_results_or_a_geofit_error(fuzz, sound, tmp_path):
-    light = tuple(name for name in sorted(sound) if not name.endswith((".step", ".igs", ".brep")))
-    outcomes, failures = fuzz.run(150, 11, lambda case: fuzz.read_one(case, sound, tmp_path, light))
+@pytest.mark.parametrize(("group", "cases"), [("tables", 200), ("others", 120), ("surfaces", 120)])
+def test_damaged_files_end_in_results_or_a_geofit_error(fuzz, files, group, cases):
+    every = files(group)
+    light = files(group, *(name for name in every.names if name not in fuzz.surfaces.CAD))
+    outcomes, failures = fuzz.run(cases, 11, light, 30)
     assert not failures, "\n".join(failures)
-    assert outcomes["geofit error"] >= 50
-    outcomes, failures = fuzz.run(
-        4, 11, lambda case: fuzz.read_one(case, sound, tmp_path, ("a.step", "a.igs", "a.brep"))
-    )
-    assert not failures, "\n".join(failures)
+    assert outcomes["geofit error"] >= cases // 6
+    assert outcomes["read"] >= cases // 6
+    if group == "tables":
+        assert min(outcomes["rows used"], outcomes["rows listed"]) > 100
 
 
-def test_sound_files_are_read(fuzz, sound, tmp_path):
-    for name, data in sound.items():
-        (tmp_path / name).write_bytes(data)
-    (tmp_path / "picks.csv").write_text("x,y,z\n1,2,3\n4,5,6\n7,8,1\n")
-    for name in sound:
-        path = tmp_path / name
-        fuzz.READERS.get(path.suffix, fuzz.read_site if name == "site.toml" else fuzz.load_mappings)(path)
+def test_damaged_cad_files_end_in_results_or_a_geofit_error(fuzz, files):
+    outcomes, failures = fuzz.run(4, 11, files("surfaces", *fuzz.surfaces.CAD), 60)
+    assert not failures, "\n".join(failures)
+    assert sum(outcomes.values()) == 4
+
+
+@pytest.mark.parametrize("group", ["tables", "others", "surfaces"])
+def test_sound_files_are_read(fuzz, files, group):
+    every = files(group)
+    for name, data in every.sound.items():
+        (every.folder / name).write_bytes(data)
+    for name in every.sound:
+        every.group.read(name, every.folder, [], 1)
+
+
+def test_a_case_is_the_same_each_time(fuzz, files):
+    tables = files("tables")
+    assert fuzz.run(3, 5, tables, 30) == fuzz.run(3, 5, tables, 30)
+
+
+def test_the_harness_finds_what_takes_too_long_and_what_is_no_geofit_error(fuzz):
+    def case(number):
+        if number % 2:
+            raise KeyError(number)
+        while True:
+            pass
+
+    outcomes, failures = fuzz.run(2, 0, case, 1)
+    assert outcomes == Counter(failed=2)
+    assert "longer than its limit" in failures[0]
+    assert "KeyError: 1" in failures[1]
 
 
 def no_distance_class(monkeypatch):
@@ -107,24 +138,49 @@ def called_exact(monkeypatch):
         (called_exact, "sections", {"frame": "sections"}),
     ],
 )
-def test_a_planted_bug_of_a_fit_is_found(fuzz, tmp_path, monkeypatch, plant, layout, settings):
+def test_a_planted_bug_of_a_fit_is_found(fuzz, monkeypatch, plant, layout, settings):
     plant(monkeypatch)
-    known = fuzz.messy
+    known = fuzz.sites.messy
 
     def messy(rng, _):
         points, found, _ = known(rng, layout)
-        return points, fuzz.FitSettings(**settings) if settings else fuzz.FitSettings(robust=found.robust), None
+        kept = settings or {"robust": found.robust}
+        return points, fuzz.sites.FitSettings(**kept), None
 
-    monkeypatch.setattr(fuzz, "messy", messy)
+    monkeypatch.setattr(fuzz.sites, "messy", messy)
     # A few cases at a time, until one fails.
-    assert any(fuzz.run(3, seed, lambda case: fuzz.fit_one(case, tmp_path))[0]["failed"] for seed in range(5, 19))
+    assert any(fuzz.run(3, seed, fuzz.sites.fit_one, 60)[0]["failed"] for seed in range(5, 19))
 
 
-def test_a_project_that_removes_the_files_of_others_is_found(fuzz, sound, tmp_path, monkeypatch):
+def test_a_project_that_removes_the_files_of_others_is_found(fuzz, files, monkeypatch):
     """Item 6: any name in the folder's name is removed."""
     import re
 
     monkeypatch.setattr("geofit.io.project._SURFACE_FILE", re.compile(r".*"))
-    outcomes, failures = fuzz.run(40, 5, lambda case: fuzz.read_one(case, sound, tmp_path, ("p.geofit",)))
+    outcomes, failures = fuzz.run(40, 5, files("surfaces", "p.geofit"), 30)
     assert outcomes["failed"], outcomes
     assert "was touched" in failures[0] or "FileNotFoundError" in failures[0]
+
+
+def test_a_row_that_is_lost_is_found(fuzz, files, monkeypatch):
+    from geofit.io import journal
+
+    known = journal.Journal.count
+
+    def planted(self, file, read, listed):
+        known(self, file, max(read - 1, 0), listed)
+
+    monkeypatch.setattr(journal.Journal, "count", planted)
+    assert fuzz.run(60, 5, files("tables", "picks.csv"), 30)[0]["failed"]
+
+
+def test_an_error_of_a_library_is_found(fuzz, files, monkeypatch):
+    """Items 11 and 12: what unpacks raises errors of its own."""
+
+    def planted(path, **known):
+        import zlib
+
+        raise zlib.error("invalid block type")
+
+    monkeypatch.setattr(fuzz.others, "read_volume", planted)
+    assert fuzz.run(5, 5, files("others", "rock.npz"), 30)[0]["failed"] == 5

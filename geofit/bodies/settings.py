@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
+from geofit.data.numbers import is_finite, shown
 
 __all__ = ["BodySettings"]
 
@@ -80,34 +81,34 @@ class BodySettings:
             value = getattr(self, name)
             if value is None and name in ("step", "reach"):
                 continue
-            if not _number(value) or value <= 0:
+            if not is_finite(value) or value <= 0:
                 raise SettingsError(
                     message(
                         "bodies.is-a-finite",
                         "{setting} is {value}; a finite number of metres above 0 is needed.",
                         setting=name,
-                        value=repr(value),
+                        value=shown(value),
                     )
                 )
         for name in ("azimuth", "dip", "rake"):
-            if not _number(getattr(self, name)):
+            if not is_finite(getattr(self, name)):
                 raise SettingsError(
                     message(
                         "bodies.angle-degrees",
                         "{setting} is {value}; a finite angle in degrees is needed.",
                         setting=name,
-                        value=repr(getattr(self, name)),
+                        value=shown(getattr(self, name)),
                     )
                 )
         for name, least in (("dense", 50), ("realizations", 10), ("seed", 0)):
             value = getattr(self, name)
-            if not isinstance(value, int) or isinstance(value, bool) or value < least:
+            if not isinstance(value, int) or not is_finite(value) or value < least:
                 raise SettingsError(
                     message(
                         "bodies.whole",
                         "{setting} is {value}; a whole number of at least {least} is needed.",
                         setting=name,
-                        value=repr(value),
+                        value=shown(value),
                         least=least,
                     )
                 )
@@ -117,31 +118,35 @@ class BodySettings:
                     "settings.true-false-needed",
                     "{setting} is {value}; true or false is needed.",
                     setting="closed",
-                    value=repr(self.closed),
+                    value=shown(self.closed),
                 )
             )
-        ranges = np.asarray(self.ranges, float)
+        ranges = _numbers(self.ranges)
         if ranges.shape != (3,) or not (np.isfinite(ranges).all() and (ranges > 0).all()):
             raise SettingsError(
                 message(
                     "bodies.ranges-three",
                     "ranges is {value}; three finite numbers above 0 are needed.",
-                    value=repr(self.ranges),
+                    value=shown(self.ranges),
                 )
             )
         object.__setattr__(self, "ranges", tuple(ranges.tolist()))
         if self.box is not None:
-            box = np.asarray(self.box, float)
+            box = _numbers(self.box)
             if box.shape != (2, 3) or not np.isfinite(box).all() or not (box[0] < box[1]).all():
                 raise SettingsError(
                     message(
                         "bodies.box-lower-upper",
                         "box is {value}; a lower and an upper corner in map coordinates are needed.",
-                        value=repr(self.box),
+                        value=shown(self.box),
                     )
                 )
             object.__setattr__(self, "box", tuple(tuple(corner) for corner in box.tolist()))
 
 
-def _number(value: Any) -> bool:
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+def _numbers(value: Any) -> NDArray[np.float64]:
+    """Return what was given as numbers; an empty array if it is none."""
+    try:
+        return np.asarray(value, float)
+    except (TypeError, ValueError, OverflowError):
+        return np.empty(0)

@@ -26,8 +26,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.cad.imported import existing
 from geofit.data.errors import GeofitError, InputError, MissingDependencyError
-from geofit.data.files import is_file, legible
+from geofit.data.legible import legible
 from geofit.data.messages import Message, Verbatim, message
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
@@ -65,13 +66,7 @@ def read_apart(path: str | PathLike[str], reader: str) -> dict[str, PatchSurface
         If the file does not exist or cannot be read, or if reading it ended the child, took too long or needed too
         much memory.
     """
-    source = Path(path)
-    if not is_file(source):
-        raise InputError(
-            message("import.file-missing", "There is no such file"),
-            message("import.check-path", "Check the path."),
-            file=str(source),
-        )
+    source = existing(path)
     size = source.stat().st_size
     seconds = SECONDS + SECONDS_MB * size / 1e6
     with tempfile.TemporaryDirectory(prefix="geofit-") as folder:

@@ -10,13 +10,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 from geofit.cad.faces import faces_of
 from geofit.cad.foreign import read_apart
-from geofit.cad.imported import FileShape, document, products, quiet, surface_of, unique_name
-from geofit.data.errors import InputError
+from geofit.cad.imported import FileShape, document, existing, no_faces, products, quiet, surface_of, unique_name
 from geofit.data.messages import message
 from geofit.surfaces.patch_surface import PatchSurface
 
@@ -46,7 +44,7 @@ def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.IGESCAFControl import IGESCAFControl_Reader
 
-    source = _existing(path)
+    source = existing(path)
     found = document()
     with _unit_of_metres(), quiet():
         reader = IGESCAFControl_Reader()
@@ -54,15 +52,11 @@ def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
         done = reader.ReadFile(str(source)) == IFSelect_RetDone and reader.Transfer(found)
     shapes = list(products(found, source.stem)) if done else []
     if not shapes:
-        what = (
-            message("import.file-without-faces", "The file holds no face")
-            if done
-            else message("import.not-iges", "The file cannot be read as IGES")
-        )
-        raise InputError(
-            what,
+        raise no_faces(
+            source,
+            done,
+            message("import.not-iges", "The file cannot be read as IGES"),
             message("import.export-surface-iges-step", "Export the surface as IGES 5.3 or as STEP again."),
-            file=str(source),
         )
     return {shape.name: surface_of(_sewn(shape)) for shape in _joined(shapes, source.stem)}
 
@@ -89,20 +83,16 @@ def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     from OCP.TopLoc import TopLoc_Location
     from OCP.TopoDS import TopoDS_Iterator, TopoDS_Shape
 
-    source = _existing(path)
+    source = existing(path)
     whole = TopoDS_Shape()
     with quiet():
         done = BRepTools.Read_s(whole, str(source), BRep_Builder()) and not whole.IsNull()
     if not done or not faces_of(whole):
-        what = (
-            message("import.file-without-faces", "The file holds no face")
-            if done
-            else message("import.not-brep", "The file cannot be read as BREP")
-        )
-        raise InputError(
-            what,
+        raise no_faces(
+            source,
+            done,
+            message("import.not-brep", "The file cannot be read as BREP"),
             message("import.export-surface-brep-step", "Export the surface as BREP or as STEP again."),
-            file=str(source),
         )
     parts = []
     if whole.ShapeType() == TopAbs_COMPOUND:
@@ -124,17 +114,6 @@ def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
         )
         found[name] = surface_of(shape)
     return found
-
-
-def _existing(path: str | PathLike[str]) -> Path:
-    source = Path(path)
-    if not source.is_file():
-        raise InputError(
-            message("import.file-missing", "There is no such file"),
-            message("import.check-path", "Check the path."),
-            file=str(source),
-        )
-    return source
 
 
 @contextmanager

@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Container, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from os import PathLike
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,11 +17,14 @@ from numpy.typing import NDArray
 
 from geofit.cad.faces import along, edges_with_faces, explore, faces_of, from_geom
 from geofit.cad.trimming import is_height_field, needed
+from geofit.data.errors import InputError
+from geofit.data.files import is_file
+from geofit.data.messages import Message, message
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.trimmed import TrimmedSurface
 
-__all__ = ["FileShape", "document", "products", "quiet", "surface_of", "unique_name"]
+__all__ = ["FileShape", "document", "existing", "no_faces", "products", "quiet", "surface_of", "unique_name"]
 
 Floats = NDArray[np.float64]
 
@@ -278,3 +283,27 @@ def _outline(shape: FileShape) -> Floats | None:
     if not polygon.is_valid or not np.array_equal(matrix, np.eye(3)):
         return None
     return np.asarray(shapely.get_coordinates(polygon.exterior)[:-1] + origin[:2])
+
+
+def existing(path: str | PathLike[str]) -> Path:
+    """Return the path of a file that is there.
+
+    Raises
+    ------
+    InputError
+        If it is not.
+    """
+    source = Path(path)
+    if not is_file(source):
+        raise InputError(
+            message("import.file-missing", "There is no such file"),
+            message("import.check-path", "Check the path."),
+            file=str(source),
+        )
+    return source
+
+
+def no_faces(file: Path, read: bool, unreadable: Message, remedy: Message) -> InputError:
+    """Return the error of a file that OpenCASCADE could not read, or in which it found no face."""
+    reason = message("import.file-without-faces", "The file holds no face") if read else unreadable
+    return InputError(reason, remedy, file=str(file))

@@ -21,15 +21,16 @@ import numpy as np
 from geofit import __version__
 from geofit.cad.faces import faces_of, placement
 from geofit.cad.foreign import read_apart
-from geofit.cad.imported import FileShape, document, products, quiet, surface_of
+from geofit.cad.imported import FileShape, document, existing, no_faces, products, quiet, surface_of
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
 from geofit.cad.step_text import canonical
 from geofit.data.accuracy import ReadBack
+from geofit.data.columns import LARGEST
 from geofit.data.errors import InputError
-from geofit.data.files import legible, replacing
+from geofit.data.files import replacing
+from geofit.data.legible import legible
 from geofit.data.messages import message
-from geofit.data.points import LARGEST
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.protocol import FittedSurface
@@ -168,13 +169,7 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.STEPCAFControl import STEPCAFControl_Reader
 
-    source = Path(path)
-    if not source.is_file():
-        raise InputError(
-            message("import.file-missing", "There is no such file"),
-            message("import.check-path", "Check the path."),
-            file=str(source),
-        )
+    source = existing(path)
     with _parameters(), quiet():
         found = document()
         reader = STEPCAFControl_Reader()
@@ -183,15 +178,11 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
             done = reader.ReadFile(name) == IFSelect_RetDone and reader.Transfer(found)
     shapes = list(products(found, legible(source.stem))) if done else []
     if not shapes:
-        what = (
-            message("import.file-without-faces", "The file holds no face")
-            if done
-            else message("import.not-step", "The file cannot be read as STEP")
-        )
-        raise InputError(
-            what,
+        raise no_faces(
+            source,
+            done,
+            message("import.not-step", "The file cannot be read as STEP"),
             message("export.export-surface-step-ap203", "Export the surface as STEP (AP203, AP214 or AP242) again."),
-            file=str(source),
         )
     return shapes
 

@@ -19,7 +19,7 @@ def read_source(source: Path, columns: dict[str, str | None], boundary: Path | N
     """Read a site file, or a table of points with the columns that the user names (None: guessed)."""
     from dataclasses import replace
 
-    from geofit.data.files import legible
+    from geofit.data.legible import legible
     from geofit.data.site import Site
     from geofit.io.boundary import read_boundary
     from geofit.io.picks import read_points

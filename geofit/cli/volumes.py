@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from geofit.data.errors import SettingsError
-from geofit.data.files import legible
+from geofit.data.legible import legible
 from geofit.data.messages import message
 
 __all__ = ["PoreLabel", "Shape", "VolumeFile", "VoxelEdge", "read_options", "stem_of"]

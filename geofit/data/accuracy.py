@@ -125,7 +125,7 @@ class Accuracy:
     notes: tuple[Message, ...] = ()
 
     def __repr__(self) -> str:
-        sign = "<" if self.passed else ">="
+        sign = "<" if self.sigma < self.epsilon else ">="
         failed = [check.name for check in self.checks if check.passed is False]
         return (
             f"<Accuracy {self.verdict}: sigma {self.sigma:.3g} m {sign} {self.epsilon:g} m, {self.n} points, "

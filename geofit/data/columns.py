@@ -8,9 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import PointsError
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Verbatim, message, plural_message
 
-__all__ = ["column", "places", "wrong_shape"]
+__all__ = ["LARGEST", "column", "finite_places", "measurable_places", "places", "wrong_shape"]
+
+#: Largest coordinate, metres: beyond it a double has not the digits that a surface is measured by.
+LARGEST = 1e9
 
 
 def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
@@ -27,7 +30,7 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
         return given
     try:
         xyz = np.array(given, dtype=np.float64)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise PointsError(
             message(
                 "points.places-not-numbers",
@@ -50,6 +53,56 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     return xyz
 
 
+def finite_places(given: ArrayLike) -> NDArray[np.float64]:
+    """Return :func:`places` that are neither nan nor infinite.
+
+    Raises
+    ------
+    PointsError
+        If one is; the text names the first.
+    """
+    xyz = places("xyz", given)
+    bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
+    if bad.size:
+        raise PointsError(
+            plural_message(
+                "points.points-not-finite-first",
+                "{count} of {total} points is not finite, at index {index}: {place}. Remove or complete it.",
+                "{count} of {total} points are not finite, the first at index {index}: {place}. Remove or complete "
+                "them.",
+                count=int(bad.size),
+                total=len(xyz),
+                index=bad[0],
+                place=xyz[bad[0]].tolist(),
+            )
+        )
+    return xyz
+
+
+def measurable_places(given: ArrayLike) -> NDArray[np.float64]:
+    """Return :func:`finite_places` of which each coordinate is at most :data:`LARGEST`; one place (3,) is (1, 3).
+
+    Raises
+    ------
+    PointsError
+        If a coordinate is larger: distances to it have no digits left.
+    """
+    rows: Any = [given] if np.ndim(given) == 1 and np.size(given) else given
+    xyz = finite_places(rows)
+    farthest = float(np.abs(xyz).max(initial=0.0))
+    if farthest > LARGEST:
+        raise PointsError(
+            message(
+                "points.coordinate-too-large",
+                "A coordinate is {farthest:.3g} m; at most {largest:.0e} m are measured. Check the unit and the "
+                "columns.",
+                farthest=farthest,
+                largest=LARGEST,
+            )
+        )
+    return xyz
+
+
 def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     """Return a copy of ``values``, (n,), or one value repeated n times.
 
@@ -62,7 +115,7 @@ def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     """
     try:
         array: NDArray[Any] = np.asarray(values, dtype=dtype)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise PointsError(
             message(
                 "points.cannot-read",

@@ -21,6 +21,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
+from geofit.data.legible import legible
 from geofit.data.messages import EMPTY, Message, Verbatim, folded, message
 
 __all__ = [
@@ -88,7 +89,8 @@ class InputError(GeofitError):
         value: str | None = None,
     ) -> None:
         self.reason, self.remedy = reason, remedy
-        self.file, self.row, self.column, self.value = file, row, column, value
+        self.file = None if file is None else legible(file)
+        self.row, self.column, self.value = row, column, value
         super().__init__(self.at_place(_sentence(reason, remedy)))
 
     @property

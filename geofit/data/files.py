@@ -10,11 +10,13 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
+from uuid import uuid4
 
 from geofit.data.errors import InputError
+from geofit.data.legible import legible
 from geofit.data.messages import message
 
-__all__ = ["cannot_write", "file_stems", "is_file", "legible", "replacing", "spreadsheet_cell"]
+__all__ = ["cannot_write", "file_stems", "is_file", "replacing", "spreadsheet_cell"]
 
 _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(1, 10))}
 _LONGEST = 80
@@ -39,7 +41,7 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
     'whole'
     """
     path = Path(path)
-    part = path.with_name(f".{path.stem}.{os.getpid()}.part{path.suffix}")
+    part = path.with_name(f".{path.stem}.{uuid4().hex[:8]}.part{path.suffix}")
     try:
         yield part
         os.replace(part, path)
@@ -78,23 +80,6 @@ def is_file(path: str | os.PathLike[str]) -> bool:
         return Path(path).is_file()
     except (OSError, ValueError):
         return False
-
-
-def legible(name: str) -> str:
-    """Return the name of a file as text that can be printed and written.
-
-    On Linux the bytes of a name need not be UTF-8: archives from Windows bring names in GBK.
-
-    Examples
-    --------
-    >>> legible("picks.csv"), legible(os.fsdecode("钻孔".encode("gbk")))
-    ('picks.csv', '钻孔')
-    """
-    try:
-        name.encode()
-    except UnicodeEncodeError:
-        return os.fsencode(name).decode("gb18030", "replace")
-    return name
 
 
 def spreadsheet_cell(cell: Any) -> Any:

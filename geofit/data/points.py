@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.data.columns import column, places, wrong_shape
+from geofit.data.columns import column, finite_places, wrong_shape
 from geofit.data.errors import PointsError
 from geofit.data.labels import Labels
-from geofit.data.messages import Message, Verbatim, message, plural_message
+from geofit.data.messages import Message, Verbatim, message
 
-__all__ = ["KINDS", "LARGEST", "PointSet", "look_like_degrees"]
+__all__ = ["KINDS", "PointSet", "look_like_degrees"]
 
 #: Source kinds that the readers give; any other word is allowed.
 KINDS = ("borehole", "adit", "section", "outcrop", "geophysics", "map", "point")
@@ -24,8 +24,6 @@ Strings = NDArray[np.str_]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Largest coordinate, metres: beyond it a double has not the digits that a surface is measured by.
-LARGEST = 1e9
 #: Longitudes and latitudes: limits; the widest site; how much nearer to each other than to the origin the places are;
 #: metres of elevation a degree (one is 111 km) below which a surface over degrees would be flatter than any rock.
 _LIMITS, _WIDEST, _AWAY, _RISE = (180.0, 90.0), 5.0, 10.0, 10.0
@@ -111,22 +109,7 @@ class PointSet:
         row: ArrayLike = 0,
         file: ArrayLike | Labels = "",
     ) -> None:
-        xyz = places("xyz", xyz)
-        bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
-        if bad.size:
-            raise PointsError(
-                plural_message(
-                    "points.points-not-finite-first",
-                    "{count} of {total} points is not finite, at index {index}: {place}. Remove or complete it before "
-                    "fitting.",
-                    "{count} of {total} points are not finite, the first at index {index}: {place}. Remove or "
-                    "complete them before fitting.",
-                    count=int(bad.size),
-                    total=len(xyz),
-                    index=bad[0],
-                    place=xyz[bad[0]].tolist(),
-                )
-            )
+        xyz = finite_places(xyz)
         n = len(xyz)
         self._set("xyz", xyz)
         self._set("accuracy", column("accuracy", accuracy, n, np.float64))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields
 from typing import Any, Literal
 
@@ -11,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import Message, message
+from geofit.data.numbers import is_finite, shown
 
 __all__ = ["LABELS", "FitSettings"]
 
@@ -127,7 +127,7 @@ class FitSettings:
                     **_given("robust", self.robust),
                 )
             )
-        if not isinstance(self.max_iterations, int) or isinstance(self.max_iterations, bool) or self.max_iterations < 0:
+        if not isinstance(self.max_iterations, int) or not is_finite(self.max_iterations) or self.max_iterations < 0:
             raise SettingsError(
                 message(
                     "settings.whole-number-needed",
@@ -136,7 +136,7 @@ class FitSettings:
                 )
             )
         most = self.max_control_points
-        if most is not None and (not isinstance(most, int) or isinstance(most, bool) or most < 16):
+        if most is not None and (not isinstance(most, int) or not is_finite(most) or most < 16):
             raise SettingsError(
                 message(
                     "settings.whole-number-least-16",
@@ -147,11 +147,11 @@ class FitSettings:
 
 
 def _given(name: str, value: Any) -> dict[str, Any]:
-    return {"setting": LABELS[name], "value": repr(value)}
+    return {"setting": LABELS[name], "value": shown(value)}
 
 
 def _positive(name: str, value: Any, unit: Message) -> None:
-    if not isinstance(value, (int, float)) or isinstance(value, bool) or not math.isfinite(value) or value <= 0:
+    if not is_finite(value) or value <= 0:
         text = message(
             "settings.finite-number-above-needed",
             "{setting} is {value}; a finite number above 0 is needed ({unit}).",
@@ -179,7 +179,7 @@ def _one_of(name: str, value: Any, words: tuple[str, ...], *, polygon: bool = Fa
 def _polygon(value: ArrayLike) -> tuple[tuple[float, float], ...]:
     try:
         corners = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         corners = np.empty(0)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
         text = message(

@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, vstack
 
+from geofit.data.columns import LARGEST
 from geofit.data.errors import ExactnessError, FitError
 from geofit.data.messages import Message, message
-from geofit.data.points import LARGEST
+from geofit.data.numbers import is_finite, shown
 from geofit.fitting.assemble import Part, divide
 from geofit.fitting.model import Model
 from geofit.fitting.skin import least_change
@@ -69,27 +70,9 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
     _finite(dz, "dz")
     part = _part(model, patch)
     index, share = _coefficient(model, part, i, j)
-    held = _acting(model, index) & _exact(model)
-    if held.any():
-        raise ExactnessError(
-            message(
-                "edit.control-point-patch-acts",
-                "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
-                "({count}: {names}). Move one that lies farther from them, or exclude them first.",
-                i=i,
-                j=j,
-                patch=patch,
-                count=held.sum(),
-                names=_names(surface, held),
-            )
-        )
+    _refuse_exact(surface, model, index, patch, i, j)
     if model.net.lines is not None and model.net.frozen[index]:
-        raise FitError(
-            message(
-                "edit.core-straight-section-curves",
-                "The core is straight between its section curves: its control points follow the sections.",
-            )
-        )
+        raise _straight()
     coefficients = model.net.coefficients.copy()
     coefficients[(index, 2) if coefficients.ndim == 2 else index] += dz / share
     return _changed(
@@ -143,12 +126,7 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     acting = np.zeros(net.space.size, bool)
     acting[row.indices] = True
     if net.lines is not None and net.frozen[acting].any():
-        raise FitError(
-            message(
-                "edit.core-straight-section-curves-pull",
-                "The core is straight between its section curves: pull at a point of the periphery.",
-            )
-        )
+        raise _straight()
     if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):
         raise FitError(
             message(
@@ -220,12 +198,12 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
     Li, Miao, Liu, Wang (2011), eq. 1.
     """
     model = _model(surface)
-    if not 0.01 <= weight <= 100:
+    if not is_finite(weight) or not 0.01 <= weight <= 100:
         raise FitError(
             message(
                 "edit.weight-01-100-needed",
-                "The weight is {weight:g}; between 0.01 and 100 is needed (1 is neutral).",
-                weight=weight,
+                "The weight is {weight}; between 0.01 and 100 is needed (1 is neutral).",
+                weight=shown(weight),
             )
         )
     part = _part(model, patch)
@@ -243,20 +221,7 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
                 rows=TANGENT_ROWS,
             )
             raise FitError(text)
-    held = _acting(model, index) & _exact(model)
-    if held.any():
-        raise ExactnessError(
-            message(
-                "edit.control-point-patch-acts-points",
-                "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
-                "({count}: {names}); its weight stays 1.",
-                i=i,
-                j=j,
-                patch=patch,
-                count=held.sum(),
-                names=_names(surface, held),
-            )
-        )
+    _refuse_exact(surface, model, index, patch, i, j)
     weights = dict(model.weights)
     changed = np.array(weights.get(patch, np.ones(_shape(part))))
     changed[i, j] = weight
@@ -306,16 +271,44 @@ def _model(surface: HorizonFit) -> Model:
 
 
 def _finite(value: float, name: str) -> None:
-    if not np.isfinite(value) or abs(value) > LARGEST:
+    if not is_finite(value) or abs(value) > LARGEST:
         raise FitError(
             message(
                 "edit.finite-number-needed",
                 "{name} is {value}; a finite number up to {most:.0e} is needed.",
                 name=name,
-                value=value,
+                value=shown(value),
                 most=LARGEST,
             )
         )
+
+
+def _refuse_exact(surface: HorizonFit, model: Model, index: int, patch: str, i: int, j: int) -> None:
+    """Refuse a control point that acts on points that are met exactly."""
+    held = _acting(model, index) & _exact(model)
+    if held.any():
+        raise ExactnessError(
+            message(
+                "edit.control-point-patch-acts",
+                "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
+                "({count}: {names}). Choose one that lies farther from them, or exclude them first.",
+                i=i,
+                j=j,
+                patch=patch,
+                count=held.sum(),
+                names=_names(surface, held),
+            )
+        )
+
+
+def _straight() -> FitError:
+    return FitError(
+        message(
+            "edit.core-straight-section-curves",
+            "The core is straight between its section curves, and its control points follow them. Change the "
+            "periphery, or fit with across='cubic'.",
+        )
+    )
 
 
 def _part(model: Model, patch: str) -> Part:
@@ -341,7 +334,8 @@ def _shape(part: Part) -> tuple[int, int]:
 def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
     """Return the coefficient of the whole net that moves a patch's control point most, and by which share."""
     rows, columns = _shape(part)
-    if not (0 <= i < rows and 0 <= j < columns):
+    whole = all(isinstance(k, (int, np.integer)) for k in (i, j))
+    if not (whole and 0 <= i < rows and 0 <= j < columns):
         raise FitError(
             message(
                 "edit.patch-control-points-given",
@@ -349,13 +343,13 @@ def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
                 name=part.name,
                 rows=rows - 1,
                 columns=columns - 1,
-                i=i,
-                j=j,
+                i=shown(i),
+                j=shown(j),
             )
         )
     given, net = model.problem, model.net
-    whole = divide(net.space, net.core, given.chart.frame, given.split.core is not None)
-    in_u, in_v = whole.refine_u[part.rows.start + i], whole.refine_v[part.columns.start + j]
+    division = divide(net.space, net.core, given.chart.frame, given.split.core is not None)
+    in_u, in_v = division.refine_u[part.rows.start + i], division.refine_v[part.columns.start + j]
     a, b = int(in_u.argmax()), int(in_v.argmax())
     return a * net.space.shape[1] + b, float(in_u[a] * in_v[b])
 
@@ -414,13 +408,18 @@ def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[
             )
         only = np.array([point])
         return chart.plane[only], chart.values[only], surface.points.describe(int(point))
-    xyz = np.asarray(point, float)
-    if xyz.shape != (3,) or not np.isfinite(xyz).all():
+    try:
+        xyz = np.asarray(point, float)
+    except (TypeError, ValueError, OverflowError):
+        xyz = np.empty(0)
+    if xyz.shape != (3,) or not (np.abs(xyz) <= LARGEST).all():
         raise FitError(
             message(
                 "edit.point-three-finite-map",
-                "The point is {point!r}; three finite map coordinates (easting, northing, elevation) are needed.",
-                point=point,
+                "The point is {point}; three map coordinates (easting, northing, elevation) up to {most:.0e} m are "
+                "needed.",
+                point=shown(point),
+                most=LARGEST,
             )
         )
     x, y, z = xyz

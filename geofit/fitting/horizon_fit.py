@@ -70,7 +70,7 @@ class HorizonFit:
         patches = f"{n} patch{'' if n == 1 else 'es'}" if (n := len(self.patches)) else "triangles"
         parts = [patches, f"{len(self.points)} points"]
         if (a := self.accuracy) is not None:
-            parts.append(f"sigma {a.sigma:.3g} m {'<' if a.passed else '>='} {a.epsilon:g} m {a.verdict}")
+            parts.append(f"sigma {a.sigma:.3g} m {'<' if a.sigma < a.epsilon else '>='} {a.epsilon:g} m {a.verdict}")
         return f"<HorizonFit {self.name}: {', '.join(parts)}>"
 
     def _repr_html_(self) -> str:
@@ -80,7 +80,7 @@ class HorizonFit:
         if (a := self.accuracy) is not None:
             failed = ", ".join(check.name for check in a.checks if check.passed is False)
             rows |= {
-                a.verdict: f"sigma {a.sigma:.3g} m {'<' if a.passed else '>='} {a.epsilon:g} m",
+                a.verdict: f"sigma {a.sigma:.3g} m {'<' if a.sigma < a.epsilon else '>='} {a.epsilon:g} m",
                 "largest deviation": f"{a.max_abs:.3g} m",
                 "failed checks": failed or "none",
             }

@@ -27,6 +27,8 @@ Rectangle = tuple[float, float, float, float]
 
 #: A surface steeper than this, degrees, is fitted over its best plane.
 STEEP = 55.0
+#: Points within this distance of each other are at one place, metres.
+SAME = 1e-6
 #: Thickness of the points across their best plane, relative to their extent, that still counts as a plane.
 PLANAR = 0.2
 #: Share of a section's length that may run backwards before the section counts as overturned.
@@ -201,7 +203,8 @@ def _section_chart(points: PointSet, reason: Message) -> Chart:
 def _box(plane: Floats) -> Rectangle:
     low, high = (np.array([end(axis) for axis in plane.T]) for end in (np.min, np.max))
     # A line of points still needs a strip to stand on.
-    short = 0.05 * max(float((high - low).max()), 1.0)
+    extent = float((high - low).max())
+    short = 0.05 * (extent if extent > SAME else 1.0)
     pad = np.where(high - low < short, short, 0.0)
     low, high = low - pad, high + pad
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])

@@ -10,9 +10,10 @@ from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
 from geofit.checks.check import CORE_LIMIT
+from geofit.data.columns import measurable_places
 from geofit.data.errors import ExactnessError, FitError, PointsError
 from geofit.data.messages import Message, message, plural_message
-from geofit.data.points import LARGEST, PointSet, look_like_degrees
+from geofit.data.points import PointSet, look_like_degrees
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.fitting.adjust import adjust
@@ -29,8 +30,6 @@ __all__ = ["fit_horizon"]
 
 Floats = NDArray[np.float64]
 
-#: Metres that a study area may lie off all points: those of a neighbouring site are fitted, of another grid not.
-FAR = 10_000.0
 #: Rounds of parameter correction for points between the sections of a folded surface.
 CORRECTIONS = 4
 
@@ -240,16 +239,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
                 count=len(points),
             )
         )
-    farthest = float(np.abs(points.xyz).max())
-    if farthest > LARGEST:
-        raise PointsError(
-            message(
-                "fit.coordinate-too-large",
-                "A coordinate is {farthest:.3g} m; at most {largest:.0e} m are fitted. Check the unit and the columns.",
-                farthest=farthest,
-                largest=LARGEST,
-            )
-        )
+    measurable_places(points.xyz)
     if look_like_degrees(points.xyz):
         raise PointsError(
             message(
@@ -265,7 +255,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         return None
     try:
         corners = np.asarray(boundary, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise PointsError(
             message(
                 "fit.no-corners",
@@ -279,6 +269,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
             shape=corners.shape,
         )
         raise PointsError(text)
+    measurable_places(np.insert(corners, 2, 0.0, axis=1))
     fault = fault_of_area(corners)
     if fault is not None:
         raise PointsError(
@@ -288,10 +279,10 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         )
     low, high = corners.min(axis=0), corners.max(axis=0)
     off = np.maximum(low - points.xyz[:, :2], points.xyz[:, :2] - high).max(axis=1).min()
-    if off > max(np.hypot(*(high - low)), FAR):
+    if off > max(np.hypot(*(high - low)), np.hypot(*np.ptp(points.xyz[:, :2], axis=0))):
         text = message(
             "fit.points-off-area",
-            "All points lie off the study area, the nearest by {off:.0f} m. Check the coordinates of both, and the "
+            "All points lie off the study area, the nearest by {off:.6g} m. Check the coordinates of both, and the "
             "order of easting and northing.",
             off=float(off),
         )

@@ -11,6 +11,7 @@ from scipy.interpolate import NearestNDInterpolator
 from scipy.special import ndtri
 from threadpoolctl import threadpool_limits
 
+from geofit.data.columns import measurable_places
 from geofit.data.errors import FitError, SettingsError
 from geofit.data.messages import message
 from geofit.data.prediction import OffData, Uncertainty
@@ -148,8 +149,11 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
     """
     model = _model(surface)
     frame = model.problem.chart.frame
-    places = np.atleast_2d(np.asarray(xyz, float))
-    if places.shape[1] == 2:
+    flat = np.ndim(xyz) > 0 and np.shape(xyz)[-1] == 2
+    if flat:
+        xyz = np.insert(np.atleast_2d(np.asarray(xyz)), 2, 0.0, axis=1)
+    places = measurable_places(xyz)
+    if flat:
         if frame.kind != "map":
             raise FitError(
                 message(
@@ -157,7 +161,7 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
                     "A surface over its best plane needs (n, 3) coordinates; (n, 2) were given.",
                 )
             )
-        plane = frame.plan(places)
+        plane = frame.plan(places[:, :2])
     else:
         plane = frame.to_local(places)[:, :2]
     with threadpool_limits(limits=1):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -169,9 +170,22 @@ def _write_bands(surface: HorizonFit, offdata: OffData, stem: Path) -> tuple[Mes
                 name=surface.name,
             ),
         )
-    for side, one in zip(("upper", "lower"), band(surface, offdata), strict=True):
-        write_step({one.name: one}, stem.with_name(f"{stem.name}_{side}90.step"))
-    return ()
+    missing: list[Message] = []
+
+    def without(reason: Message) -> None:
+        missing.append(
+            message(
+                "run.no-90-surface", "{name}: a 90 % surface is missing: {reason}", name=surface.name, reason=reason
+            )
+        )
+
+    # A band that crosses itself or cannot be sewn says nothing against the surface between.
+    none: tuple[HorizonFit, ...] = ()
+    for side, one in zip(("upper", "lower"), guarded(lambda: band(surface, offdata), none, without), strict=False):
+        path = stem.with_name(f"{stem.name}_{side}90.step")
+        if guarded(partial(write_step, {one.name: one}, path), None, without) is None:
+            path.unlink(missing_ok=True)
+    return tuple(missing)
 
 
 class _Clock:

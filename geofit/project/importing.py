@@ -10,8 +10,9 @@ from typing import Any, Literal
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.files import legible, replacing
+from geofit.data.files import replacing
 from geofit.data.languages import EN, Language, translate
+from geofit.data.legible import legible
 from geofit.data.messages import Message, Verbatim, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, ImportIssue, Site, TableCount

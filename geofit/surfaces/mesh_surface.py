@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.columns import measurable_places
 from geofit.geometry.mesh import Mesh
 from geofit.geometry.mesh_projection import elevation, nearest
 from geofit.geometry.projection import Projection
@@ -64,7 +65,7 @@ class MeshSurface:
 
     def project(self, xyz: ArrayLike) -> Projection:
         """Return the nearest triangles of (n, 3) map coordinates; they have no parameters."""
-        return nearest(self.mesh, np.atleast_2d(np.asarray(xyz, float)) - self.origin)
+        return nearest(self.mesh, measurable_places(xyz) - self.origin)
 
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.columns import measurable_places
 from geofit.geometry.elevation import elevation
 from geofit.geometry.mesh import Mesh, triangulate, trim_to_outline
 from geofit.geometry.projection import Projection, project
@@ -69,7 +70,7 @@ class PatchSurface:
 
     def project(self, xyz: ArrayLike) -> Projection:
         """Return the foot points of (n, 3) map coordinates; see :func:`geofit.geometry.projection.project`."""
-        return project(self.patches, np.atleast_2d(np.asarray(xyz, float)) - self.origin)
+        return project(self.patches, measurable_places(xyz) - self.origin)
 
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed orthogonal distance of (n, 3) map coordinates, metres, positive above."""

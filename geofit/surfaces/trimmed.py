@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.columns import measurable_places
 from geofit.geometry.elevation import elevation
 from geofit.geometry.mesh import Mesh, triangulate
 from geofit.geometry.mesh_projection import ASIDE
@@ -54,7 +55,7 @@ class TrimmedSurface(PatchSurface):
 
     def project(self, xyz: ArrayLike) -> Projection:
         """Return the foot points of (n, 3) map coordinates on the trimmed faces."""
-        return nearest(self.patches, np.atleast_2d(np.asarray(xyz, float)) - self.origin, self.loops)
+        return nearest(self.patches, measurable_places(xyz) - self.origin, self.loops)
 
     def triangulate(self, tolerance: float = 0.05) -> Mesh:
         """Return triangles within a tolerance (m), cut along the loops."""

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from geofit.data.errors import InputError
-from geofit.data.files import is_file, legible, replacing, spreadsheet_cell
+from geofit.data.files import is_file, replacing, spreadsheet_cell
+from geofit.data.legible import legible
 from geofit.data.messages import message
 
 posix = pytest.mark.skipif(sys.platform == "win32", reason="limits of files are those of Linux and macOS")

@@ -199,7 +199,7 @@ def test_weights_that_would_open_a_seam_are_refused():
 def test_a_core_that_is_straight_across_its_sections_keeps_to_them():
     surface = fitted(across="linear")
     middle = surface.points.xyz[surface.core].mean(axis=0)
-    with refused(FitError, "edit.core-straight-section-curves-pull"):
+    with refused(FitError, "edit.core-straight-section-curves"):
         surface.pull_to(middle)
 
 

@@ -134,7 +134,7 @@ def test_what_is_no_project_says_so(text, match, tmp_path):
 
 
 def test_no_file_and_no_folder(tmp_path):
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="no such file"):
         open_project(tmp_path / "none.geofit")
     with pytest.raises(InputError, match="cannot be written"):
         save_project(sample(), tmp_path / "none" / "dam.geofit")

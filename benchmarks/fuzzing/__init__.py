@@ -1,0 +1,1 @@
+"""Damaged files and messy sites, and the harness that runs them."""
