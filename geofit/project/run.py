@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -132,13 +133,13 @@ def _deliver(
 ) -> Delivery:  # fmt: skip
     """Examine, draw and write what was fitted."""
     from geofit.report.gather import accuracy_report
-    from geofit.report.pictures import draw_sections, draw_site
+    from geofit.report.pictures import draw_sections
     from geofit.report.profile import report_sections
     from geofit.report.result import write_json
 
     failures, warnings = dict(fits.failures), list(fits.warnings)
     sections = report_sections(site, [surface.points for surface in fits.surfaces.values()]) if fits.surfaces else ()
-    made = _examined(site, fits, out, hands, progress, language, bands, sections, failures)
+    made, whole = _examined(site, fits, out, hands, progress, language, bands, sections, failures)
     results = [one.result for one in made]
     images = {name: picture for one in made for name, picture in one.images.items()}
     warnings += [text for one in made for text in one.warnings]
@@ -156,7 +157,7 @@ def _deliver(
             results, ordered, cuts=fits.cuts, contradictions=fits.contradictions, failures=failures, date=date,
             sections=sections,
         )  # fmt: skip
-        font, whole = _font_warning(results), draw_site(results, language)
+        font = _font_warning(results)
         images |= draw_sections(results, sections, language)
         for data in whole.images.values():
             with replacing(out / "site.png") as picture:
@@ -170,23 +171,37 @@ def _deliver(
 def _examined(
     site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, bands: bool,
     sections: Sequence[Section], failures: dict[str, Message],
-) -> list[Made]:  # fmt: skip
-    """Examine every surface and write its files, side by side; note those that failed."""
+) -> tuple[list[Made], Pictures]:  # fmt: skip
+    """Examine every surface and write its files, and draw them together, side by side; note those that failed."""
+    from geofit.report.pictures import Pictures, draw_site
+
     stems = file_stems(fits.surfaces)
     # What takes longest begins first: a folded surface is fitted anew without each of its sections.
     order = sorted(fits.surfaces, key=lambda name: (fits.surfaces[name].frame != "sections", -_size(fits, name)))
-    tasks = [
-        (fits.surfaces[name], site, out / stems[name], language.code, fits.seconds[name], bands, sections)
+    tasks: list[Callable[[], Made | Message | Pictures]] = [
+        partial(
+            write_horizon, fits.surfaces[name], site, out / stems[name], language.code, fits.seconds[name], bands,
+            sections,
+        )
         for name in order
-    ]
+    ]  # fmt: skip
+    bare = [HorizonResult(surface.with_(model=None), site) for surface in fits.surfaces.values()]
+    if bare:
+        tasks.append(partial(draw_site, bare, language))
     found: dict[str, Made] = {}
-    for i, made in hands.do(write_horizon, tasks, _within(progress, FITS, 0.9), "examination"):
-        if isinstance(made, Message):
+    whole = Pictures({}, None, None)
+    for i, made in hands.do(tasks, _within(progress, FITS, 0.9), "examination"):
+        if isinstance(made, Pictures):
+            whole = made
+        elif isinstance(made, Message):
             failures[order[i]] = made
         else:
             # Here the surface still has all that its process did not send back.
             found[order[i]] = replace(made, result=replace(made.result, surface=fits.surfaces[order[i]], site=site))
-    return [found[name] for name in fits.surfaces if name in found]
+    results = [found[name] for name in fits.surfaces if name in found]
+    if found and len(found) < len(fits.surfaces):
+        whole = draw_site([one.result for one in results], language)
+    return results, whole
 
 
 def _size(fits: SiteFit, name: str) -> int:

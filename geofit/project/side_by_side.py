@@ -10,9 +10,10 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
-from typing import Any, TypeVar
+from typing import TypeVar
 
 from geofit.data.errors import Cancelled
+from geofit.data.messages import Message
 from geofit.data.progress import Progress, tell
 
 __all__ = ["Crew", "available", "crew"]
@@ -44,16 +45,15 @@ class Crew:
         self._pool = pool
 
     def do(
-        self, work: Callable[..., T], tasks: Sequence[tuple[Any, ...]], progress: Progress | None, stage: Any = ""
+        self, tasks: Sequence[Callable[[], T]], progress: Progress | None, stage: str | Message = ""
     ) -> Iterator[tuple[int, T]]:
-        """Call ``work(*task)`` for each task; yield the number of a task and its result as they are ready.
+        """Call each task; yield the number of a task and its result as they are ready.
 
         Parameters
         ----------
-        work : callable
-            A function of a module; its arguments and its result must be picklable.
-        tasks : sequence of tuple
-            Arguments; the first task begins first.
+        tasks : sequence of callable
+            Functions of modules with their arguments (:func:`functools.partial`), picklable like their results; the
+            first begins first.
         progress : callable, optional
             Called as ``progress(stage, share of the tasks that are done)``.
         stage : str or Message
@@ -67,14 +67,14 @@ class Crew:
         if self._pool is None:
             for i, task in enumerate(tasks):
                 tell(progress, stage, i / len(tasks))
-                yield i, work(*task)
+                yield i, task()
             return
         # A process that was killed, for want of memory for one, breaks the pool: the rest is done here.
         pending: dict[Future[T], int] = {}
         broken: list[int] = []
         for i, task in enumerate(tasks):
             try:
-                pending[self._pool.submit(work, *task)] = i
+                pending[self._pool.submit(task)] = i
             except BrokenProcessPool:
                 broken.append(i)
         while pending:
@@ -92,7 +92,7 @@ class Crew:
                 except BrokenProcessPool:
                     broken.append(i)
         for i in broken:
-            yield i, work(*tasks[i])
+            yield i, tasks[i]()
 
 
 @contextmanager
