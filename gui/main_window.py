@@ -177,12 +177,14 @@ class MainWindow(QMainWindow):
         for name, switch in {
             "orthographic": view.set_orthographic,
             "clip": view.set_clip,
+            "faded": self.showing.set_faded,
             "measure": view.set_measuring,
             "section": self._switch_section,
             "control_points": lambda on: view.set_control_points(self._horizon() if on else None),
             "seams": lambda on: view.set_seams(self._horizon() if on else None),
         }.items():
             self.actions_[name].toggled.connect(switch)
+        self.actions_["faded"].setChecked(True)
         self.actions_.exaggerations.triggered.connect(lambda action: view.set_exaggeration(action.data()))
         self.actions_.themes.triggered.connect(lambda action: self._set_theme(action.data()))
         self.actions_.languages.triggered.connect(lambda action: self.language_chosen.emit(action.data()))

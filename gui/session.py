@@ -103,7 +103,6 @@ class Session(QObject):
                 )
             )
 
-
     def _tell(self, command: Command, action: str) -> None:
         """Log a step, a fit with its figures, and say it."""
         text = command.text
