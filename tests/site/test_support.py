@@ -12,11 +12,11 @@ from geofit.site.support import support_of
 @pytest.mark.parametrize("seed", range(4))
 def test_places_between_points_are_supported_and_those_far_beyond_are_not(seed):
     rng = np.random.default_rng(seed)
-    points = np.column_stack([rng.uniform(0, 500, (40, 2)), rng.uniform(90, 110, 40)]) + (4e5, 3e6, 0)
+    points = np.column_stack([rng.uniform(0, 500, (40, 2)), rng.uniform(90, 110, 40)]) + np.array([4e5, 3e6, 0])
     support = support_of(points)
     mixed = rng.dirichlet(np.ones(40), 50) @ points
     assert support.within(mixed).all()
-    assert not support.within(mixed + (2000.0, 0.0, 0.0)).any()
+    assert not support.within(mixed + np.array([2000.0, 0.0, 0.0])).any()
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 35.0, 120.0])
