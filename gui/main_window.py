@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QSize, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
-from PySide6.QtWidgets import QApplication, QInputDialog, QMainWindow
+from PySide6.QtWidgets import QApplication, QInputDialog, QMainWindow, QTabBar
 
 from geofit.gui.actions import Actions
 from geofit.gui.activity import Activity
@@ -124,7 +124,9 @@ class MainWindow(QMainWindow):
         start = QApplication.focusWidget()
         while super().focusNextPrevChild(forward):
             now = QApplication.focusWidget()
-            if now is start or not self.panels.reach.behind(now):
+            # Of docks that are folded away Qt keeps the bar with their tabs.
+            unseen = isinstance(now, QTabBar) and now.visibleRegion().isEmpty()
+            if now is start or not (unseen or self.panels.reach.behind(now)):
                 return True
         return False
 

@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
 from geofit.data.site import Ground
-from geofit.geometry.hull import within_hull
 
 __all__ = ["Support", "support_of"]
 
@@ -32,29 +31,32 @@ class Support:
         Where the plane passes, map coordinates.
     axes : (2, 3) array
         Unit vectors of the plane: east and north, or those of the best plane of steep points.
-    hull : (k, 2) array
-        Corners of the hull in the plane; empty where the points have no area.
+    sides : (k, 3) array
+        Sides of the hull: outward unit normals in the plane and offsets, n . p + offset <= 0 inside; none where the
+        points have no area.
     ground : Ground or None
         The topography; None: nothing is above it.
     """
 
     middle: Floats
     axes: Floats
-    hull: Floats
+    sides: Floats
     ground: Ground | None
+
+    def depth(self, xyz: Floats) -> Floats:
+        """Return how far (k, 3) places lie within the hull and below the ground, metres; negative where they do not."""
+        depth = np.full(len(xyz), np.inf)
+        if len(self.sides):
+            plane = (xyz - self.middle) @ self.axes.T
+            depth = -(plane @ self.sides[:, :2].T + self.sides[:, 2]).max(axis=1)
+        if self.ground is not None:
+            over = self.ground.elevation(xyz[:, 0], xyz[:, 1]) + ROOM - xyz[:, 2]
+            depth = np.minimum(depth, np.where(np.isfinite(over), over, np.inf))
+        return depth
 
     def within(self, xyz: Floats) -> Bools:
         """Return which (k, 3) places, map coordinates, lie within the hull and not above the ground."""
-        inside = (
-            within_hull(self.hull, (xyz - self.middle) @ self.axes.T) if len(self.hull) else np.ones(len(xyz), bool)
-        )
-        return inside & ~self.above(xyz)
-
-    def above(self, xyz: Floats) -> Bools:
-        """Return which (k, 3) places lie above the ground."""
-        if self.ground is None:
-            return np.zeros(len(xyz), bool)
-        return np.asarray(xyz[:, 2] > self.ground.elevation(xyz[:, 0], xyz[:, 1]) + ROOM)
+        return np.asarray(self.depth(xyz) >= 0)
 
 
 def support_of(xyz: Floats, ground: Ground | None = None) -> Support:
@@ -74,7 +76,7 @@ def support_of(xyz: Floats, ground: Ground | None = None) -> Support:
             axes = principal[:2]
     plane = (xyz - middle) @ axes.T
     try:
-        corners = plane[ConvexHull(plane).vertices]
+        sides = np.unique(ConvexHull(plane).equations, axis=0)
     except (QhullError, ValueError):
-        corners = np.empty((0, 2))
-    return Support(middle, axes, corners, ground)
+        sides = np.empty((0, 3))
+    return Support(middle, axes, sides, ground)

@@ -120,7 +120,7 @@ class SectionPanel(QWidget):
         thickness: float,
         uncertainty: Mapping[str, Uncertainty] | None = None,
         *,
-        faded: bool = True,
+        faded: bool = False,
     ) -> None:
         """Show a section of a site; without a line, one through its middle. Nothing is emitted."""
         if site is None:

@@ -48,7 +48,7 @@ class SectionData:
     thickness: float
     traces: Traces = field(default_factory=dict)
     uncertainty: Mapping[str, Uncertainty] = field(default_factory=dict)
-    faded: bool = True
+    faded: bool = False
 
     def colour(self, name: str) -> str:
         """Return the colour of a horizon, the same wherever it stands."""
@@ -97,12 +97,15 @@ def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, st
         named = False
         for line in lines:
             held = np.ones(len(line.distance), bool) if support is None else support.within(line.xyz)
-            for run, solid in _runs(held):
+            runs = _runs(held)
+            told = any(solid for _, solid in runs)
+            for run, solid in runs:
+                first = not named and solid == told
                 axes.plot(
                     line.distance[run], line.xyz[run, 2], color=colour, lw=1.7 if solid else 1.2,
-                    ls="-" if solid else DASHES, alpha=1.0 if solid else 0.65, label=None if named else name, zorder=4,
+                    ls="-" if solid else DASHES, alpha=1.0 if solid else 0.65, label=name if first else None, zorder=4,
                 )  # fmt: skip
-                named = True
+                named |= first
             band = _band(line.xyz, data.uncertainty.get(name))
             if band is not None and (np.diff(line.distance) >= 0).all():
                 axes.fill_between(

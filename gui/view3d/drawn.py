@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of
+from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of, split
 from geofit.prediction.bands import band, prediction_sd
 from geofit.site.support import support_of
 
@@ -52,6 +52,11 @@ def drawn_of(
     """
     tell(progress, "triangles", 0.0)
     shape = shape_of(surface)
+    if len(surface.points):
+        support = support_of(surface.points.xyz, ground)
+        fine = split(shape, support.depth(shape.xyz))
+        few = shape.coarse or shape
+        shape = replace(fine, coarse=fine if few is shape else split(few, support.depth(few.xyz)))
     coarse = shape.coarse or shape
     held = _supported(surface, ground, shape), _supported(surface, ground, coarse)
     if uncertainty is None:
@@ -66,7 +71,7 @@ def drawn_of(
 
 
 def _supported(surface: HorizonFit, ground: Ground | None, shape: Shape) -> Bools:
-    """Return which triangles have a middle that lies below the ground and within the hull of the points."""
+    """Return which triangles, none of which crosses the border, lie below the ground and within the points' hull."""
     if not len(surface.points):
         return np.ones(len(shape.triangles), bool)
     return support_of(surface.points.xyz, ground).within(shape.xyz[shape.triangles].mean(axis=1))
