@@ -82,6 +82,8 @@ _SWITCHES: dict[str, _Spec] = {
                      QT_TRANSLATE_NOOP("Actions", "Parallel lines stay parallel: for measuring"), ""),
     "clip": (QT_TRANSLATE_NOOP("Actions", "&Clip box"), "C",
              QT_TRANSLATE_NOOP("Actions", "Show only what lies within a box that can be dragged"), "clip"),
+    "faded": (QT_TRANSLATE_NOOP("Actions", "&Fade above ground and beyond the data"), "G",
+              QT_TRANSLATE_NOOP("Actions", "Dashed or translucent above the ground and beyond the points"), ""),
     "control_points": (QT_TRANSLATE_NOOP("Actions", "Control &points"), "P",
                        QT_TRANSLATE_NOOP("Actions", "Show the control points of the chosen horizon"), ""),
     "seams": (QT_TRANSLATE_NOOP("Actions", "S&eams"), "E",

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from geofit import __version__
 from geofit.data.errors import GeofitError
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 from geofit.gui.ready import require_display, require_packages
 
 __all__ = ["main", "start"]
@@ -38,13 +38,30 @@ def start(file: Path | None) -> int:
             )
         require_packages()
         require_display()
+        # What the window needs takes a second or two to load: first a sign that it is coming.
+        from geofit.gui.splash import Splash, application
+
+        application()
+        splash = Splash()
+        splash.show()
+        splash.tell(_words(message("window.loading", "Loading…")), 0.1)
         from geofit.gui.desktop import Desktop
 
+        splash.tell(_words(message("window.opening", "Opening the window…")), 0.7)
         desktop = Desktop()
     except GeofitError as error:
         print(f"geofit-gui: {error}", file=sys.stderr)
         return 2
-    return desktop.run(file)
+    return desktop.run(file, splash)
+
+
+def _words(text: Message) -> str:
+    """Return a message in the language of the windows, before they have taken it."""
+    from geofit.gui.preferences import Preferences
+    from geofit.gui.words import speak, spoken
+
+    speak(Preferences().language)
+    return spoken(text)
 
 
 if __name__ == "__main__":

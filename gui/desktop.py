@@ -9,11 +9,8 @@ import traceback
 from pathlib import Path
 from types import TracebackType
 
-from PySide6.QtCore import QCoreApplication, QObject, QStandardPaths, Qt, QTimer
-from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QApplication
+from PySide6.QtCore import QObject, QStandardPaths, Qt, QTimer
 
-from geofit import __version__
 from geofit.data.messages import message
 from geofit.gui.icons import application_icon
 from geofit.gui.language import apply_language
@@ -21,6 +18,7 @@ from geofit.gui.main_window import MainWindow
 from geofit.gui.panels.log import qt_to_logging
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
+from geofit.gui.splash import Splash, application
 from geofit.gui.theme import apply_theme, missing_chinese, set_font
 from geofit.gui.view3d.opengl import require_opengl
 from geofit.gui.words import shown_error
@@ -43,13 +41,7 @@ class Desktop(QObject):
 
     def __init__(self) -> None:
         super().__init__()
-        QCoreApplication.setOrganizationName("geofit")
-        QCoreApplication.setApplicationName("geofit")
-        QCoreApplication.setApplicationVersion(__version__)
-        if QApplication.instance() is None:
-            QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
-        app = QApplication.instance() or QApplication(sys.argv[:1])
-        assert isinstance(app, QApplication)
+        app = application()
         require_opengl()
         self.app = app
         app.setWindowIcon(application_icon())
@@ -66,8 +58,11 @@ class Desktop(QObject):
         self.session = Session(self.journals, self)
         self.window = self._window()
 
-    def run(self, file: Path | None = None) -> int:
-        """Show the window, offer unsaved work of sessions that were cut off, open a file; return the exit code."""
+    def run(self, file: Path | None = None, splash: Splash | None = None) -> int:
+        """Show the window in place of a splash, offer what sessions that were cut off left, open a file.
+
+        Returns the exit code.
+        """
         sys.excepthook = self._hear_mistake
         # Python hears Ctrl+C only while it runs: a timer lets it, now and then.
         signal.signal(signal.SIGINT, lambda *_: self.window.close())
@@ -75,6 +70,8 @@ class Desktop(QObject):
         waking.timeout.connect(lambda: None)
         waking.start()
         self.window.show()
+        if splash is not None:
+            splash.close_for(self.window)
         # Two: one fits while the other makes the triangles of what was fitted before.
         for _ in range(2):
             warm(get_ready)

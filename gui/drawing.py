@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QObject, Signal
 
 from geofit.data.prediction import Uncertainty
+from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.worker import run_apart
@@ -40,7 +41,13 @@ class Drawing(QObject):
         """Whether something is being made ready."""
         return bool(self._wanted)
 
-    def draw(self, surface: HorizonFit, uncertainty: Uncertainty | None, show: Callable[[Drawn], object]) -> None:
+    def draw(
+        self,
+        surface: HorizonFit,
+        uncertainty: Uncertainty | None,
+        ground: Ground | None,
+        show: Callable[[Drawn], object],
+    ) -> None:
         """Call ``show`` as soon as the surface can be drawn; one that is asked for later takes its place."""
         self.forget(surface.name)
         for made in self._made:
@@ -61,7 +68,7 @@ class Drawing(QObject):
             self.failed.emit(error)
 
         self._wanted[surface.name] = show
-        run_apart(self, drawn_of, surface, uncertainty, on_done=done, on_failed=fail)
+        run_apart(self, drawn_of, surface, uncertainty, ground, on_done=done, on_failed=fail)
 
     def forget(self, name: str) -> None:
         """Take back what was asked for of a horizon; its process is let be."""

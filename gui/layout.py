@@ -7,20 +7,20 @@ from collections.abc import Mapping
 from PySide6.QtCore import QByteArray, QObject, Qt
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabBar, QToolBar
 
-__all__ = ["Layout"]
+__all__ = ["BOTTOM", "Layout"]
 
 #: Of the layout that is remembered; one more when docks come or go.
-VERSION = 1
+VERSION = 2
 _Area = Qt.DockWidgetArea
+#: What folds away below the view.
+BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "offdata", "log")
 _PLACES = (
     (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
     (_Area.RightDockWidgetArea, ("fit", "adjust"), True),
-    (
-        _Area.BottomDockWidgetArea,
-        ("residuals", "section", "histogram", "plan", "seams", "checks", "offdata", "log"),
-        True,
-    ),
+    (_Area.BottomDockWidgetArea, BOTTOM, True),
 )
+#: Width of the docks at the left and at the right at first, and height of those below, as shares of the window's.
+_LEFT, _RIGHT, _BELOW = 0.156, 0.184, 0.36
 
 
 class Layout(QObject):
@@ -30,6 +30,7 @@ class Layout(QObject):
         super().__init__(window)
         self._window, self._docks = window, docks
         self._kept, self.hidden = QByteArray(), False
+        self._unfolded = set(BOTTOM)
         window.setDockOptions(
             QMainWindow.DockOption.AnimatedDocks
             | QMainWindow.DockOption.AllowTabbedDocks
@@ -71,8 +72,30 @@ class Layout(QObject):
         if not self._window.restoreState(self._kept, VERSION):
             self.arrange()
 
+    @property
+    def folded(self) -> bool:
+        """Whether nothing is shown below the view."""
+        return all(self._docks[name].isHidden() for name in BOTTOM)
+
+    def fold(self) -> None:
+        """Give the view the room of the docks below it."""
+        self._unfolded = {name for name in BOTTOM if not self._docks[name].isHidden()} or set(BOTTOM)
+        for name in BOTTOM:
+            self._docks[name].hide()
+
+    def reveal(self, name: str) -> None:
+        """Bring a dock to the front; one below the view comes with those that were folded away with it."""
+        if name in BOTTOM and self.folded:
+            for other in self._unfolded:
+                self._docks[other].show()
+            height = round(_BELOW * self._window.height())
+            self._window.resizeDocks([self._docks[name]], [height], Qt.Orientation.Vertical)
+        self._docks[name].show()
+        self._docks[name].raise_()
+        self._hide_lost_tabs()
+
     def arrange(self) -> None:
-        """Put everything where it is at first."""
+        """Put everything where it is at first: below the view nothing, until somebody asks for it."""
         window, docks = self._window, self._docks
         for part in self._parts():
             part.show()
@@ -84,10 +107,13 @@ class Layout(QObject):
                     window.addDockWidget(area, docks[name])
             docks[names[0]].raise_()
         width, height = window.width(), window.height()
-        window.resizeDocks([docks["tree"], docks["fit"]], [width // 6, width // 5], Qt.Orientation.Horizontal)
-        window.resizeDocks([docks["residuals"]], [height // 3], Qt.Orientation.Vertical)
+        sides = [round(_LEFT * width), round(_RIGHT * width)]
+        window.resizeDocks([docks["tree"], docks["fit"]], sides, Qt.Orientation.Horizontal)
         window.resizeDocks([docks["tree"], docks["scene"]], [height // 2, height // 2], Qt.Orientation.Vertical)
         self._hide_lost_tabs()
+        self._unfolded = set(BOTTOM)
+        for name in BOTTOM:
+            docks[name].hide()
 
     def _hide_lost_tabs(self) -> None:
         """Hide tab bars that Qt makes while it puts docks into tabs, and forgets: another one has all their tabs."""

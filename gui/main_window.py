@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QEvent, QSize, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
-from PySide6.QtWidgets import QApplication, QInputDialog, QMainWindow
+from PySide6.QtWidgets import QApplication, QInputDialog, QMainWindow, QTabBar
 
 from geofit.gui.actions import Actions
 from geofit.gui.activity import Activity
@@ -124,7 +124,9 @@ class MainWindow(QMainWindow):
         start = QApplication.focusWidget()
         while super().focusNextPrevChild(forward):
             now = QApplication.focusWidget()
-            if now is start or not self.panels.reach.behind(now):
+            # Of docks that are folded away Qt keeps the bar with their tabs.
+            unseen = isinstance(now, QTabBar) and now.visibleRegion().isEmpty()
+            if now is start or not (unseen or self.panels.reach.behind(now)):
                 return True
         return False
 
@@ -177,12 +179,14 @@ class MainWindow(QMainWindow):
         for name, switch in {
             "orthographic": view.set_orthographic,
             "clip": view.set_clip,
+            "faded": self.showing.set_faded,
             "measure": view.set_measuring,
             "section": self._switch_section,
             "control_points": lambda on: view.set_control_points(self._horizon() if on else None),
             "seams": lambda on: view.set_seams(self._horizon() if on else None),
         }.items():
             self.actions_[name].toggled.connect(switch)
+        self.actions_["faded"].setChecked(True)
         self.actions_.exaggerations.triggered.connect(lambda action: view.set_exaggeration(action.data()))
         self.actions_.themes.triggered.connect(lambda action: self._set_theme(action.data()))
         self.actions_.languages.triggered.connect(lambda action: self.language_chosen.emit(action.data()))

@@ -42,7 +42,7 @@ class Menus(QObject):
         self._menu(edit, "| exclude rename | preferences")
         view = self._menu(bar.addMenu(self.tr("&View")), "home top north south east west iso | orthographic clip")
         view.addMenu(_group_menu(self.tr("Vertical e&xaggeration"), actions.exaggerations.actions(), window))
-        self._menu(view, "control_points seams |")
+        self._menu(view, "faded control_points seams |")
         self.panels = view.addMenu(self.tr("&Panels"))
         view.addMenu(_group_menu(self.tr("T&heme"), actions.themes.actions(), window))
         view.addMenu(_group_menu(self.tr("&Language"), actions.languages.actions(), window))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QAction
@@ -14,15 +14,14 @@ __all__ = ["Reach"]
 class Reach(QObject):
     """Knows the docks of a window and what stands in its middle."""
 
-    def __init__(self, docks: Mapping[str, QDockWidget], middle: QWidget) -> None:
+    def __init__(self, docks: Mapping[str, QDockWidget], middle: QWidget, reveal: Callable[[str], None]) -> None:
         super().__init__(middle)
-        self._docks, self._middle = docks, middle
-        self.switches = [self._switch(dock) for dock in docks.values()]
+        self._docks, self._middle, self._reveal = docks, middle, reveal
+        self.switches = [self._switch(name, dock) for name, dock in docks.items()]
 
     def reveal(self, name: str) -> None:
         """Bring a dock to the front."""
-        self._docks[name].show()
-        self._docks[name].raise_()
+        self._reveal(name)
 
     def step(self, by: int) -> None:
         """Give the keyboard to the next panel (1) or the one before (-1), the middle of the window among them."""
@@ -41,7 +40,7 @@ class Reach(QObject):
             place.raise_()
         (_left(place) or _first(place) or place).setFocus(Qt.FocusReason.TabFocusReason)
 
-    def _switch(self, dock: QDockWidget) -> QAction:
+    def _switch(self, name: str, dock: QDockWidget) -> QAction:
         """Return an action that shows a dock and gives it the keyboard, or closes it if it is in front already."""
         own, shown = QAction(dock.windowTitle(), self), dock.toggleViewAction()
         own.setCheckable(True)
@@ -50,7 +49,7 @@ class Reach(QObject):
             if _in_front(dock):
                 dock.close()
             else:
-                dock.show()
+                self._reveal(name)
                 self._enter(dock)
             own.setChecked(shown.isChecked())
 

@@ -47,6 +47,7 @@ class Showing(QObject):
         self._chosen = self._settings = False
         self.line: ArrayLike | None = None
         self.thickness = THICKNESS
+        self.faded = True
         self.orders: tuple[Order, ...] = ()
         self.cuts: tuple[FaultCut, ...] = ()
         self._read_back: dict[str, tuple[HorizonFit, ReadBack]] = {}
@@ -128,7 +129,14 @@ class Showing(QObject):
             for name in document.horizons
             if (found := document.offdata(name)) is not None and found.uncertainty is not None
         }
-        self._panels.section.show_section(site, document.surfaces(), self.line, self.thickness, uncertain)
+        panel = self._panels.section
+        panel.show_section(site, document.surfaces(), self.line, self.thickness, uncertain, faded=self.faded)
+
+    def set_faded(self, on: bool) -> None:
+        """Fade surfaces above the ground and beyond their data, in view and section, or draw them in full."""
+        self.faded = on
+        self._panels.view.set_faded(on)
+        self.show_section()
 
     def show_orders(self, orders: tuple[Order, ...]) -> None:
         """Show how the horizons lie to each other, in the checks."""
@@ -164,7 +172,7 @@ class Showing(QObject):
             view.show_suggestions(name, () if offdata is None else offdata.suggestions)
             self.drawn.emit(name)
 
-        self.drawing.draw(surface, uncertainty, show)
+        self.drawing.draw(surface, uncertainty, self._document.site.ground, show)
 
     def _show_tree(self) -> None:
         document = self._document

@@ -61,6 +61,8 @@ class Style(QProxyStyle):
             painter.fillRect(option.rect, option.palette.window())
             painter.fillRect(option.rect.adjusted(0, option.rect.height() - 1, 0, 0), option.palette.mid())
             return
+        if element == _Control.CE_PushButton and widget is not None and widget.property("primary"):
+            _accent(option)
         super().drawControl(element, option, painter, widget)
         self._draw_ring(element, option, painter)
 
@@ -90,3 +92,12 @@ class Style(QProxyStyle):
             inset = _RING / 2
             painter.drawRoundedRect(QRectF(option.rect).adjusted(inset, inset, -inset, -inset), _ROUND, _ROUND)
             painter.restore()
+
+
+def _accent(option: QStyleOption) -> None:
+    """Fill the first button of a panel with the accent, while it can be pressed."""
+    if option.state & _State.State_Enabled:
+        palette = QPalette(option.palette)
+        palette.setColor(QPalette.ColorRole.Button, palette.color(QPalette.ColorRole.Highlight))
+        palette.setColor(QPalette.ColorRole.ButtonText, palette.color(QPalette.ColorRole.HighlightedText))
+        option.palette = palette

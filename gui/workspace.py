@@ -6,6 +6,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
 
 from geofit.gui.layout import Layout
+from geofit.gui.panel_bar import PanelBar
 from geofit.gui.panels.adjust import AdjustPanel
 from geofit.gui.panels.checks import ChecksPanel
 from geofit.gui.panels.fit_panel import FitPanel
@@ -56,7 +57,10 @@ class Workspace(QObject):
             "offdata": self._dock("offdata", self.tr("Off the data"), self.offdata),
             "log": self._dock("log", self.tr("Log"), self.log),
         }
-        self.layout, self.reach = Layout(window, self.docks), Reach(self.docks, self.view)
+        self.layout = Layout(window, self.docks)
+        self.bar = PanelBar(window, self.docks, self.layout)
+        self.reach = Reach(self.docks, self.view, self.layout.reveal)
+        self.bar.hide()
 
     def reveal(self, name: str) -> None:
         """Bring a dock to the front."""

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.signal import find_peaks
 
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
@@ -136,6 +135,8 @@ def _aligned(lines: list[Floats]) -> list[Floats]:
 
 def _hinges(xyz: Floats, v: Floats) -> Floats:
     """Return v at the turning points of a line, in order: where it runs back by a share of its extent."""
+    from scipy.signal import find_peaks  # loads a third of scipy, for folds only
+
     plan = xyz[:, :2] - xyz[:, :2].mean(axis=0)
     along = plan @ np.linalg.svd(plan, full_matrices=False)[2][0]
     least = PROMINENT * float(np.ptp(along))

@@ -8,12 +8,14 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QPalette
 from PySide6.QtWidgets import (
     QFrame,
+    QGridLayout,
     QHBoxLayout,
     QLabel,
     QPushButton,
     QScrollArea,
     QSizePolicy,
     QStyle,
+    QToolButton,
     QVBoxLayout,
     QWidget,
 )
@@ -21,13 +23,15 @@ from PySide6.QtWidgets import (
 from geofit.data.errors import SettingsError
 from geofit.data.settings import FitSettings
 from geofit.gui.panels.fit_fields import AutoField, ChoiceField, CoreField, Field, NumberField
-from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.marks import icon, readable
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.words import spoken
 from geofit.report.style import FAIL
 
-__all__ = ["FitPanel"]
+__all__ = ["FIRST", "FitPanel"]
+
+#: Fields that are always shown; the others unfold.
+FIRST = ("epsilon", "interior_tolerance", "core", "smoothing")
 
 
 class FitPanel(QWidget):
@@ -52,15 +56,30 @@ class FitPanel(QWidget):
         self.title.setFont(font)
         self.title.setWordWrap(True)
         self.banner = _Banner()
-        self._form = QVBoxLayout()
-        self._form.setSpacing(2)
+        self._form, self._rest = QVBoxLayout(), QVBoxLayout()
+        for form in (self._form, self._rest):
+            form.setSpacing(2)
+            form.setContentsMargins(0, 0, 0, 0)
+        self.more = QToolButton()
+        self.more.setText(self.tr("More settings"))
+        self.more.setCheckable(True)
+        self.more.setAutoRaise(True)
+        self.more.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        others = QWidget()
+        others.setLayout(self._rest)
         self._make_fields()
         page = QWidget()
         column = QVBoxLayout(page)
         column.setContentsMargins(8, 8, 8, 8)
         column.setSpacing(6)
         column.addLayout(self._form)
+        column.addWidget(self.more)
+        column.addWidget(others)
         column.addStretch(1)
+        self.more.toggled.connect(others.setVisible)
+        self.more.toggled.connect(self._turn_arrow)
+        others.hide()
+        self._turn_arrow(False)
         scroll = QScrollArea()
         scroll.setWidget(page)
         scroll.setWidgetResizable(True)
@@ -76,9 +95,13 @@ class FitPanel(QWidget):
         self.fit_button.setToolTip(self.tr("Apply, and fit this horizon."))
         self.all_button.setToolTip(self.tr("Fit every horizon with its own settings."))
         self.fit_button.setDefault(True)
-        buttons = FlowLayout()
-        for button in (self.apply_button, self.reset_button, self.fit_button, self.all_button):
-            buttons.addWidget(button)
+        self.fit_button.setProperty("primary", True)
+        buttons = QGridLayout()
+        buttons.setSpacing(6)
+        buttons.addWidget(self.fit_button, 0, 0)
+        buttons.addWidget(self.all_button, 0, 1)
+        buttons.addWidget(self.apply_button, 1, 0)
+        buttons.addWidget(self.reset_button, 1, 1)
         content = QWidget()
         outer = QVBoxLayout(content)
         outer.setContentsMargins(0, 8, 0, 8)
@@ -127,7 +150,6 @@ class FitPanel(QWidget):
 
     def _make_fields(self) -> None:
         metres = self.tr("m")
-        self._head(self.tr("Judged by"))
         self._add(
             "epsilon", self.tr("Control error ε"), NumberField(metres),
             self.tr("The surface passes when σ, the standard deviation of all points from it, is below this."),
@@ -140,11 +162,6 @@ class FitPanel(QWidget):
             ),
         )  # fmt: skip
         self._add(
-            "boundary_tolerance", self.tr("Seam tolerance"), NumberField(metres),
-            self.tr("How far the edges of neighbouring patches may gape. Patches of a fit share their edges: no gap."),
-        )  # fmt: skip
-        self._head(self.tr("Shape"))
-        self._add(
             "core", self.tr("Exact core"),
             CoreField(
                 {"auto": self.tr("Automatic"), "all": self.tr("All points"), "none": self.tr("None")},
@@ -154,6 +171,19 @@ class FitPanel(QWidget):
                 "The region whose points the surface meets exactly. Automatic: where the points are dense. All: every "
                 "point. None: all points are approximated. Drawn: the rectangle around the polygon of the plan."
             ),
+        )  # fmt: skip
+        choice = {True: self.tr("Automatic"), False: self.tr("Fixed")}
+        self._add(
+            "smoothing", self.tr("Smoothing"), AutoField("auto", choice),
+            self.tr(
+                "Weight of the bending energy outside the core. Automatic: from the scatter of the points. Larger is "
+                "smoother, smaller is nearer to the points."
+            ),
+        )  # fmt: skip
+        self._head(self.tr("Shape"))
+        self._add(
+            "boundary_tolerance", self.tr("Seam tolerance"), NumberField(metres),
+            self.tr("How far the edges of neighbouring patches may gape. Patches of a fit share their edges: no gap."),
         )  # fmt: skip
         self._add(
             "across", self.tr("Across sections"),
@@ -183,15 +213,7 @@ class FitPanel(QWidget):
             ),
         )  # fmt: skip
         self._head(self.tr("Fit"))
-        choice = {True: self.tr("Automatic"), False: self.tr("Fixed")}
         at_most = {True: self.tr("Automatic"), False: self.tr("At most")}
-        self._add(
-            "smoothing", self.tr("Smoothing"), AutoField("auto", choice),
-            self.tr(
-                "Weight of the bending energy outside the core. Automatic: from the scatter of the points. Larger is "
-                "smoother, smaller is nearer to the points."
-            ),
-        )  # fmt: skip
         self._add(
             "robust", self.tr("Outliers", "FitPanel"),
             ChoiceField({False: self.tr("Fitted too"), True: self.tr("Left out", "FitPanel")}),
@@ -216,14 +238,16 @@ class FitPanel(QWidget):
         )  # fmt: skip
         assert set(self.fields) == {field.name for field in fields(FitSettings)}
 
+    def _turn_arrow(self, unfolded: bool) -> None:
+        self.more.setArrowType(Qt.ArrowType.DownArrow if unfolded else Qt.ArrowType.RightArrow)
+
     def _head(self, words: str) -> None:
         label = QLabel(words)
         font = label.font()
         font.setBold(True)
         label.setFont(font)
-        if self.fields:
-            self._form.addSpacing(8)
-        self._form.addWidget(label)
+        self._rest.addSpacing(4)
+        self._rest.addWidget(label)
 
     def _add(self, name: str, words: str, field: Field, about: str) -> None:
         label, error = QLabel(words), QLabel()
@@ -241,8 +265,9 @@ class FitPanel(QWidget):
         row.setSpacing(6)
         row.addWidget(label, 4)
         row.addWidget(field, 5)
-        self._form.addLayout(row)
-        self._form.addWidget(error)
+        form = self._form if name in FIRST else self._rest
+        form.addLayout(row)
+        form.addWidget(error)
         field.changed.connect(self._check)
         self.fields[name], self.errors[name], self._labels[name] = field, error, label
 
@@ -262,6 +287,8 @@ class FitPanel(QWidget):
             self.errors[name].setPalette(colours)
             self.errors[name].setText(text)
             self.errors[name].setVisible(bool(text))
+            if text and name not in FIRST:
+                self.more.setChecked(True)
             sound = sound and not text
         new = self.edited() if sound else None
         changed = new != self._settings

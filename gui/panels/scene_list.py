@@ -51,7 +51,7 @@ class SceneList(QWidget):
         layout.setSpacing(6)
         layout.addLayout(self._place, 1)
         layout.addWidget(self.form)
-        self.setMinimumWidth(220)
+        self.setMinimumWidth(200)
         self.tree.itemChanged.connect(self._checked)
         self.tree.currentItemChanged.connect(lambda *_: self._choose())
         self.tree.customContextMenuRequested.connect(self._menu)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -118,6 +119,8 @@ class SectionPanel(QWidget):
         line: ArrayLike | None,
         thickness: float,
         uncertainty: Mapping[str, Uncertainty] | None = None,
+        *,
+        faded: bool = False,
     ) -> None:
         """Show a section of a site; without a line, one through its middle. Nothing is emitted."""
         if site is None:
@@ -132,7 +135,7 @@ class SectionPanel(QWidget):
         for gone in self._meshes.keys() - surfaces.keys():
             del self._meshes[gone]
         kept = {} if self._data is None else {n: t for n, t in self._data.traces.items() if n in surfaces}
-        self._data = SectionData(site, curtain, thickness, kept, uncertainty or {})
+        self._data = SectionData(site, curtain, thickness, kept, uncertainty or {}, faded)
         if new:
             self.along.clear()
             self.along.addItem(self.tr("Own line"))
@@ -192,9 +195,7 @@ class SectionPanel(QWidget):
     def _take(self, curtain: Curtain) -> None:
         assert self._data is not None
         self._moved = False
-        self._data = SectionData(
-            self._data.site, curtain, self._data.thickness, self._data.traces, self._data.uncertainty
-        )
+        self._data = replace(self._data, curtain=curtain)
         self._pause.start()
 
     def _tell_line(self) -> None:
@@ -205,8 +206,7 @@ class SectionPanel(QWidget):
     def _edit_thickness(self, value: float) -> None:
         if self._data is None:
             return
-        d = self._data
-        self._data = SectionData(d.site, d.curtain, value, d.traces, d.uncertainty)
+        self._data = replace(self._data, thickness=value)
         self.canvas.repaint_figure()
         self.thickness_changed.emit(value)
 
@@ -236,8 +236,7 @@ class SectionPanel(QWidget):
 
     def _show_traces(self, curtain: Curtain, found: Traces) -> None:
         if self._data is not None and self._data.curtain is curtain:
-            d = self._data
-            self._data = SectionData(d.site, curtain, d.thickness, found, d.uncertainty)
+            self._data = replace(self._data, traces=found)
             self._say_line()
             self.canvas.repaint_figure()
 

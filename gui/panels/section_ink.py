@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,6 +19,7 @@ from geofit.gui.panels.canvas import DOT, Ink
 from geofit.gui.panels.curtain import Curtain, Traces
 from geofit.gui.panels.section_scale import Extent
 from geofit.report.style import horizon_colours, kind_style, quiet
+from geofit.site.support import support_of
 
 __all__ = ["SectionData", "draw_section", "explain", "near_points", "seen_in", "thin_names"]
 
@@ -30,17 +32,23 @@ FREE, NOTE = 8.0, 20.0
 #: Half width of a 90 % band in standard deviations.
 NINETY = 1.6449
 GROUND = "#6b7d3a"
+#: Where a surface is above the ground or beyond its data.
+DASHES = (0, (4.0, 2.5))
 
 
 @dataclass(frozen=True, eq=False)
 class SectionData:
-    """What a section shows; ``uncertainty`` by horizon gives the 90 % bands."""
+    """What a section shows; ``uncertainty`` by horizon gives the 90 % bands.
+
+    ``faded`` draws surfaces dashed above the ground and beyond the hull of their points.
+    """
 
     site: Site
     curtain: Curtain
     thickness: float
     traces: Traces = field(default_factory=dict)
     uncertainty: Mapping[str, Uncertainty] = field(default_factory=dict)
+    faded: bool = False
 
     def colour(self, name: str) -> str:
         """Return the colour of a horizon, the same wherever it stands."""
@@ -84,9 +92,20 @@ def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, st
     banded = False
     for name, lines in data.traces.items():
         colour = data.colour(name)
+        points = data.site.horizons.get(name)
+        support = support_of(points.xyz, data.site.ground) if data.faded and points is not None else None
+        named = False
         for line in lines:
-            label = name if line is lines[0] else None
-            axes.plot(line.distance, line.xyz[:, 2], color=colour, lw=1.7, label=label, zorder=4)
+            held = np.ones(len(line.distance), bool) if support is None else support.within(line.xyz)
+            runs = _runs(held)
+            told = any(solid for _, solid in runs)
+            for run, solid in runs:
+                first = not named and solid == told
+                axes.plot(
+                    line.distance[run], line.xyz[run, 2], color=colour, lw=1.7 if solid else 1.2,
+                    ls="-" if solid else DASHES, alpha=1.0 if solid else 0.65, label=name if first else None, zorder=4,
+                )  # fmt: skip
+                named |= first
             band = _band(line.xyz, data.uncertainty.get(name))
             if band is not None and (np.diff(line.distance) >= 0).all():
                 axes.fill_between(
@@ -110,6 +129,12 @@ def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, st
     axes.yaxis.grid(True, color=ink.line, lw=0.6)
     axes.set_axisbelow(True)
     quiet(axes)
+
+
+def _runs(held: NDArray[np.bool_]) -> list[tuple[slice, bool]]:
+    """Return stretches of a line with whether they are supported; a stretch ends where the next begins."""
+    ends = [0, *(np.flatnonzero(np.diff(held)) + 1).tolist(), len(held)]
+    return [(slice(a, min(b + 1, len(held))), bool(held[a])) for a, b in pairwise(ends) if b > a]
 
 
 def _band(xyz: Floats, uncertainty: Uncertainty | None) -> Floats | None:

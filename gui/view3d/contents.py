@@ -38,6 +38,14 @@ class Contents:
         self.control: dict[str, list[tuple[str, int, int]]] = {}
         self._drawn: dict[str, Drawn] = {}
         self._listed: dict[str, Listing] = {}
+        self.faded = True
+
+    def set_faded(self, on: bool) -> None:
+        """Fade what lies above the ground or beyond the points of its surface, or draw it in full."""
+        if on != self.faded:
+            self.faded = on
+            for name in self.surfaces:
+                self.stage.rebuild(f"surface:{name}")
 
     def show_listing(self, name: str, listing: Listing) -> None:
         """Show all points of a horizon, excluded ones as ghosts, with their residuals."""
@@ -94,14 +102,20 @@ class Contents:
     ) -> None:
         """Show a surface, or its new fit; ``drawn`` if it was made ready already."""
         name, layers = surface.name, self.stage.layers
-        drawn = drawn or drawn_of(surface, uncertainty)
+        drawn = drawn or drawn_of(surface, uncertainty, None if self.site is None else self.site.ground)
         self.surfaces[name], self._drawn[name] = surface, drawn
         self.points.setdefault(name, surface.points)
         colour = self.colour(name)
         choices = ["plain", "elevation", "dip", "thickness"] + ["standard deviation"] * (drawn.sd is not None)
         self.stage.show(
             Layer(f"surface:{name}", "surface", name, colour, choices=tuple(choices), isolines=False),
-            lambda layer, look: shape_item(drawn.shape, self._values(name, layer.colour_by), layer, look),
+            lambda layer, look: shape_item(
+                drawn.shape,
+                self._values(name, layer.colour_by),
+                layer,
+                look,
+                drawn.supported if self.faded else None,
+            ),
         )
         for kind, bound in (("upper", drawn.upper), ("lower", drawn.lower)):
             if bound is None:

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
+from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of
+from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of, split
 from geofit.prediction.bands import band, prediction_sd
+from geofit.site.support import support_of
 
 __all__ = ["BAND", "Drawn", "drawn_of"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 #: A 90 % band reaches so many standard deviations to either side.
 BAND = 1.6449
@@ -23,15 +26,25 @@ BAND = 1.6449
 
 @dataclass(frozen=True, eq=False)
 class Drawn:
-    """A surface as triangles; ``sd`` at the vertices of the fine and the coarse ones, metres, and the 90 % bounds."""
+    """A surface as triangles; ``sd`` at the vertices of the fine and the coarse ones, metres, and the 90 % bounds.
+
+    ``supported`` says which triangles, fine and coarse, lie below the ground and within the hull of the points.
+    """
 
     shape: Shape
     sd: tuple[Floats, Floats] | None = None
     upper: Shape | None = None
     lower: Shape | None = None
+    supported: tuple[Bools, Bools] | None = None
 
 
-def drawn_of(surface: HorizonFit, uncertainty: Uncertainty | None = None, *, progress: Progress | None = None) -> Drawn:
+def drawn_of(
+    surface: HorizonFit,
+    uncertainty: Uncertainty | None = None,
+    ground: Ground | None = None,
+    *,
+    progress: Progress | None = None,
+) -> Drawn:
     """Return a surface made ready for drawing.
 
     The bounds of a surface that was fitted here are its own net moved up and down; of one that was read from a file
@@ -39,16 +52,29 @@ def drawn_of(surface: HorizonFit, uncertainty: Uncertainty | None = None, *, pro
     """
     tell(progress, "triangles", 0.0)
     shape = shape_of(surface)
-    if uncertainty is None:
-        return Drawn(shape)
+    if len(surface.points):
+        support = support_of(surface.points.xyz, ground)
+        fine = split(shape, support.depth(shape.xyz))
+        few = shape.coarse or shape
+        shape = replace(fine, coarse=fine if few is shape else split(few, support.depth(few.xyz)))
     coarse = shape.coarse or shape
+    held = _supported(surface, ground, shape), _supported(surface, ground, coarse)
+    if uncertainty is None:
+        return Drawn(shape, supported=held)
     if surface.model is None:
         fine, few = (sd_at(surface, uncertainty, one.xyz) for one in (shape, coarse))
         upper, lower = (_lifted(surface, uncertainty, shape, fine, few, sign) for sign in (BAND, -BAND))
     else:
         fine, few = (prediction_sd(surface, uncertainty, one.xyz) for one in (shape, coarse))
         upper, lower = (shape_of(bound) for bound in band(surface, uncertainty))
-    return Drawn(shape, (fine, few), upper, lower)
+    return Drawn(shape, (fine, few), upper, lower, held)
+
+
+def _supported(surface: HorizonFit, ground: Ground | None, shape: Shape) -> Bools:
+    """Return which triangles, none of which crosses the border, lie below the ground and within the points' hull."""
+    if not len(surface.points):
+        return np.ones(len(shape.triangles), bool)
+    return support_of(surface.points.xyz, ground).within(shape.xyz[shape.triangles].mean(axis=1))
 
 
 def _lifted(

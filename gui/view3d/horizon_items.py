@@ -26,12 +26,15 @@ from geofit.sampling.contours import interval_for
 __all__ = ["control_item", "points_item", "seams_item", "shape_item", "suggestions_item"]
 
 Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
 
 #: More points than BALLS are drawn flat and small, more than THIN thinned while the picture moves.
 BALLS, THIN = 20_000, 10_000
 SMALL = 2.0
 #: Colour by day and by night, and opacity, of points that take no part in the fit.
 GHOST, GHOSTLY = ("#5d6b7a", "#b9c4cf"), 0.3
+#: Opacity of a surface above the ground or beyond its points.
+FADED = 0.28
 #: Diameter of a control point, logical pixels.
 CONTROL = 2.5
 #: Every so many isolines one is thicker.
@@ -44,7 +47,7 @@ def points_item(
     settings: FitSettings,
     layer: Layer,
     look: Look,
-    excluded: NDArray[np.bool_] | None = None,
+    excluded: Bools | None = None,
 ) -> Item:
     """Points of a horizon, coloured as the layer says; those of excluded rows are ghosts."""
     made = points_by(layer.colour_by, points, layer.colour, residuals, settings, look.dark)
@@ -83,22 +86,36 @@ def _dots(
     return Part(actor, detail, size=size)
 
 
-def shape_item(shape: Shape, values: tuple[Floats, Floats] | None, layer: Layer, look: Look) -> Item:
-    """Return triangles coloured by a value at their corners (fine, coarse), or plain; isolines if wanted."""
+def shape_item(
+    shape: Shape,
+    values: tuple[Floats, Floats] | None,
+    layer: Layer,
+    look: Look,
+    supported: tuple[Bools, Bools] | None = None,
+) -> Item:
+    """Return triangles coloured by a value at their corners (fine, coarse), or plain; isolines if wanted.
+
+    Triangles that are not ``supported`` (fine, coarse) are drawn translucent; None: all are.
+    """
     coarse = shape.coarse or shape
     details = (("both", shape, 0),) if coarse is shape else (("full", shape, 0), ("coarse", coarse, 1))
     made = ramp(layer.colour_by, values[0]) if values is not None else None
     parts = []
     for detail, one, k in details:
-        data = poly(one.xyz - look.origin, faces=one.triangles, normals=one.normals)
-        if detail == "coarse":
-            flat = np.tile(np.array(rgb(layer.colour), np.uint8), (len(one.xyz), 1))
-            actor = shaded(data, made.of(values[k]) if made is not None and values is not None else flat, one.normals)
-        else:
-            actor = triangles(data, layer.colour)
-            if made is not None and values is not None:
-                ramped(actor, values[k], made)
-        parts.append(Part(actor, detail))
+        held = np.ones(len(one.triangles), bool) if supported is None else supported[k]
+        for faces, opacity in ((one.triangles[held], 1.0), (one.triangles[~held], FADED)):
+            if not len(faces):
+                continue
+            data = poly(one.xyz - look.origin, faces=faces, normals=one.normals)
+            if detail == "coarse":
+                flat = np.tile(np.array(rgb(layer.colour), np.uint8), (len(one.xyz), 1))
+                shades = made.of(values[k]) if made is not None and values is not None else flat
+                actor = shaded(data, shades, one.normals)
+            else:
+                actor = triangles(data, layer.colour)
+                if made is not None and values is not None:
+                    ramped(actor, values[k], made)
+            parts.append(Part(actor, detail, opacity=opacity))
         if layer.isolines:
             parts += _isolines(one, shape, detail, look)
     return Item(parts, extent(shape.xyz), shape=shape, legend=made.legend if made else None)

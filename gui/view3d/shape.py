@@ -18,7 +18,7 @@ from geofit.geometry.mesh import Mesh
 from geofit.report.view import trimmed
 from geofit.splines.patch import Patch
 
-__all__ = ["Shape", "across", "next_below", "sd_at", "seam_lines", "shape_of"]
+__all__ = ["Shape", "across", "next_below", "sd_at", "seam_lines", "shape_of", "split"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -82,6 +82,34 @@ def _thinned(shape: Shape) -> Shape:
     triangles = vtk_to_numpy(made.GetPolys().GetConnectivityArray()).reshape(-1, 3).astype(np.int64)
     known = cKDTree(shape.xyz - middle).query(places)[1]
     return Shape(shape.xyz[known], triangles, shape.normals[known])
+
+
+def split(shape: Shape, value: Floats) -> Shape:
+    """Return triangles of which none crosses where a value (n,) at the vertices is 0; those that did are cut."""
+    inside = value >= 0
+    mixed = (
+        inside[shape.triangles].any(axis=1)
+        & ~inside[shape.triangles].all(axis=1)
+        & np.isfinite(value)[shape.triangles].all(axis=1)
+    )
+    if not mixed.any():
+        return Shape(shape.xyz, shape.triangles, shape.normals)
+    cut = shape.triangles[mixed]
+    # The corner that lies on the other side than the other two comes first; the turn stays.
+    alone = np.where((inside[cut].sum(axis=1) == 1)[:, None], inside[cut], ~inside[cut]).argmax(axis=1)
+    a, b, c = (np.take_along_axis(cut, ((alone + k) % 3)[:, None], axis=1).ravel() for k in range(3))
+    share = [np.clip(value[a] / (value[a] - value[other]), 0.0, 1.0)[:, None] for other in (b, c)]
+    places = [shape.xyz[a] + s * (shape.xyz[o] - shape.xyz[a]) for s, o in zip(share, (b, c), strict=True)]
+    normals = [shape.normals[a] + s * (shape.normals[o] - shape.normals[a]) for s, o in zip(share, (b, c), strict=True)]
+    normals = [n / np.maximum(np.linalg.norm(n, axis=1, keepdims=True), 1e-12) for n in normals]
+    p = len(shape.xyz) + np.arange(len(cut))
+    q = p + len(cut)
+    pieces = [np.stack(three, axis=1) for three in ((a, p, q), (p, b, c), (p, c, q))]
+    return Shape(
+        np.concatenate([shape.xyz, *places]),
+        np.concatenate([shape.triangles[~mixed], *pieces]),
+        np.concatenate([shape.normals, *normals]),
+    )
 
 
 def _width(surface: HorizonFit) -> float:

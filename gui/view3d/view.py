@@ -244,6 +244,11 @@ class SceneView(QWidget):
         self._section.thickness = max(float(thickness), 0.0)
         self._changed()
 
+    def set_faded(self, on: bool) -> None:
+        """Fade surfaces above the ground and beyond their data, or draw them in full."""
+        self.contents.set_faded(on)
+        self._changed()
+
     def set_clip(self, on: bool) -> None:
         """Show a box whose sides can be moved, and nothing outside of it."""
         box = self._stage.box()

@@ -8,6 +8,7 @@ from PySide6.QtCore import QByteArray
 from PySide6.QtWidgets import QToolBar
 
 from geofit.data.site import Site
+from geofit.gui.layout import BOTTOM
 
 
 def opened(app):
@@ -40,8 +41,8 @@ def test_the_start_page_stands_alone(app):
 
 def test_a_site_brings_every_dock_in_its_place(app):
     opened(app)
-    assert shown(app.window) == {"tool bar", *app.window.panels.docks}
-    assert in_front(app.window) == {"tree", "scene", "fit", "residuals"}
+    assert shown(app.window) == {"tool bar", "panel bar", *app.window.panels.docks} - set(BOTTOM)
+    assert in_front(app.window) == {"tree", "scene", "fit"}
     assert app.window.menus.panels.isEnabled()
     assert all(dock.toggleViewAction().isEnabled() for dock in app.window.panels.docks.values())
 
@@ -63,8 +64,8 @@ def test_the_next_site_finds_the_docks_as_they_were_left(app):
 @pytest.mark.parametrize("left_on", ["the site", "the start page"])
 def test_the_next_start_finds_them_too(app, qtbot, left_on):
     opened(app)
-    app.window.panels.docks["log"].close()
     app.window.panels.reveal("checks")
+    app.window.panels.docks["log"].close()
     app.idle()
     if left_on == "the start page":
         closed(app)
@@ -81,7 +82,35 @@ def test_the_next_start_finds_them_too(app, qtbot, left_on):
 def test_a_layout_that_cannot_be_read_gives_the_first_one(app):
     app.window.panels.layout.state = QByteArray(b"\x00\xff")
     opened(app)
-    assert in_front(app.window) == {"tree", "scene", "fit", "residuals"}
+    assert in_front(app.window) == {"tree", "scene", "fit"}
+
+
+def test_the_view_has_most_of_a_small_window(app):
+    app.window.resize(1280, 800)
+    opened(app)
+    app.trigger("reset_layout")
+    app.idle()
+    view = app.window.panels.view
+    assert view.width() * view.height() >= 0.55 * 1280 * 800
+    assert app.window.panels.layout.folded
+
+
+def test_a_button_unfolds_a_panel_and_folds_all_away_again(app):
+    opened(app)
+    panels = app.window.panels
+    high = panels.view.height()
+    panels.bar.buttons["checks"].trigger()
+    app.idle()
+    assert "checks" in in_front(app.window)
+    assert panels.view.height() < 0.75 * high
+    panels.bar.buttons["plan"].trigger()
+    app.idle()
+    assert "plan" in in_front(app.window)
+    assert not panels.bar.buttons["checks"].isChecked()
+    panels.bar.buttons["plan"].trigger()
+    app.idle()
+    assert panels.layout.folded
+    assert panels.view.height() == high
 
 
 def test_panels_can_be_reset(app):
@@ -91,4 +120,4 @@ def test_panels_can_be_reset(app):
     app.window.menus.tools.hide()
     app.trigger("reset_layout")
     app.idle()
-    assert shown(app.window) == {"tool bar", *app.window.panels.docks}
+    assert shown(app.window) == {"tool bar", "panel bar", *app.window.panels.docks} - set(BOTTOM)

@@ -210,3 +210,32 @@ def test_status_bar_and_log_record_every_step(shown):
     fitting.pull(NAME, row, 0.5)
     shown.idle()
     assert f"Pull {NAME} to point" in log.toPlainText()
+
+
+def test_one_switch_fades_what_no_data_support_in_view_and_section(shown, qtbot):
+    panels, view, switch = shown.panels, shown.view, shown.window.actions_["faded"]
+    panels.reveal("section")
+    points = shown.document.site.horizons[NAME].xyz
+    middle = points.mean(axis=0)
+    panels.section.line_changed.emit(np.array([[middle[0] - 2000, middle[1]], [middle[0] + 2000, middle[1]]]))
+    shown.window.showing.show_section()
+
+    def styles():
+        axes = panels.section.canvas.figure.axes
+        colour = panels.section._data.colour(NAME)
+        return {line.get_linestyle() for line in (axes[0].lines if axes else ()) if line.get_color() == colour}
+
+    def opacities():
+        item = {layer.key: item for layer, item in view._stage.items()}[f"surface:{NAME}"]
+        return [part.opacity for part in item.parts]
+
+    qtbot.waitUntil(lambda: "--" in styles() and "-" in styles(), timeout=60_000)
+    assert switch.isChecked()
+    assert min(opacities()) < 0.5 < max(opacities())
+    held = view.contents._drawn[NAME].supported[0]
+    assert 0 < held.sum() < len(held)
+    switch.trigger()
+    qtbot.waitUntil(lambda: "--" not in styles(), timeout=60_000)
+    assert min(opacities()) == 1.0
+    switch.trigger()
+    assert min(opacities()) < 0.5

@@ -9,6 +9,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from geofit.data.messages import message
+from geofit.gui.panels.fit_panel import FIRST
 from geofit.project.commands import SetSurface
 
 
@@ -41,6 +42,7 @@ def press(key, modifier=Qt.KeyboardModifier.NoModifier):
 
 def test_one_key_goes_round_all_panels_and_another_back(shown):
     docks = list(shown.window.panels.docks)
+    shown.window.panels.reveal("residuals")
     shown.window.panels.view.canvas.setFocus()
     assert at(shown.window) == "view"
     went = []
@@ -55,6 +57,7 @@ def test_one_key_goes_round_all_panels_and_another_back(shown):
 
 
 def test_a_panel_is_come_back_to_where_it_was_left(shown):
+    shown.window.panels.fit.more.setChecked(True)
     box = shown.window.panels.fit.fields["seam"].box
     box.setFocus()
     shown.trigger("next_panel")
@@ -73,7 +76,7 @@ def test_a_closed_panel_is_passed_over(shown):
 def test_the_menu_brings_to_the_front_what_stands_behind_and_closes_what_is_in_front(shown):
     checks = shown.window.panels.docks["checks"]
     switch = next(one for one in shown.window.menus.panels.actions() if one.text() == checks.windowTitle())
-    assert switch.isChecked()
+    assert not switch.isChecked(), "folded away at first"
     assert checks.visibleRegion().isEmpty()
     switch.trigger()
     shown.idle()
@@ -92,6 +95,8 @@ def test_the_menu_brings_to_the_front_what_stands_behind_and_closes_what_is_in_f
 
 @pytest.mark.parametrize("key", [Qt.Key.Key_Tab, Qt.Key.Key_Backtab])
 def test_tab_passes_over_what_stands_behind(shown, key):
+    shown.window.panels.reveal("residuals")
+    shown.idle()
     shown.window.panels.tree.search.setFocus()
     places = set()
     for _ in range(80):
@@ -109,7 +114,10 @@ def test_tab_passes_over_what_stands_behind(shown, key):
 
 def test_tab_goes_down_the_fit_panel(shown):
     panel = shown.window.panels.fit
+    panel.more.setChecked(True)
+    shown.idle()
     order = [field.focusProxy() for field in panel.fields.values()]
+    order.insert(len(FIRST), panel.more)
     assert [box.mapToGlobal(box.rect().topLeft()).y() for box in order] == sorted(
         box.mapToGlobal(box.rect().topLeft()).y() for box in order
     )

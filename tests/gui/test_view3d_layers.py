@@ -257,3 +257,32 @@ def test_the_disc_of_a_dip_lies_as_it_was_measured():
     np.testing.assert_allclose(places @ normal, 0.0, atol=1e-4)
     np.testing.assert_allclose(vtk_to_numpy(data.GetPointData().GetNormals())[0], normal, atol=1e-6)
     assert item.names == ("060/25",)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_triangles_are_split_where_a_value_changes_its_sign(seed):
+    from geofit.gui.view3d.shape import Shape, split
+
+    rng = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(9.0), np.arange(7.0))
+    xyz = np.column_stack([x.ravel(), y.ravel(), rng.normal(0, 0.3, x.size)])
+    n = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = n[:-1, :-1].ravel(), n[:-1, 1:].ravel(), n[1:, 1:].ravel(), n[1:, :-1].ravel()
+    whole = Shape(
+        xyz, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]), np.tile([0.0, 0.0, 1.0], (63, 1))
+    )
+
+    def value(places):
+        return 3.3 - np.hypot(places[:, 0] - 4.1, places[:, 1] - 3.2)
+
+    parted = split(whole, value(xyz))
+
+    def areas(shape):
+        p, q, r = (shape.xyz[shape.triangles[:, k], :2] for k in range(3))
+        return 0.5 * ((q - p)[:, 0] * (r - p)[:, 1] - (q - p)[:, 1] * (r - p)[:, 0])
+
+    assert areas(parted).sum() == pytest.approx(48.0)
+    assert areas(parted).min() > -1e-12, "no triangle is turned round"
+    inner = areas(parted)[value(parted.xyz[parted.triangles].mean(axis=1)) >= 0].sum()
+    assert inner == pytest.approx(np.pi * 3.3**2 - 1.0, abs=1.5)
+    assert len(parted.xyz) > len(xyz)
