@@ -27,8 +27,14 @@ from geofit.cli.options import (
 )
 from geofit.cli.running import run_site
 from geofit.cli.sources import read_source
+from geofit.data.setting_texts import SETTINGS
 
 __all__ = ["fit"]
+
+
+def _help(setting: str, default: str) -> str:
+    text = SETTINGS[setting]
+    return f"{text.about}{f' In {text.unit}.' if text.unit else ''} {FROM_SITE} {default}."
 
 
 @app.command()
@@ -37,7 +43,7 @@ def fit(
     source: Annotated[Path, typer.Argument(metavar="SITE_OR_CSV", help="site.toml, or a table of points.")],
     out: Out,
     horizon: Annotated[list[str] | None, typer.Option(help="Fit this horizon only; may be repeated.")] = None,
-    epsilon: Annotated[float | None, typer.Option(help=f"Control error for sigma, m. {FROM_SITE} 0.5.")] = None,
+    epsilon: Annotated[float | None, typer.Option(help=_help("epsilon", "0.5"))] = None,
     x: X = None,
     y: Y = None,
     z: Z = None,
@@ -49,42 +55,32 @@ def fit(
     boundary: Annotated[
         Path | None, typer.Option(help="Study area: table of corners (x, y) in order, or GeoJSON polygon; m.")
     ] = None,
-    interior_tolerance: Annotated[
-        float | None, typer.Option(help=f"Largest distance wanted in the periphery, m. {FROM_SITE} 0.1.")
-    ] = None,
-    boundary_tolerance: Annotated[
-        float | None, typer.Option(help=f"Largest gap between patches, m. {FROM_SITE} 0.01.")
-    ] = None,
+    interior_tolerance: Annotated[float | None, typer.Option(help=_help("interior_tolerance", "0.1"))] = None,
+    boundary_tolerance: Annotated[float | None, typer.Option(help=_help("boundary_tolerance", "0.01"))] = None,
     across: Annotated[
         Across | None,
-        typer.Option(help=f"Interpolation of the core across its sections. {FROM_SITE} cubic."),
+        typer.Option(help=_help("across", "cubic")),
     ] = None,
     seam: Annotated[
         Seam | None,
-        typer.Option(help=f"Patches share the tangent plane, or the edge only. {FROM_SITE} tangent."),
+        typer.Option(help=_help("seam", "tangent")),
     ] = None,
     core: Annotated[
         str | None,
-        typer.Option(help=f"Interpolated region: auto, all, none, or a file with a polygon. {FROM_SITE} auto."),
+        typer.Option(help=f"auto, all, none, or a file with a polygon. {_help('core', 'auto')}"),
     ] = None,
     frame: Annotated[
         Frame | None,
-        typer.Option(help=f"Height over the map, over the best plane, or through section lines. {FROM_SITE} auto."),
+        typer.Option(help=_help("frame", "auto")),
     ] = None,
-    smoothing: Annotated[
-        str | None, typer.Option(help=f"Weight of the bending energy: auto, or a number. {FROM_SITE} auto.")
-    ] = None,
+    smoothing: Annotated[str | None, typer.Option(help=f"auto, or a number. {_help('smoothing', 'auto')}")] = None,
     robust: Annotated[
         bool | None,
-        typer.Option("--robust", help=f"Peripheral points that their neighbours deny take no part. {FROM_SITE} not."),
+        typer.Option("--robust", help=f"Leave outliers out of the fit. {_help('robust', 'not')}"),
     ] = None,
-    max_iterations: Annotated[int | None, typer.Option(help=f"Cap of the refinement steps. {FROM_SITE} 20.")] = None,
-    max_control_points: Annotated[
-        int | None, typer.Option(help=f"Cap of the control points. {FROM_SITE} 40 a data point, 15 with a core.")
-    ] = None,
-    conflict_distance: Annotated[
-        float | None, typer.Option(help=f"Points nearer than this are one place, m. {FROM_SITE} 0.01.")
-    ] = None,
+    max_iterations: Annotated[int | None, typer.Option(help=_help("max_iterations", "20"))] = None,
+    max_control_points: Annotated[int | None, typer.Option(help=_help("max_control_points", "automatic"))] = None,
+    conflict_distance: Annotated[float | None, typer.Option(help=_help("conflict_distance", "0.01"))] = None,
     apart: Annotated[
         bool,
         typer.Option("--repair", help="Push horizons of the site's order apart where they cross; exact points stay."),

@@ -9,28 +9,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message, Verbatim, message
 from geofit.data.numbers import is_finite, shown
+from geofit.data.setting_texts import SETTINGS
 
-__all__ = ["LABELS", "FitSettings"]
-
-#: What the fit panel calls each setting, and its keyword.
-LABELS: dict[str, Message] = {
-    "epsilon": message("settings.control-error-epsilon", "Control error (epsilon)"),
-    "interior_tolerance": message(
-        "settings.interior-tolerance-interior-tolerance", "Interior tolerance (interior_tolerance)"
-    ),
-    "boundary_tolerance": message("settings.seam-tolerance-boundary-tolerance", "Seam tolerance (boundary_tolerance)"),
-    "across": message("settings.across-sections-across", "Across sections (across)"),
-    "seam": message("settings.seams-seam", "At the seams (seam)"),
-    "core": message("settings.exact-core-core", "Exact core (core)"),
-    "frame": message("settings.laid-frame", "Laid over (frame)"),
-    "smoothing": message("settings.smoothing-smoothing", "Smoothing (smoothing)"),
-    "robust": message("settings.outliers-robust", "Outliers (robust)"),
-    "max_iterations": message("settings.rounds-max-iterations", "Rounds, at most (max_iterations)"),
-    "max_control_points": message("settings.control-points-max-control", "Control points (max_control_points)"),
-    "conflict_distance": message("settings.place-within-conflict-distance", "One place within (conflict_distance)"),
-}
+__all__ = ["FitSettings", "named"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,8 +129,13 @@ class FitSettings:
             )
 
 
+def named(name: str) -> Message:
+    """Return what a setting is called, with its keyword."""
+    return message("settings.label-keyword", "{label} ({name})", label=SETTINGS[name].label, name=Verbatim(name))
+
+
 def _given(name: str, value: Any) -> dict[str, Any]:
-    return {"setting": LABELS[name], "value": shown(value)}
+    return {"setting": named(name), "value": shown(value)}
 
 
 def _positive(name: str, value: Any, unit: Message) -> None:
@@ -186,7 +174,7 @@ def _polygon(value: ArrayLike) -> tuple[tuple[float, float], ...]:
             "settings.shape-polygon-least-three",
             "{setting} has shape {shape}; a polygon of at least three (easting, northing) corners is needed.",
             shape=corners.shape,
-            setting=LABELS["core"],
+            setting=named("core"),
         )
         raise SettingsError(text)
     return tuple((float(x), float(y)) for x, y in corners)

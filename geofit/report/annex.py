@@ -8,6 +8,7 @@ from itertools import zip_longest
 
 from geofit.data.languages import Language, sentence, together, translate
 from geofit.data.messages import message
+from geofit.data.setting_texts import SETTINGS
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport
 from geofit.report.checks_table import check_table
@@ -19,47 +20,15 @@ __all__ = ["horizon_annex", "inputs_annex"]
 
 #: Rows of a list in the document; the JSON and the CSV hold all of them.
 LONGEST = 40
-_SETTINGS = {
-    "epsilon": message("report.control-error", "Control error ε, m"),
-    "interior_tolerance": message("report.interior-tolerance", "Interior tolerance, m"),
-    "boundary_tolerance": message("report.boundary-tolerance", "Boundary tolerance, m"),
-    "across": message("report.interpolation-across-sections", "Interpolation across the sections"),
-    "seam": message("report.seams", "Seams"),
-    "core": message("report.core", "Core"),
-    "frame": message("report.frame", "Frame"),
-    "smoothing": message("report.smoothing", "Smoothing"),
-    "robust": message("report.outliers-take-no-part", "Outliers take no part"),
-    "max_iterations": message("report.max-iterations", "Most iterations"),
-    "max_control_points": message("report.max-control-points", "Most control points"),
-    "conflict_distance": message("report.conflict-distance", "Conflict distance, m"),
-}
 _FIT = {
     "control_points": message("report.control-points", "Control points"),
     "energy": message("report.bending-energy", "Bending energy"),
-    "smoothing": message("report.smoothing", "Smoothing"),
     "iterations": message("report.iterations", "Iterations"),
-    "frame": message("report.frame", "Frame"),
     "order": message("report.derivative-energy", "Derivative in the energy"),
-    "across": message("report.interpolation-across-sections", "Interpolation across the sections"),
     "noise": message("report.noise", "Noise, m"),
     "spacing": message("report.spacing", "Spacing, m"),
     "noise_limit": message("report.noise-limit", "Largest noise that a point may have, m"),
     "by_hand": message("report.by-hand", "Changes by hand"),
-}
-#: Values that are code, in words.
-_VALUES = {
-    "auto": message("report.value-auto", "chosen automatically"),
-    "True": message("report.value-yes", "yes"),
-    "False": message("report.value-no", "no"),
-    "all": message("report.value-all", "all points"),
-    "none": message("report.value-none", "no points"),
-    "cubic": message("report.value-cubic", "smooth (cubic)"),
-    "linear": message("report.value-linear", "straight (linear)"),
-    "tangent": message("report.value-tangent", "same tangent plane"),
-    "position": message("report.value-position", "same edge only"),
-    "map": message("report.value-map", "height over the map"),
-    "best-plane": message("report.value-best-plane", "height over the best plane"),
-    "sections": message("report.value-sections", "parametric, through the section lines"),
 }
 
 
@@ -193,16 +162,20 @@ def _read_back(h: HorizonReport, t: Language) -> list[Block]:
     return [*blocks, Paragraph(f"{back.file}: SHA-256 {back.sha256}", "quiet")]
 
 
+def _label(key: str, t: Language) -> str:
+    return translate(SETTINGS[key].with_unit() if key in SETTINGS else _FIT[key], t)
+
+
 def _value(key: str, value: str, t: Language) -> str:
     """Return the value of a setting in words; a word may mean something else under another key."""
-    if value in _VALUES and key != "energy":
-        return translate(_VALUES[value], t)
-    return translate(value, t)
+    choices = SETTINGS[key].choices if key in SETTINGS else {}
+    words = {str(choice): text for choice, text in choices.items()}
+    return translate(words.get(value, value), t)
 
 
 def _made(h: HorizonReport, t: Language) -> list[Block]:
-    settings = [(translate(_SETTINGS.get(key, key), t), _value(key, value, t)) for key, value in h.settings]
-    figures = [(translate(_FIT[key], t), _value(key, value, t)) for key, value in h.fit if key in _FIT]
+    settings = [(_label(key, t), _value(key, value, t)) for key, value in h.settings]
+    figures = [(_label(key, t), _value(key, value, t)) for key, value in h.fit if key in _FIT or key in SETTINGS]
     patches = tuple(
         (
             translate(p.name, t),

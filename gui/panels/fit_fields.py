@@ -119,7 +119,7 @@ class AutoField(QWidget):
 class CoreField(ChoiceField):
     """Automatic, all, none, or the polygon that was drawn in the plan."""
 
-    def __init__(self, choices: dict[str, str], drawn: str) -> None:
+    def __init__(self, choices: dict[Any, str], drawn: str) -> None:
         super().__init__(choices)
         self._drawn = drawn
         self._plain = len(choices)

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.data.errors import SettingsError
+from geofit.data.setting_texts import SETTINGS
 from geofit.data.settings import FitSettings
 from geofit.gui.panels.fit_fields import AutoField, ChoiceField, CoreField, Field, NumberField
 from geofit.gui.panels.marks import icon, readable
@@ -149,93 +150,22 @@ class FitPanel(QWidget):
             return None
 
     def _make_fields(self) -> None:
-        metres = self.tr("m")
-        self._add(
-            "epsilon", self.tr("Control error ε"), NumberField(metres),
-            self.tr("The surface passes when σ, the standard deviation of all points from it, is below this."),
-        )  # fmt: skip
-        self._add(
-            "interior_tolerance", self.tr("Interior tolerance"), NumberField(metres),
-            self.tr(
-                "How far a point outside the core may lie from the surface. The fit refines until it holds or nothing "
-                "more helps."
-            ),
-        )  # fmt: skip
-        self._add(
-            "core", self.tr("Exact core"),
-            CoreField(
-                {"auto": self.tr("Automatic"), "all": self.tr("All points"), "none": self.tr("None")},
-                self.tr("Drawn, {n} corners"),
-            ),
-            self.tr(
-                "The region whose points the surface meets exactly. Automatic: where the points are dense. All: every "
-                "point. None: all points are approximated. Drawn: the rectangle around the polygon of the plan."
-            ),
-        )  # fmt: skip
-        choice = {True: self.tr("Automatic"), False: self.tr("Fixed")}
-        self._add(
-            "smoothing", self.tr("Smoothing"), AutoField("auto", choice),
-            self.tr(
-                "Weight of the bending energy outside the core. Automatic: from the scatter of the points. Larger is "
-                "smoother, smaller is nearer to the points."
-            ),
-        )  # fmt: skip
-        self._head(self.tr("Shape"))
-        self._add(
-            "boundary_tolerance", self.tr("Seam tolerance"), NumberField(metres),
-            self.tr("How far the edges of neighbouring patches may gape. Patches of a fit share their edges: no gap."),
-        )  # fmt: skip
-        self._add(
-            "across", self.tr("Across sections"),
-            ChoiceField({"cubic": self.tr("Cubic"), "linear": self.tr("Linear")}),
-            self.tr(
-                "How the core runs from one section to the next: smoothly, or along straight lines as drawn by hand."
-            ),
-        )  # fmt: skip
-        self._add(
-            "seam", self.tr("At the seams"),
-            ChoiceField({"tangent": self.tr("Smooth"), "position": self.tr("Break allowed")}),
-            self.tr("Whether neighbouring patches share a tangent plane, or meet at the edge and may break there."),
-        )  # fmt: skip
-        self._add(
-            "frame", self.tr("Laid over"),
-            ChoiceField(
-                {
-                    "auto": self.tr("Automatic"),
-                    "map": self.tr("The map"),
-                    "best-plane": self.tr("Its best plane"),
-                    "sections": self.tr("Its sections"),
-                }
-            ),
-            self.tr(
-                "Map: one height at each place. Best plane: for steep faults. Sections: for overturned folds, through "
-                "the section lines in order."
-            ),
-        )  # fmt: skip
-        self._head(self.tr("Fit"))
+        unit = self.tr("m")
+        automatic = {True: self.tr("Automatic"), False: self.tr("Fixed")}
         at_most = {True: self.tr("Automatic"), False: self.tr("At most")}
-        self._add(
-            "robust", self.tr("Outliers", "FitPanel"),
-            ChoiceField({False: self.tr("Fitted too"), True: self.tr("Left out", "FitPanel")}),
-            self.tr(
-                "Peripheral points that their neighbours do not bear out. They are named and count in sigma either way."
-            ),
-        )  # fmt: skip
-        self._add(
-            "max_iterations", self.tr("Rounds, at most"), NumberField(whole=True),
-            self.tr("How often the fit may refine and adjust before it stops and says what is not met."),
-        )  # fmt: skip
-        self._add(
-            "max_control_points", self.tr("Control points"), AutoField(None, at_most, whole=True, start=2000),
-            self.tr("Limit of the surface's size. Automatic: ten a point, at least 400 and at most 60 000."),
-        )  # fmt: skip
-        self._add(
-            "conflict_distance", self.tr("One place within"), NumberField(metres),
-            self.tr(
-                "Points nearer to each other in plan than this count as one place. If their elevations differ, the "
-                "more accurate is kept and the other listed."
-            ),
-        )  # fmt: skip
+        self._add("epsilon", NumberField(unit))
+        self._add("interior_tolerance", NumberField(unit))
+        self._add("core", CoreField(_choices("core"), self.tr("Drawn, {n} corners")))
+        self._add("smoothing", AutoField("auto", automatic))
+        self._head(self.tr("Shape"))
+        self._add("boundary_tolerance", NumberField(unit))
+        for name in ("across", "seam", "frame"):
+            self._add(name, ChoiceField(_choices(name)))
+        self._head(self.tr("Fit"))
+        self._add("robust", ChoiceField(_choices("robust")))
+        self._add("max_iterations", NumberField(whole=True))
+        self._add("max_control_points", AutoField(None, at_most, whole=True, start=2000))
+        self._add("conflict_distance", NumberField(unit))
         assert set(self.fields) == {field.name for field in fields(FitSettings)}
 
     def _turn_arrow(self, unfolded: bool) -> None:
@@ -249,7 +179,8 @@ class FitPanel(QWidget):
         self._rest.addSpacing(4)
         self._rest.addWidget(label)
 
-    def _add(self, name: str, words: str, field: Field, about: str) -> None:
+    def _add(self, name: str, field: Field) -> None:
+        words, about = spoken(SETTINGS[name].label), spoken(SETTINGS[name].about)
         label, error = QLabel(words), QLabel()
         label.setBuddy(field)
         label.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
@@ -324,6 +255,11 @@ class FitPanel(QWidget):
     def _fit(self) -> None:
         if self._apply():
             self.fit_requested.emit(self._name)
+
+
+def _choices(name: str) -> dict[object, str]:
+    """Return the words of a setting's choices in the user's language."""
+    return {value: spoken(text) for value, text in SETTINGS[name].choices.items()}
 
 
 class _Banner(QFrame):

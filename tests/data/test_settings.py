@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import dataclasses
 import pickle
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -14,7 +16,8 @@ from geofit import FitSettings
 from geofit.data.errors import GeofitError, InputError, SettingsError
 from geofit.data.languages import ZH, translate
 from geofit.data.messages import message
-from geofit.data.settings import LABELS
+from geofit.data.setting_texts import SETTINGS
+from geofit.data.settings import named
 
 LENGTHS = ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance")
 
@@ -29,7 +32,7 @@ def test_the_defaults_are_the_papers():
 @pytest.mark.parametrize("value", [0, -0.1, np.nan, np.inf, "0.5", None, True, [1.0]])
 def test_a_length_must_be_a_finite_number_above_zero(name, value):
     code = "settings.finite-number-above-needed"
-    with refused(SettingsError, code, setting=LABELS[name], value=repr(value)) as caught:
+    with refused(SettingsError, code, setting=named(name), value=repr(value)) as caught:
         FitSettings(**{name: value})
     assert caught.value.message.params["unit"].code == "settings.unit-metres"
 
@@ -46,7 +49,7 @@ def test_a_length_must_be_a_finite_number_above_zero(name, value):
 )
 def test_an_unknown_word_is_quoted_beside_the_known_ones(name, value, choices):
     code = "settings.choose-polygon-map-coordinates" if name == "core" else "settings.unknown-choice"
-    with refused(SettingsError, code, setting=LABELS[name], value=repr(value)) as caught:
+    with refused(SettingsError, code, setting=named(name), value=repr(value)) as caught:
         FitSettings(**{name: value})
     for choice in choices:
         assert choice in caught.value.message.params["words"]
@@ -54,14 +57,14 @@ def test_an_unknown_word_is_quoted_beside_the_known_ones(name, value, choices):
 
 @pytest.mark.parametrize("value", [0, -1.0, np.nan, "much", None, False])
 def test_smoothing_is_auto_or_a_positive_number(value):
-    with refused(SettingsError, "settings.finite-number-above-needed", setting=LABELS["smoothing"], value=repr(value)):
+    with refused(SettingsError, "settings.finite-number-above-needed", setting=named("smoothing"), value=repr(value)):
         FitSettings(smoothing=value)
     assert FitSettings(smoothing=0.25).smoothing == 0.25
 
 
 @pytest.mark.parametrize("value", [-1, 2.5, "20", None])
 def test_iterations_are_a_whole_number(value):
-    with refused(SettingsError, "settings.whole-number-needed", setting=LABELS["max_iterations"], value=repr(value)):
+    with refused(SettingsError, "settings.whole-number-needed", setting=named("max_iterations"), value=repr(value)):
         FitSettings(max_iterations=value)
     assert FitSettings(max_iterations=0).max_iterations == 0
 
@@ -69,7 +72,7 @@ def test_iterations_are_a_whole_number(value):
 @pytest.mark.parametrize("value", [15, 0, -4, 100.0, True, "many"])
 def test_the_cap_of_control_points_is_a_whole_number_of_at_least_16(value):
     with refused(
-        SettingsError, "settings.whole-number-least-16", setting=LABELS["max_control_points"], value=repr(value)
+        SettingsError, "settings.whole-number-least-16", setting=named("max_control_points"), value=repr(value)
     ):
         FitSettings(max_control_points=value)
     assert FitSettings(max_control_points=16).max_control_points == 16
@@ -79,7 +82,7 @@ def test_the_cap_of_control_points_is_a_whole_number_of_at_least_16(value):
     "core", [[[0, 0], [1, 1]], [0, 0, 1], [[0, 0, 0]] * 4, [[0, 0], [1, np.nan], [1, 1]], [["a", "b"]] * 3, 7]
 )
 def test_a_core_polygon_needs_three_finite_corners(core):
-    with refused(SettingsError, "settings.shape-polygon-least-three", setting=LABELS["core"]):
+    with refused(SettingsError, "settings.shape-polygon-least-three", setting=named("core")):
         FitSettings(core=core)
 
 
@@ -97,7 +100,7 @@ def test_settings_are_frozen_and_keyword_only():
         settings.epsilon = 1.0
     with pytest.raises(TypeError):
         FitSettings(0.5)
-    with refused(SettingsError, "settings.finite-number-above-needed", setting=LABELS["epsilon"], value="-1"):
+    with refused(SettingsError, "settings.finite-number-above-needed", setting=named("epsilon"), value="-1"):
         dataclasses.replace(settings, epsilon=-1)
 
 
@@ -109,9 +112,8 @@ def test_errors_are_geofit_errors_and_value_errors():
 def test_a_bad_setting_is_told_in_chinese_by_its_name():
     with pytest.raises(SettingsError) as caught:
         FitSettings(epsilon=-1)
-    assert str(caught.value) == "Control error (epsilon) is -1; a finite number above 0 is needed (metres)."
+    assert str(caught.value) == "Control error ε (epsilon) is -1; a finite number above 0 is needed (metres)."
     assert translate(caught.value, ZH) == "控制误差 ε（epsilon）为 -1；应为大于 0 的有限数（米）。"
-    assert set(LABELS) == {field.name for field in dataclasses.fields(FitSettings)}
 
 
 def test_an_input_error_is_told_in_chinese_and_crosses_to_another_process():
@@ -129,3 +131,14 @@ def test_an_input_error_is_told_in_chinese_and_crosses_to_another_process():
     assert str(InputError(message("test.text", "no such file"), file="f.csv")) == "f.csv: no such file."
     missing = InputError(message("test.text", "no such file"), message("test.text", "try again"), file="f.csv", row=2)
     assert translate(missing, ZH) == "f.csv，第 2 行：no such file。try again"
+
+
+def test_every_setting_is_described_once_and_all_rooms_read_it():
+    assert set(SETTINGS) == {field.name for field in dataclasses.fields(FitSettings)}
+    shown = subprocess.run(
+        [sys.executable, "-m", "geofit", "fit", "--help"], capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    for name, text in SETTINGS.items():
+        assert str(text.about) in " ".join(shown.split()), name
+        for choice in text.choices:
+            FitSettings(**{name: choice})

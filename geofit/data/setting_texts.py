@@ -1,0 +1,169 @@
+"""What each setting of a fit is called, what it does, its unit and its choices: described once, read everywhere.
+
+The fit panel, the command line, the report and the errors of :class:`~geofit.data.settings.FitSettings` take their
+words from here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from geofit.data.messages import Message, message
+
+__all__ = ["SETTINGS", "SettingText"]
+
+
+@dataclass(frozen=True)
+class SettingText:
+    """A setting in words.
+
+    Parameters
+    ----------
+    label : Message
+        Its name.
+    about : Message
+        What it does, in one or two sentences.
+    unit : str
+        Unit of a number, empty without one.
+    choices : mapping
+        Words for values that are not numbers.
+    """
+
+    label: Message
+    about: Message
+    unit: str = ""
+    choices: Mapping[object, Message] = field(default_factory=dict)
+
+    def with_unit(self) -> Message:
+        """Return the name with the unit, as a table has it."""
+        if not self.unit:
+            return self.label
+        return message("settings.label-unit", "{label}, {unit}", label=self.label, unit=self.unit)
+
+
+_AUTO = message("settings.automatic", "Automatic")
+
+#: Every field of :class:`~geofit.data.settings.FitSettings`, in the order of the fit panel.
+SETTINGS: Mapping[str, SettingText] = {
+    "epsilon": SettingText(
+        message("settings.epsilon", "Control error ε"),
+        message(
+            "settings.epsilon-about",
+            "The surface passes when σ, the standard deviation of all points from it, is below this.",
+        ),
+        "m",
+    ),
+    "interior_tolerance": SettingText(
+        message("settings.interior-tolerance", "Interior tolerance"),
+        message(
+            "settings.interior-tolerance-about",
+            "How far a point outside the core may lie from the surface. The fit refines until the limit is met or "
+            "refinement no longer helps.",
+        ),
+        "m",
+    ),
+    "core": SettingText(
+        message("settings.core", "Exact core"),
+        message(
+            "settings.core-about",
+            "The region whose points the surface interpolates exactly. Automatic: where the points are dense. All: "
+            "every point. None: all points are approximated. Drawn: the rectangle around a polygon.",
+        ),
+        choices={
+            "auto": _AUTO,
+            "all": message("settings.core-all", "All points"),
+            "none": message("settings.core-none", "None"),
+        },
+    ),
+    "smoothing": SettingText(
+        message("settings.smoothing", "Smoothing"),
+        message(
+            "settings.smoothing-about",
+            "Weight of the bending energy outside the core. Automatic: from the scatter of the points. Larger is "
+            "smoother, smaller is nearer to the points.",
+        ),
+        choices={"auto": _AUTO},
+    ),
+    "boundary_tolerance": SettingText(
+        message("settings.boundary-tolerance", "Seam tolerance"),
+        message(
+            "settings.boundary-tolerance-about",
+            "The largest gap allowed between the edges of neighbouring patches. Patches of a fit share their edges: no "
+            "gap.",
+        ),
+        "m",
+    ),
+    "across": SettingText(
+        message("settings.across", "Across sections"),
+        message(
+            "settings.across-about",
+            "How the core runs from one section to the next: lofted smoothly, or ruled along straight lines.",
+        ),
+        choices={
+            "cubic": message("settings.across-cubic", "Cubic"),
+            "linear": message("settings.across-linear", "Linear"),
+        },
+    ),
+    "seam": SettingText(
+        message("settings.seam", "At the seams"),
+        message(
+            "settings.seam-about",
+            "Whether neighbouring patches share a tangent plane, or meet at the edge and may break there.",
+        ),
+        choices={
+            "tangent": message("settings.seam-tangent", "Smooth"),
+            "position": message("settings.seam-position", "Break allowed"),
+        },
+    ),
+    "frame": SettingText(
+        message("settings.frame", "Parametrized over"),
+        message(
+            "settings.frame-about",
+            "Map: one height at each place. Best plane: for steep faults. Sections: for overturned folds, through the "
+            "section lines in order.",
+        ),
+        choices={
+            "auto": _AUTO,
+            "map": message("settings.frame-map", "The map"),
+            "best-plane": message("settings.frame-best-plane", "Its best plane"),
+            "sections": message("settings.frame-sections", "Its sections"),
+        },
+    ),
+    "robust": SettingText(
+        message("settings.robust", "Outliers"),
+        message(
+            "settings.robust-about",
+            "Peripheral points that their neighbours contradict. They are listed and count in sigma either way.",
+        ),
+        choices={
+            False: message("settings.robust-false", "Fitted too"),
+            True: message("settings.robust-true", "Not fitted"),
+        },
+    ),
+    "max_iterations": SettingText(
+        message("settings.max-iterations", "Rounds, at most"),
+        message(
+            "settings.max-iterations-about",
+            "How often the fit may refine and adjust before it stops and reports what is not met.",
+        ),
+    ),
+    "max_control_points": SettingText(
+        message("settings.max-control-points", "Control points, at most"),
+        message(
+            "settings.max-control-points-about",
+            "Limit of the surface's size. Automatic: 40 a data point, 15 with a core, between 1,600 and 20,000, and as "
+            "many as it takes to interpolate the core.",
+        ),
+        choices={None: _AUTO},
+    ),
+    "conflict_distance": SettingText(
+        message("settings.coincidence-distance", "Coincidence distance"),
+        message(
+            "settings.coincidence-distance-about",
+            "Points closer than this in plan are coincident. If their elevations differ, the more accurate one is used "
+            "and the other listed.",
+        ),
+        "m",
+    ),
+}
