@@ -230,6 +230,7 @@ class _Helper:
 
     def __init__(self, first: Callable[..., Any] | None = None) -> None:
         self.first = first
+        self._sender: threading.Thread | None = None
         # A fresh interpreter: a fork of a process with threads and a window would inherit locks nobody frees.
         context = multiprocessing.get_context("spawn")
         self.pipe, theirs = context.Pipe()
@@ -245,8 +246,9 @@ class _Helper:
     def call(self, function: Callable[..., Any], args: tuple[Any, ...], progress: Callable[..., bool | None]) -> Any:
         order = ForkingPickler.dumps((function, args))
         # In a thread: a process that the system has stopped reads nothing, and Cancel must be heard meanwhile.
-        threading.Thread(target=self._send, args=(order,), daemon=True).start()
-        name, fraction = "start", 0.0
+        self._sender = threading.Thread(target=self._send, args=(order,), daemon=True)
+        self._sender.start()
+        name, fraction, begun = "start", 0.0, False
         while True:
             if progress(name, fraction) is False:
                 raise Cancelled(message("window.stopped-caller", "Stopped by the caller."))
@@ -256,15 +258,18 @@ class _Helper:
                 kind, value = self.pipe.recv()
             except (EOFError, OSError):
                 self._process.join(5)
-                raise GeofitError(
+                ended = GeofitError(
                     message(
                         "window.process-work-ended-exit",
                         "The process that did the work ended by itself (exit code {code}). Memory may have run out: "
                         "close other programs and try again.",
                         code=self._process.exitcode,
                     )
-                ) from None
-            if kind == "progress":
+                )
+                raise (ended if begun else _NotBegunError(ended)) from None
+            if kind == "begun":
+                begun = True
+            elif kind == "progress":
                 name, fraction = value
             elif kind == "error":
                 raise _Told(value)
@@ -281,6 +286,8 @@ class _Helper:
         # A stopped process hears no other signal.
         self._process.kill()
         self._process.join()
+        if self._sender is not None:
+            self._sender.join(_PATIENCE)  # nobody reads any more: its writing fails
         self.pipe.close()
         self._process.close()
 
@@ -293,10 +300,23 @@ class _Told(Exception):  # noqa: N818 - the error is what it carries
         self.error = error
 
 
+class _NotBegunError(Exception):
+    """A process ended before it took up the work."""
+
+    def __init__(self, error: GeofitError) -> None:
+        super().__init__(str(error))
+        self.error = error
+
+
 def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: Callable[..., bool | None]) -> Any:
-    helper = _ready()
+    helper, idle = _ready()
     try:
         result = helper.call(function, args, progress)
+    except _NotBegunError as gone:
+        helper.end()
+        if idle:  # it was ended while it waited, perhaps as the order was on its way: a fresh one does the work
+            return _in_process(function, args, progress)
+        raise gone.error from None
     except _Told as told:
         _HELPERS.append(helper)
         raise told.error from None
@@ -310,14 +330,14 @@ def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: C
     return result
 
 
-def _ready() -> _Helper:
-    """Return an idle process that is there, or a new one."""
+def _ready() -> tuple[_Helper, bool]:
+    """Return a process that has waited for work, or a new one; and whether it has waited."""
     while _HELPERS:
         helper = _HELPERS.pop()
         if helper.alive:
-            return helper
+            return helper, True
         helper.end()
-    return _Helper()
+    return _Helper(), False
 
 
 def _serve(pipe: Connection, first: Callable[..., Any] | None) -> None:
@@ -332,6 +352,7 @@ def _serve(pipe: Connection, first: Callable[..., Any] | None) -> None:
             function, args = pipe.recv()
         except EOFError:
             return  # the application has ended
+        pipe.send(("begun", None))
         try:
             pipe.send(("done", function(*args, progress=listen)))
         except Exception as error:  # the last frame of this task: the window must hear of any failure

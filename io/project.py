@@ -383,6 +383,8 @@ def _write_surface(name: str, surface: HorizonFit, target: Path) -> ProjectResul
         digest = _sha256(draft)
         final = folder / f"{stem}-{digest[:8]}.step"
         draft.replace(final)
+    except InputError as error:
+        raise InputError(error.reason, error.remedy, file=str(target)) from None
     finally:
         draft.unlink(missing_ok=True)
     accuracy = surface.accuracy

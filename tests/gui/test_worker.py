@@ -156,6 +156,22 @@ def test_a_process_that_died_while_idle_is_replaced(owner, qtbot):
     assert results[0] != number
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="kill -9 is for Linux and macOS")
+@pytest.mark.parametrize("wait", [0.0, 0.001, 0.01])
+def test_a_process_that_dies_as_its_order_comes_is_replaced(owner, qtbot, monkeypatch, wait):
+    number = pid_of_the_only_helper(owner, qtbot)
+    # It seems alive when it is looked at, and dies before it reads its order.
+    monkeypatch.setattr(worker._Helper, "alive", property(lambda helper: True))
+    os.kill(number, signal.SIGKILL)
+    time.sleep(wait)
+    results, errors = [], []
+    task = worker.run_apart(owner, process_number, on_done=results.append, on_failed=errors.append)
+    with qtbot.waitSignal(task.ended, timeout=60_000):
+        pass
+    assert not errors
+    assert results[0] != number
+
+
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="processes are stopped on Linux and macOS")
 @pytest.mark.parametrize("size", [1, 3_000_000])
 def test_cancel_ends_a_stopped_process(owner, qtbot, size):
