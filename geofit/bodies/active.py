@@ -93,7 +93,7 @@ def fit_active(
     samples : Samples
         Inequalities; none may coincide with a contact.
     reach : float
-        Radius of the compact kernel; 0 for r^3 with a linear trend.
+        Radius of the compact kernel; 0 for r^3 with a drift.
     most : int
         Rounds at most.
     partial : bool
@@ -110,7 +110,7 @@ def fit_active(
     field = base.interpolate(values, normals)
     lack = samples.bound - samples.side * field.value(samples.xyz)
     candidates, pull = np.zeros(0, np.int64), np.zeros(0)
-    columns = np.zeros((len(points) + 3 * len(oriented) + 4 * (reach == 0.0), 0))
+    columns = np.zeros((len(points) + 3 * len(oriented) + 10 * (reach == 0.0), 0))
     matrix, forced = np.zeros((0, 0)), np.zeros(0, bool)
     rbf, system, active = field, base, candidates
     for rounds in range(1, most + 1):

@@ -74,7 +74,7 @@ class Blend:
     @cached_property
     def _packed(self) -> tuple[NDArray[Any], ...]:
         """The parts as the arrays of :func:`geofit.bodies.kernels.blend`."""
-        none = Rbf(np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(4), 1.0)
+        none = Rbf(np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(10), 1.0)
         own = [part.correction or none for part in self.parts]
         return (
             np.array([part.centre for part in self.parts]),

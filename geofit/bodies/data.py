@@ -337,8 +337,8 @@ def _require_body(data: BodyData, found: Prepared) -> None:
         raise FitError(
             message(
                 "bodies.contact-samples-inside",
-                "There is no contact: {inside} samples are inside, {outside} outside, and none of the data lies on "
-                "the surface. Give contacts, such as the ends of the intervals in the body.",
+                "The data have {inside} samples inside and {outside} outside, but no contact. Give places on the "
+                "surface, such as the ends of the intervals in the body.",
                 **given,
             )
         )

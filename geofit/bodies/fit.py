@@ -68,7 +68,7 @@ def fit_body(
 
     Notes
     -----
-    Interpolation by radial functions r^3 with a linear trend: Turk and O'Brien, ACM TOG 21(4), 2002. Samples give
+    Radial functions r^3 (Turk and O'Brien, ACM TOG 21(4), 2002) and a drift (:mod:`geofit.bodies.rbf`). Samples give
     inequalities; those that bind are found by an active set (:mod:`geofit.bodies.active`).
 
     Examples

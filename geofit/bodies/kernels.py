@@ -2,7 +2,7 @@
 
 Two kernels: r^3, and where a field is corrected locally, Wendland's compact C2 function of radius R
 (Adv. Comput. Math. 4, 1995), (1 - q)^4 (4 q + 1) with q = r / R, which is as smooth as r^3 at its centre. r^3 is
-conditionally positive definite of order two, so its field carries a linear trend (Turk & O'Brien, "Modelling with
+conditionally positive definite of order two, so its field carries a drift (Turk & O'Brien, "Modelling with
 implicit surfaces that interpolate", ACM TOG 21(4), 2002). A weight may act on a value of the kernel or, where a normal
 was measured, on its gradient (Hermite interpolation; Wendland, *Scattered Data Approximation*, ch. 16).
 With d = x - c, r = |d|, the kernel k(r), first = k' / r and second = first' / r::

@@ -1,4 +1,11 @@
-"""A radial basis function through values and gradients: r^3 with a linear trend, or a compact correction."""
+"""A radial basis function through values and gradients: r^3 with a drift, or a compact correction.
+
+The drift has a free linear part, and a quadratic part whose six coefficients are random: independent, of mean zero,
+their variances about ``CURVED`` in fitted coordinates (a Bayesian drift; Omre, "Bayesian kriging", Math. Geol. 19,
+1987). r^3 alone has no notion of a body: away from the holes its field soon is a plane, and bodies end too early
+between them. With the quadratic part a field that closes like an ellipsoid costs little, and data that show another
+shape win. A shift of the origin changes the linear part only, so it changes nothing.
+"""
 
 from __future__ import annotations
 
@@ -17,10 +24,18 @@ __all__ = ["Rbf", "Saddle"]
 Floats = NDArray[np.float64]
 NONE = np.zeros((0, 3))
 
+#: Variance of each quadratic coefficient, for a unit field of covariance r^3. Chosen on planted bodies of ten shapes
+#: (benchmarks/bodies.py): volumes do not change much between 30 and 300.
+CURVED = 100.0
+#: Rows and columns of x x^T that the six quadratic terms come from.
+FIRST, SECOND = np.triu_indices(3)
+#: Mixed terms occur twice in x^T A x: with twice the variance no direction is preferred.
+VARIANCE = CURVED * np.where(FIRST == SECOND, 1.0, 2.0)
+
 
 @dataclass(frozen=True, eq=False)
 class Rbf:
-    """The function ``sum w_j k(|x - c_j|) + sum v_k . grad_c k(|x - g_k|) + trend . (1, x)``; C2 everywhere.
+    """The function ``sum w_j k(|x - c_j|) + sum v_k . grad_c k(|x - g_k|) + trend . (1, x, xx)``; C2 everywhere.
 
     Parameters
     ----------
@@ -28,10 +43,10 @@ class Rbf:
         Places of values and their weights.
     dipoles, moments : (k, 3), (k, 3) arrays
         Places of gradients and their weights.
-    trend : (4,) array
-        Constant and slopes.
+    trend : (10,) array
+        Constant, slopes, and the coefficients of xx, xy, xz, yy, yz, zz.
     reach : float
-        Radius of the compact kernel, which has no trend; 0 for r^3.
+        Radius of the compact kernel, which has no drift; 0 for r^3.
     """
 
     centres: Floats
@@ -44,11 +59,12 @@ class Rbf:
     def value(self, x: Floats) -> Floats:
         """Return the values (n,) at (n, 3) places."""
         sums = values(x, self.centres, self.weights, self.dipoles, self.moments, self.reach)
-        return np.asarray(sums + self.trend[0] + x @ self.trend[1:])
+        return np.asarray(sums + _monomials(x) @ self.trend)
 
     def gradient(self, x: Floats) -> Floats:
         """Return the gradients (n, 3) at (n, 3) places."""
-        return gradients(x, self.centres, self.weights, self.dipoles, self.moments, self.reach) + self.trend[1:]
+        sums = gradients(x, self.centres, self.weights, self.dipoles, self.moments, self.reach)
+        return np.asarray(sums + (_slopes(x) @ self.trend).reshape(-1, 3))
 
 
 class Saddle:
@@ -74,7 +90,7 @@ class Saddle:
 
         self.points, self.oriented, self.reach = points, oriented, reach
         side = _trend(points, oriented) if reach == 0.0 else np.zeros((len(points) + 3 * len(oriented), 0))
-        if reach == 0.0 and np.linalg.matrix_rank(side, tol=1e-9 * max(len(side), 4)) < 4:
+        if reach == 0.0 and np.linalg.matrix_rank(side[:, :4], tol=1e-9 * max(len(side), 4)) < 4:
             raise FitError(
                 message(
                     "bodies.places-plane-fewer",
@@ -88,6 +104,8 @@ class Saddle:
         matrix[:size, :size] = gram(points, oriented, points, oriented, reach)
         matrix[:size, size:] = side
         matrix[size:, :size] = side.T
+        if self._trends:
+            matrix[size + 4 :, size + 4 :] = -np.diag(1.0 / VARIANCE)
         if not len(matrix):
             return
         routines: Any = get_lapack_funcs(("sytrf", "sytrs", "sytrf_lwork"), (matrix,))
@@ -104,7 +122,7 @@ class Saddle:
             )
 
     def solve(self, right: Floats) -> Floats:
-        """Return the weights for right-hand sides (n + 3k,) or (n + 3k, m), the trend's four rows last."""
+        """Return the weights for right-hand sides (n + 3k,) or (n + 3k, m), the drift's rows last."""
         whole = np.zeros((len(right) + self._trends, *right.shape[1:]), order="F")
         whole[: len(right)] = right
         return self._solved(whole)
@@ -119,14 +137,14 @@ class Saddle:
 
     def _function(self, solution: Floats) -> Rbf:
         n, size = len(self.points), len(self.points) + 3 * len(self.oriented)
-        trend = solution[size:] if self._trends else np.zeros(4)
+        trend = solution[size:] if self._trends else np.zeros(10)
         moments = solution[n:size].reshape(-1, 3)
         return Rbf(self.points, solution[:n], self.oriented, moments, trend, self.reach)
 
     def rows(self, x: Floats) -> Floats:
-        """Return the rows (m, n + 3k, and 4 of the trend) that give values at x when multiplied with the weights."""
+        """Return the rows (m, n + 3k, and 10 of the drift) that give values at x when multiplied with the weights."""
         rows = gram(x, NONE, self.points, self.oriented, self.reach)
-        return np.hstack([rows, np.ones((len(x), 1)), x]) if self._trends else rows
+        return np.hstack([rows, _monomials(x)]) if self._trends else rows
 
     def covariance(self, x: Floats) -> Floats:
         """Return the (m, m) covariance of the field's values at x, given those of the system, for a unit field.
@@ -166,6 +184,20 @@ class Saddle:
 
 
 def _trend(points: Floats, oriented: Floats) -> Floats:
-    """Return the (n + 3k, 4) values and gradients of 1, x, y, z."""
-    slopes = np.tile(np.hstack([np.zeros((3, 1)), np.eye(3)]), (len(oriented), 1))
-    return np.vstack([np.hstack([np.ones((len(points), 1)), points]), slopes])
+    """Return the (n + 3k, 10) values and gradients of the drift's terms."""
+    return np.vstack([_monomials(points), _slopes(oriented)])
+
+
+def _monomials(x: Floats) -> Floats:
+    """Return 1, x, y, z, xx, xy, xz, yy, yz, zz at (n, 3) places, (n, 10)."""
+    return np.hstack([np.ones((len(x), 1)), x, x[:, FIRST] * x[:, SECOND]])
+
+
+def _slopes(x: Floats) -> Floats:
+    """Return their derivatives by x, y and z, (3n, 10)."""
+    slopes = np.zeros((len(x), 3, 10))
+    slopes[:, :, 1:4] = np.eye(3)
+    terms = np.arange(6)
+    for axis in range(3):
+        slopes[:, axis, 4 + terms] += (axis == FIRST) * x[:, SECOND] + (axis == SECOND) * x[:, FIRST]
+    return slopes.reshape(-1, 10)

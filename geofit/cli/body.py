@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from geofit.io.boreholes import Boreholes
     from geofit.project.body_run import BodyRun
 
-__all__ = ["body"]
+__all__ = ["body", "print_body"]
 
 
 @app.command()
@@ -49,7 +49,7 @@ def body(
     if as_json:
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:
-        _print(run)
+        print_body(run)
     _print_issues(run)
     for text in run.failed_checks:
         say(f"Check failed: {text}")
@@ -88,7 +88,8 @@ def _print_issues(run: BodyRun) -> None:
         say(f"{'note' if used else 'not used'}: {texts[0]}{more}")
 
 
-def _print(run: BodyRun) -> None:
+def print_body(run: BodyRun) -> None:
+    """Print the figures of a body as a table."""
     from geofit.report.digits import metres
 
     a, volumes, file = run.accuracy, run.volumes, run.read_back

@@ -1,4 +1,4 @@
-"""``geofit demo``: the sample site, fitted."""
+"""``geofit demo``: the sample site and its ore lens, fitted."""
 
 from __future__ import annotations
 
@@ -8,11 +8,15 @@ from typing import Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening
+from geofit.cli.body import print_body
+from geofit.cli.console import guarded, listening, say
 from geofit.cli.options import Json, Out
 from geofit.cli.running import run_site
 
 __all__ = ["demo"]
+
+#: Code of the body that is fitted.
+BODY = "ORE"
 
 
 @app.command()
@@ -24,19 +28,25 @@ def demo(
     ] = False,
     as_json: Json = False,
 ) -> int:
-    """Fit every horizon of the sample site, a fictional dam site."""
-    from geofit.io.site_file import read_site
+    """Fit every horizon of the sample site, a fictional dam site, and the ore lens below it."""
+    from geofit.io.site_file import load_site, read_site
+    from geofit.project.body_run import run_body
 
     site_file = _sample(out)
     with listening() as progress:
         site = read_site(site_file)
-        return run_site(site, out, (), {"robust": True} if robust else {}, as_json, progress)
+        code = run_site(site, out, (), {"robust": True} if robust else {}, as_json, progress)
+        run = run_body(load_site(site_file.with_name("bodies.toml")), out / "bodies", codes=BODY, progress=progress)
+    if not as_json:
+        print_body(run)
+    say(f"Body {BODY}: {len(run.files)} files in {out / 'bodies'}")
+    return max(code, run.exit_code)
 
 
 def _sample(out: Path) -> Path:
     """Find the sample site of the checkout, or make one now."""
     for root in (Path.cwd(), Path(__file__).resolve().parents[2]):
-        if (root / "sample_data" / "site.toml").is_file():
+        if (root / "sample_data" / "bodies.toml").is_file():
             return root / "sample_data" / "site.toml"
     from geofit.sample import write_site
 

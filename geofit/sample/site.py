@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import geofit.sample.tables as tables
 from geofit.data.site import Ground
+from geofit.sample.body_holes import write_bodies
 from geofit.sample.holes import Adit, Borehole, drill_adits, drill_boreholes
 from geofit.sample.ledger import Ledger
 from geofit.sample.mapping import map_outcrops, pick_lines
@@ -95,8 +96,8 @@ def write_site(folder: str | os.PathLike[str]) -> dict[str, int]:
     Parameters
     ----------
     folder : path
-        Where ``site.toml`` and the files that it names go; made if it is missing. Files of the same names
-        are replaced.
+        Where ``site.toml``, ``bodies.toml`` and the files that they name go; created if missing. Files of the same
+        names are replaced.
 
     Returns
     -------
@@ -122,4 +123,5 @@ def write_site(folder: str | os.PathLike[str]) -> dict[str, int]:
     tables.write_outcrops(folder / "outcrops.csv", campaign.outcrops)
     tables.write_picks(folder / "geophysics.csv", campaign.picks, campaign.boreholes)
     tables.write_site_file(folder / "site.toml", campaign.drawings)
+    write_bodies(folder)
     return {name: campaign.ledger.count(name) for name in HORIZONS}

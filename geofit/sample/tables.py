@@ -21,6 +21,8 @@ from geofit.sample.truth import BOUNDARY
 
 __all__ = [
     "section_file",
+    "table",
+    "write",
     "write_adits",
     "write_boreholes",
     "write_boundary",
@@ -40,18 +42,20 @@ _AS_CSV = ("C6", "C7", "C8", "L2", "L3")
 _LOGGED = {"F1": (0.4, 1.5), "M1": (0.1, 0.3)}
 
 
-def _write(path: Path, text: str, encoding: str = "utf-8") -> None:
+def write(path: Path, text: str, encoding: str = "utf-8") -> None:
+    """Write a text; the file is whole or absent."""
     with replacing(path) as part:
         part.write_bytes(text.encode(encoding))
 
 
-def _table(header: Row, rows: Iterable[Row], sep: str = ",") -> str:
+def table(header: Row, rows: Iterable[Row], sep: str = ",") -> str:
+    """Return a table as text."""
     return "".join(sep.join(row) + "\n" for row in [header, *rows])
 
 
 def write_boundary(path: Path) -> None:
     """Write the corners of the study area."""
-    _write(path, _table(("x", "y"), ((f"{x:.1f}", f"{y:.1f}") for x, y in BOUNDARY)))
+    write(path, table(("x", "y"), ((f"{x:.1f}", f"{y:.1f}") for x, y in BOUNDARY)))
 
 
 def write_ground(path: Path, ground: Ground, cell: float) -> None:
@@ -66,7 +70,7 @@ def write_ground(path: Path, ground: Ground, cell: float) -> None:
     }
     lines = [f"{key:<13} {value:.12g}" for key, value in head.items()]
     lines += [" ".join(f"{z:.2f}" for z in row) for row in ground.z[::-1]]
-    _write(path, "\n".join(lines) + "\n")
+    write(path, "\n".join(lines) + "\n")
 
 
 def write_boreholes(folder: Path, holes: list[Borehole]) -> None:
@@ -75,16 +79,16 @@ def write_boreholes(folder: Path, holes: list[Borehole]) -> None:
         (hole.name, *(f"{c:.2f}" for c in hole.collar), f"{hole.depth:.1f}") for hole in holes
     )  # fmt: skip
     header = ("孔号", "坐标X", "坐标Y", "孔口高程", "孔深")
-    _write(folder / "collar.csv", _table(header, collars), "utf-8-sig")
+    write(folder / "collar.csv", table(header, collars), "utf-8-sig")
     stations = ((hole.name, *(f"{value:.1f}" for value in station)) for hole in holes for station in hole.survey)
-    _write(folder / "survey.csv", _table(("hole_id", "depth", "azimuth", "dip"), stations))
+    write(folder / "survey.csv", table(("hole_id", "depth", "azimuth", "dip"), stations))
     lithology = (row for hole in holes for row in _lithology(hole))
-    _write(folder / "lithology.csv", _table(("hole_id", "from", "to", "code", "description"), lithology))
+    write(folder / "lithology.csv", table(("hole_id", "from", "to", "code", "description"), lithology))
     weathering = (row for hole in holes for row in _weathering(hole))
-    _write(folder / "风化.csv", _table(("孔号", "起始深度", "终止深度", "岩性"), weathering), "gb18030")
+    write(folder / "风化.csv", table(("孔号", "起始深度", "终止深度", "岩性"), weathering), "gb18030")
     rng = np.random.default_rng(46)
     structures = (row for hole in holes for row in _structures(hole, rng))
-    _write(folder / "structures.csv", _table(("hole_id", "from", "to", "code"), structures, ";"))
+    write(folder / "structures.csv", table(("hole_id", "from", "to", "code"), structures, ";"))
 
 
 _ROCK = {
@@ -133,9 +137,9 @@ def _structures(hole: Borehole, rng: np.random.Generator) -> Iterable[Row]:
 def write_adits(folder: Path, adits: list[Adit]) -> None:
     """Write the adits' axes and what they meet."""
     nodes = ((adit.name, *(f"{c:.2f}" for c in node)) for adit in adits for node in adit.nodes)
-    _write(folder / "adits.csv", _table(("adit", "x", "y", "z"), nodes))
+    write(folder / "adits.csv", table(("adit", "x", "y", "z"), nodes))
     contacts = ((adit.name, f"{at:.2f}", horizon) for adit in adits for at, horizon in adit.contacts)
-    _write(folder / "adit_contacts.csv", _table(("adit", "chainage", "horizon"), contacts))
+    write(folder / "adit_contacts.csv", table(("adit", "chainage", "horizon"), contacts))
 
 
 def section_file(drawing: Drawing) -> str:
@@ -152,7 +156,7 @@ def write_section(path: Path, drawing: Drawing) -> None:
             for line in lines
             for d, z in line
         )
-        _write(path, _table(("horizon", "distance", "elevation"), rows))
+        write(path, table(("horizon", "distance", "elevation"), rows))
         return
     # Release 12 entities only: without a header the file holds neither dates nor identifiers.
     from ezdxf.addons.r12writer import r12writer
@@ -174,7 +178,7 @@ def write_section(path: Path, drawing: Drawing) -> None:
 def write_outcrops(path: Path, outcrops: dict[str, Floats]) -> None:
     """Write the map's traces: no elevation, they lie on the ground."""
     rows = ((horizon, f"{x:.2f}", f"{y:.2f}") for horizon, line in outcrops.items() for x, y in line)
-    _write(path, _table(("horizon", "easting", "northing"), rows))
+    write(path, table(("horizon", "easting", "northing"), rows))
 
 
 def write_picks(path: Path, picks: dict[str, Floats], holes: list[Borehole]) -> None:
@@ -188,7 +192,7 @@ def write_picks(path: Path, picks: dict[str, Floats], holes: list[Borehole]) -> 
         for horizon in _LOGGED
         for pick in hole.path(np.array(hole.contacts.get(horizon, ())[1:]))
     ]
-    _write(path, _table(("horizon", "x", "y", "z", "kind", "hole"), rows))
+    write(path, table(("horizon", "x", "y", "z", "kind", "hole"), rows))
 
 
 _SITE = """\
@@ -282,4 +286,4 @@ def write_site_file(path: Path, drawings: list[Drawing]) -> None:
         f'file = "{section_file(drawing)}"\n'
         for drawing in drawings
     )
-    _write(path, _SITE.format(sections=sections, accuracy=_ACCURACY))
+    write(path, _SITE.format(sections=sections, accuracy=_ACCURACY))

@@ -16,15 +16,14 @@ from geofit.data.errors import FitError, PointsError, SettingsError
 
 
 @pytest.mark.parametrize(
-    ("make", "rows", "euler", "worst"),
+    ("make", "rows", "euler"),
     [
-        # One layout of the ten leaves the ellipsoid's ends to two holes: -14.8 %, where 10 % are wanted.
-        (lambda: ellipsoid((0.6, 0.4, 0.3)), 7, 2, 0.15),
-        (lambda: torus(0.55, 0.22), 9, 0, 0.10),
-        (pair, 9, 4, 0.10),
+        (lambda: ellipsoid((0.6, 0.4, 0.3)), 7, 2),
+        (lambda: torus(0.55, 0.22), 9, 0),
+        (pair, 9, 4),
     ],
 )
-def test_ten_layouts_of_holes(make: Callable[[], tuple[Truth, float]], rows: int, euler: int, worst: float) -> None:
+def test_ten_layouts_of_holes(make: Callable[[], tuple[Truth, float]], rows: int, euler: int) -> None:
     truth, volume = make()
     errors = []
     for seed in range(10):
@@ -40,7 +39,7 @@ def test_ten_layouts_of_holes(make: Callable[[], tuple[Truth, float]], rows: int
         assert mesh.euler == euler
         errors.append(abs(mesh.volume / (volume * SIZE**3) - 1))
     assert np.median(errors) < 0.05
-    assert max(errors) < worst
+    assert max(errors) < 0.10
 
 
 def test_gradient_is_that_of_the_value(ring: ImplicitBody) -> None:
@@ -118,7 +117,7 @@ def test_anisotropy_carries_farther_along_its_major_axis() -> None:
     [
         (BodyData(inside=np.eye(3)), "Nothing bounds"),
         (BodyData(outside=np.eye(3)), "Nothing lies inside"),
-        (BodyData(inside=np.eye(3), outside=-np.eye(3)), "no contact"),
+        (BodyData(inside=np.eye(3), outside=-np.eye(3)), "but no contact"),
         (BodyData(contacts=[[0, 0, 1], [0, 0, -1]], inside=[[0, 0, 0]], outside=[[0, 0, 3]]), "one line"),
         (BodyData(contacts=[[0, 0, 1], [0.3, 0, -1]], inside=[[0, 0, 0]], outside=[[1, 0, 3]], hole="A"), "one hole"),
     ],
