@@ -35,21 +35,25 @@ class PoresRun:
     def figures(self) -> dict[str, Any]:
         """Return everything that the JSON file has, as plain data; lengths in metres."""
         from geofit import __version__
+        from geofit.report.schema import enveloped
 
         network = self.network
-        return {
-            "shape": plain(self.volume.shape),
-            "voxel": plain(self.volume.voxel),
-            "maximal_balls": len(self.balls),
-            "pores": len(network.pores),
-            "throats": len(network.throats),
-            "dropped_pores": len(network.dropped),
-            "mean_coordination": float(network.coordination.mean()) if len(network.pores) else 0.0,
-            "percolates": plain(network.percolates),
-            "settings": plain(network.settings),
-            **plain(self.table),
-            "version": __version__,
-        }
+        return enveloped(
+            "pores",
+            {
+                "shape": plain(self.volume.shape),
+                "voxel": plain(self.volume.voxel),
+                "maximal_balls": len(self.balls),
+                "pores": len(network.pores),
+                "throats": len(network.throats),
+                "dropped_pores": len(network.dropped),
+                "mean_coordination": float(network.coordination.mean()) if len(network.pores) else 0.0,
+                "percolates": plain(network.percolates),
+                "settings": plain(network.settings),
+                **plain(self.table),
+                "version": __version__,
+            },
+        )
 
 
 def run_pores(volume: RockVolume, out: Path, name: str, progress: Progress | None = None) -> PoresRun:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import zip_longest
+from typing import Any
 
 from geofit.data.languages import Language, sentence, together, translate
 from geofit.data.messages import message
@@ -90,7 +91,7 @@ def more(total: int, shown: int, where: str, t: Language) -> list[Block]:
 
 
 def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
-    counts = dict(report.issues)
+    counts = report.issues
     blocks: list[Block] = [
         Heading(t("Files")),
         Paragraph(t("Rows read = rows used + rows listed. SHA-256 tells whether a file is the one that was read.")),
@@ -141,7 +142,7 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
         blocks.append(Table(columns, rows))
         blocks += more(len(report.rejected), LONGEST, "import_issues.csv", t)
     blocks.append(Heading(t("Versions")))
-    blocks.append(Table((Column(t("Program")), Column(t("Version"))), report.versions))
+    blocks.append(Table((Column(t("Program")), Column(t("Version"))), tuple(report.versions.items())))
     blocks.append(
         Paragraph(
             t(
@@ -193,16 +194,21 @@ def _read_back(h: HorizonReport, t: Language) -> list[Block]:
     return [*blocks, Paragraph(f"{back.file}: SHA-256 {back.sha256}", "quiet")]
 
 
-def _value(key: str, value: str, t: Language) -> str:
+def _value(key: str, value: Any, t: Language) -> str:
     """Return the value of a setting in words; a word may mean something else under another key."""
-    if value in _VALUES and key != "energy":
-        return translate(_VALUES[value], t)
-    return translate(value, t)
+    if value is None:
+        return translate(_VALUES["auto"], t)
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, tuple):
+        return "; ".join(f"{x:.2f} {y:.2f}" for x, y in value)
+    word = str(value)
+    return translate(_VALUES[word] if word in _VALUES and key != "energy" else word, t)
 
 
 def _made(h: HorizonReport, t: Language) -> list[Block]:
-    settings = [(translate(_SETTINGS.get(key, key), t), _value(key, value, t)) for key, value in h.settings]
-    figures = [(translate(_FIT[key], t), _value(key, value, t)) for key, value in h.fit if key in _FIT]
+    settings = [(translate(_SETTINGS.get(key, key), t), _value(key, value, t)) for key, value in h.settings.items()]
+    figures = [(translate(_FIT[key], t), _value(key, value, t)) for key, value in h.fit.items() if key in _FIT]
     patches = tuple(
         (
             translate(p.name, t),
@@ -223,15 +229,16 @@ def _made(h: HorizonReport, t: Language) -> list[Block]:
             tuple((*a, *b) for a, b in zip_longest(settings, figures, fillvalue=("", ""))),
         ),
     ]
-    if h.tin_points and h.equal_accuracy:
-        grid = digits.count(h.grid_points) if h.grid_points else t("more than 12 000")
+    storage = h.storage
+    if storage.tin_points and storage.tolerance:
+        grid = digits.count(storage.grid_points) if storage.grid_points else t("more than 12 000")
         text = t(
             "To stay within {tolerance} m of this surface, a TIN needs {tin} points, a square grid {grid}; the surface "
             "has {control} control points.",
-            tolerance=digits.given(h.equal_accuracy),
-            tin=digits.count(h.tin_points),
+            tolerance=digits.given(storage.tolerance),
+            tin=digits.count(storage.tin_points),
             grid=grid,
-            control=digits.count(h.control_points),
+            control=digits.count(storage.control_points),
         )
         blocks.append(Paragraph(text))
     table = Table((Column(t("Patch")), Column(t("Degree"), "number"), Column(t("Control points"), "number")), patches)
