@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated
 
 import typer
 
-from geofit import __version__
 from geofit.cli.app import app
 from geofit.cli.console import guarded, print_counts, print_issues, print_json, print_results
 from geofit.cli.options import SURFACE_FILES, Crs, Decimal, Json, SectionColumn, Sep, SurfaceColumn, X, Y, Z
 from geofit.cli.sources import pick, read_source
-
-if TYPE_CHECKING:
-    from geofit.report.result import HorizonResult
 
 __all__ = ["check"]
 
@@ -38,7 +34,6 @@ def check(
     as_json: Json = False,
 ) -> int:
     """Measure points against the surface in a CAD file or GOCAD TSurf, ours or any other."""
-    from geofit.data.accuracy import plain
     from geofit.data.settings import FitSettings
     from geofit.fitting.judge import judge
     from geofit.io.surface_files import read_surfaces
@@ -68,18 +63,9 @@ def check(
         out.mkdir(parents=True, exist_ok=True)
         write_residuals(result, out / f"{file_stems([name])[name]}_residuals.csv")
     if as_json:
-        print_json({"horizon": name, **_judged(result), **_summary(plain(result.accuracy))})
+        from geofit.report.schema import horizon_document
+
+        print_json(horizon_document(result))
     else:
         print_results([result])
     return 0 if result.accuracy.passed else 1
-
-
-def _judged(result: HorizonResult) -> dict[str, Any]:
-    """Return the verdict as the reports have it."""
-    return {"verdict": result.verdict.word, "lamps": [str(lamp.text) for lamp in result.verdict.lamps]}
-
-
-def _summary(accuracy: dict[str, Any]) -> dict[str, Any]:
-    accuracy.pop("residuals")
-    accuracy.pop("patch")
-    return {**accuracy, "version": __version__}

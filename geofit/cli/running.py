@@ -29,11 +29,10 @@ def run_site(
     bands: bool = False,
 ) -> int:
     """Fit, write and report the horizons of a site; print what was found; return the exit code."""
-    from geofit.data.accuracy import plain
     from geofit.data.languages import EN
     from geofit.project.run import deliver
     from geofit.project.side_by_side import available
-    from geofit.report.result import horizon_data
+    from geofit.report.schema import failed_document, report_document
 
     print_issues(site.issues, str(out / "import_issues.csv"))
     print_counts(site.counts)
@@ -42,16 +41,8 @@ def run_site(
         workers=available(),
     )  # fmt: skip
     if as_json:
-        print_json(
-            {
-                "out": str(out),
-                "horizons": [horizon_data(result) for result in delivery.results],
-                "orders": [plain(order) for order in delivery.orders],
-                "cuts": [plain(cut) for cut in delivery.cuts],
-                "contradictions": [plain(one) for one in delivery.contradictions],
-                "failures": dict(delivery.failures),
-            }
-        )
+        found = report_document(delivery.report) if delivery.report else failed_document(delivery.failures)
+        print_json({**found, "out": str(out)})
     elif delivery.results:
         print_results(delivery.results)
     for order in delivery.orders:

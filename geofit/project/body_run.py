@@ -56,6 +56,7 @@ class BodyRun:
     def figures(self) -> dict[str, Any]:
         """Return everything that the JSON file has, as plain data."""
         from geofit import __version__
+        from geofit.report.schema import enveloped
 
         accuracy = plain(self.accuracy)
         for per_contact in ("residuals", "patch"):
@@ -63,16 +64,19 @@ class BodyRun:
         volumes = plain(self.volumes)
         volumes.pop("values")
         settings = self.body.settings
-        return {
-            "body": self.body.name,
-            "verdict": self.accuracy.verdict,
-            "settings": {f.name: plain(getattr(settings, f.name)) for f in fields(settings)},
-            **accuracy,
-            "volumes": volumes,
-            "read_back": {**plain(self.read_back), "file": Path(self.read_back.file).name},
-            "issues": plain(self.body.issues),
-            "version": __version__,
-        }
+        return enveloped(
+            "body",
+            {
+                "body": self.body.name,
+                "verdict": self.accuracy.verdict,
+                "settings": {f.name: plain(getattr(settings, f.name)) for f in fields(settings)},
+                **accuracy,
+                "volumes": volumes,
+                "read_back": {**plain(self.read_back), "file": Path(self.read_back.file).name},
+                "issues": plain(self.body.issues),
+                "version": __version__,
+            },
+        )
 
 
 def run_body(

@@ -89,7 +89,7 @@ def _written(
     from geofit.cad.step import write_step
     from geofit.prediction.examine import examine
     from geofit.report.pictures import draw, write_picture
-    from geofit.report.result import write_json
+    from geofit.report.schema import horizon_document, write_json
     from geofit.report.tables import write_residuals
 
     clock = _Clock(fit)
@@ -110,7 +110,7 @@ def _written(
     clock.stop("pictures")
     result = replace(result, seconds=clock.seconds)
     write_residuals(result, stem.with_name(stem.name + "_residuals.csv"), t)
-    write_json(result, stem.with_name(stem.name + ".json"))
+    write_json(horizon_document(result), stem.with_name(stem.name + ".json"))
     return Made(result, pictures.images, (*warnings, *missing, *uncut))
 
 

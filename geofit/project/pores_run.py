@@ -41,23 +41,27 @@ class PoresRun:
     def figures(self) -> dict[str, Any]:
         """Return everything that the JSON file has, as plain data; lengths in metres."""
         from geofit import __version__
+        from geofit.report.schema import enveloped
 
         network = self.network
-        return {
-            "shape": plain(self.volume.shape),
-            "voxel": plain(self.volume.voxel),
-            "porosity": self.volume.porosity,
-            "maximal_balls": None if self.balls is None else len(self.balls),
-            "pores": len(network.pores),
-            "throats": len(network.throats),
-            "dropped_pores": len(network.dropped),
-            "mean_coordination": float(network.coordination.mean()) if len(network.pores) else 0.0,
-            "percolates": plain(network.percolates),
-            "settings": plain(network.settings),
-            "network_permeability": plain(self.permeability.square_metres),
-            **(plain(self.table) if self.table is not None else {}),
-            "version": __version__,
-        }
+        return enveloped(
+            "pores",
+            {
+                "shape": plain(self.volume.shape),
+                "voxel": plain(self.volume.voxel),
+                "porosity": self.volume.porosity,
+                "maximal_balls": None if self.balls is None else len(self.balls),
+                "pores": len(network.pores),
+                "throats": len(network.throats),
+                "dropped_pores": len(network.dropped),
+                "mean_coordination": float(network.coordination.mean()) if len(network.pores) else 0.0,
+                "percolates": plain(network.percolates),
+                "settings": plain(network.settings),
+                "network_permeability": plain(self.permeability.square_metres),
+                **(plain(self.table) if self.table is not None else {}),
+                "version": __version__,
+            },
+        )
 
 
 def run_pores(volume: RockVolume | SlicedVolume, out: Path, name: str, progress: Progress | None = None) -> PoresRun:

@@ -39,7 +39,7 @@ class Delivery:
     """What a run made: results in the order of the site; failures by horizon; warnings.
 
     A faulted horizon has a result for each block, and ``cuts`` between them; ``orders`` compares horizons of the site's
-    order, and ``contradictions`` are what a repair could not mend.
+    order, and ``contradictions`` are what a repair could not mend. ``report`` is None if nothing could be fitted.
     """
 
     out: Path
@@ -49,6 +49,7 @@ class Delivery:
     orders: tuple[Order, ...] = ()
     cuts: tuple[FaultCut, ...] = ()
     contradictions: tuple[Contradiction, ...] = ()
+    report: AccuracyReport | None = None
 
     @property
     def exit_code(self) -> int:
@@ -135,7 +136,7 @@ def _deliver(
     from geofit.report.gather import accuracy_report
     from geofit.report.pictures import draw_sections
     from geofit.report.profile import report_sections
-    from geofit.report.result import write_json
+    from geofit.report.schema import horizon_document, write_json
 
     failures, warnings = dict(fits.failures), list(fits.warnings)
     sections = report_sections(site, [surface.points for surface in fits.surfaces.values()]) if fits.surfaces else ()
@@ -144,6 +145,7 @@ def _deliver(
     images = {name: picture for one in made for name, picture in one.images.items()}
     warnings += [text for one in made for text in one.warnings]
     orders: tuple[Order, ...] = ()
+    report: AccuracyReport | None = None
     if results:
         tell(progress, "report", 0.9)
         ordered, unordered = _orders(site, fits)
@@ -152,7 +154,7 @@ def _deliver(
         stems = file_stems(fits.surfaces)
         for result in results:
             if any(check.passed is False for check in result.orders):
-                write_json(result, out / f"{stems[result.name]}.json")
+                write_json(horizon_document(result), out / f"{stems[result.name]}.json")
         report = accuracy_report(
             results, ordered, cuts=fits.cuts, contradictions=fits.contradictions, failures=failures, date=date,
             sections=sections,
@@ -165,7 +167,7 @@ def _deliver(
         forms: tuple[Form, ...] = ("html", "json", "pdf") if pdf else ("html", "json")
         _write_report(report, whole, images, out, language, font, forms)
         warnings = [text for text in (font, *warnings, unordered, whole.missing) if text]
-    return Delivery(out, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions)
+    return Delivery(out, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions, report)
 
 
 def _examined(
@@ -364,15 +366,15 @@ def _write_report(
     forms: Sequence[Form],
 ) -> None:
     """Write the report in its forms; ``whole`` shows the site, ``images`` its horizons."""
-    from geofit.report.accuracy_report import write_json
     from geofit.report.chapters import document
     from geofit.report.html import write_html
     from geofit.report.pdf import write_pdf
+    from geofit.report.schema import report_document, write_json
 
     pages = document(report, language, missing_picture=whole.missing, warning=warning)
     pictures = {**images, **whole.images}
     if "json" in forms:
-        write_json(report, out / "report.json")
+        write_json(report_document(report), out / "report.json")
     if "html" in forms:
         write_html(pages, pictures, out / "report.html")
     if "pdf" in forms:

@@ -6,12 +6,11 @@ part that was not examined at all is None as a whole, and the reader is told so.
 
 from __future__ import annotations
 
-import json
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
+from typing import Any
 
-from geofit.data.accuracy import Exceedance, plain
-from geofit.data.files import replacing
+from geofit.data.accuracy import Exceedance
 from geofit.data.messages import Message
 from geofit.data.title_block import TitleBlock
 from geofit.data.verdict import Lamp
@@ -31,18 +30,16 @@ __all__ = [
     "OffDataReport",
     "OrderLine",
     "OutlierLine",
+    "PartLine",
     "PatchLine",
     "PlanSheet",
     "PointLine",
     "RejectedRow",
     "SeamLine",
     "SectionSheet",
+    "StorageLine",
     "SuggestionLine",
-    "to_json",
-    "write_json",
 ]
-
-Words = tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -262,6 +259,26 @@ class CutLine:
 
 
 @dataclass(frozen=True)
+class PartLine:
+    """Residuals of core or periphery, metres; None where there are too few points."""
+
+    n: int
+    sigma: float | None
+    max_abs: float | None
+    share_within_interior_tolerance: float | None
+
+
+@dataclass(frozen=True)
+class StorageLine:
+    """What the surface needs, and what a TIN and a square grid need for the same within ``tolerance`` metres."""
+
+    control_points: int
+    tolerance: float | None
+    tin_points: int | None
+    grid_points: int | None
+
+
+@dataclass(frozen=True)
 class SectionSheet:
     """A geological section to scale: its ends (x, y) and elevations in metres, and the name of its picture.
 
@@ -301,24 +318,21 @@ class HorizonReport:
     ``excluded`` are points that a person left out, ``edits`` changes by hand.
     """
 
-    name: str
+    horizon: str
     verdict: str
     lamps: tuple[Lamp, ...]
     sound: bool
-    n: int
+    n_points: int
+    n_used: int
     n_core: int
     n_periphery: int
-    n_dropped: int
     sigma: float
     epsilon: float
     max_abs: float
     mean: float
-    core_max_abs: float | None
-    periphery_sigma: float | None
-    periphery_max_abs: float | None
-    within_interior: float | None
-    tolerances: tuple[float, float, float]
-    over: tuple[tuple[str, Exceedance], ...]
+    core: PartLine
+    periphery: PartLine
+    over: Mapping[str, Exceedance]
     reason: Message
     notes: tuple[Message, ...]
     groups: tuple[GroupLine, ...]
@@ -329,20 +343,18 @@ class HorizonReport:
     off_data: OffDataReport | None
     conflicts: tuple[ConflictLine, ...]
     patches: tuple[PatchLine, ...]
-    tin_points: int | None
-    grid_points: int | None
-    equal_accuracy: float | None
-    settings: Words
-    fit: Words
-    pictures: Words
+    storage: StorageLine
+    settings: Mapping[str, Any]
+    fit: Mapping[str, Any]
+    pictures: Mapping[str, str]
     plan: PlanSheet | None = None
     excluded: tuple[PointLine, ...] = ()
     edits: tuple[Message, ...] = ()
 
     @property
-    def control_points(self) -> int:
-        """Number of control points over all patches."""
-        return sum(patch.control[0] * patch.control[1] for patch in self.patches)
+    def name(self) -> str:
+        """Name of the horizon."""
+        return self.horizon
 
 
 @dataclass(frozen=True)
@@ -385,25 +397,14 @@ class AccuracyReport:
     crs: str
     date: str
     horizons: tuple[HorizonReport, ...]
-    failures: tuple[tuple[str, Message], ...]
+    failures: Mapping[str, Message]
     orders: tuple[OrderLine, ...] | None
     contradictions: tuple[ContradictionLine, ...]
     cuts: tuple[CutLine, ...]
     inputs: tuple[InputFile, ...]
-    issues: tuple[tuple[str, int], ...]
+    issues: Mapping[str, int]
     rejected: tuple[RejectedRow, ...]
-    versions: Words
+    versions: Mapping[str, str]
     picture: str
     title: TitleBlock = field(default_factory=TitleBlock)
     sections: tuple[SectionSheet, ...] = ()
-
-
-def to_json(report: AccuracyReport) -> str:
-    """Return the report as JSON text: the names of the fields, null for None."""
-    return json.dumps(plain(report), ensure_ascii=False, indent=1, allow_nan=False) + "\n"
-
-
-def write_json(report: AccuracyReport, path: Path) -> None:
-    """Write the report as JSON (UTF-8)."""
-    with replacing(path) as part:
-        part.write_text(to_json(report), encoding="utf-8")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from itertools import zip_longest
+from typing import Any
 
 from geofit.data.languages import Language, sentence, together, translate
 from geofit.data.messages import message
@@ -59,7 +60,7 @@ def more(total: int, shown: int, where: str, t: Language) -> list[Block]:
 
 
 def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
-    counts = dict(report.issues)
+    counts = report.issues
     blocks: list[Block] = [
         Heading(t("Files")),
         Paragraph(t("Rows read = rows used + rows listed. SHA-256 tells whether a file is the one that was read.")),
@@ -110,7 +111,7 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
         blocks.append(Table(columns, rows))
         blocks += more(len(report.rejected), LONGEST, "import_issues.csv", t)
     blocks.append(Heading(t("Versions")))
-    blocks.append(Table((Column(t("Program")), Column(t("Version"))), report.versions))
+    blocks.append(Table((Column(t("Program")), Column(t("Version"))), tuple(report.versions.items())))
     blocks.append(
         Paragraph(
             t(
@@ -166,16 +167,23 @@ def _label(key: str, t: Language) -> str:
     return translate(SETTINGS[key].with_unit() if key in SETTINGS else _FIT[key], t)
 
 
-def _value(key: str, value: str, t: Language) -> str:
+def _value(key: str, value: Any, t: Language) -> str:
     """Return the value of a setting in words; a word may mean something else under another key."""
     choices = SETTINGS[key].choices if key in SETTINGS else {}
-    words = {str(choice): text for choice, text in choices.items()}
-    return translate(words.get(value, value), t)
+    if isinstance(value, (str, bool, type(None))) and value in choices:
+        return translate(choices[value], t)
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    if isinstance(value, tuple):
+        return "; ".join(f"{x:.2f} {y:.2f}" for x, y in value)
+    return translate(str(value), t)
 
 
 def _made(h: HorizonReport, t: Language) -> list[Block]:
-    settings = [(_label(key, t), _value(key, value, t)) for key, value in h.settings]
-    figures = [(_label(key, t), _value(key, value, t)) for key, value in h.fit if key in _FIT or key in SETTINGS]
+    settings = [(_label(key, t), _value(key, value, t)) for key, value in h.settings.items()]
+    figures = [
+        (_label(key, t), _value(key, value, t)) for key, value in h.fit.items() if key in _FIT or key in SETTINGS
+    ]
     patches = tuple(
         (
             translate(p.name, t),
@@ -196,15 +204,16 @@ def _made(h: HorizonReport, t: Language) -> list[Block]:
             tuple((*a, *b) for a, b in zip_longest(settings, figures, fillvalue=("", ""))),
         ),
     ]
-    if h.tin_points and h.equal_accuracy:
-        grid = digits.count(h.grid_points) if h.grid_points else t("more than 12 000")
+    storage = h.storage
+    if storage.tin_points and storage.tolerance:
+        grid = digits.count(storage.grid_points) if storage.grid_points else t("more than 12 000")
         text = t(
             "To stay within {tolerance} m of this surface, a TIN needs {tin} points, a square grid {grid}; the surface "
             "has {control} control points.",
-            tolerance=digits.given(h.equal_accuracy),
-            tin=digits.count(h.tin_points),
+            tolerance=digits.given(storage.tolerance),
+            tin=digits.count(storage.tin_points),
             grid=grid,
-            control=digits.count(h.control_points),
+            control=digits.count(storage.control_points),
         )
         blocks.append(Paragraph(text))
     table = Table((Column(t("Patch")), Column(t("Degree"), "number"), Column(t("Control points"), "number")), patches)

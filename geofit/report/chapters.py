@@ -48,7 +48,7 @@ def document(
     """
     site = report.site or t("Site")
     title = report.title
-    version = "geofit " + dict(report.versions)["geofit"]
+    version = "geofit " + report.versions["geofit"]
     facts = ((t("Coordinate system"), report.crs or t("not stated")), (t("Program"), version))
     picture = Paragraph(translate(missing_picture, t), "warning") if missing_picture else Picture(report.picture, "")
     drawings = sections_chapter(report, t)
@@ -102,7 +102,7 @@ def _summary(report: AccuracyReport, t: Language) -> Chapter:
             "quiet",
         )
     )
-    for name, reason in report.failures:
+    for name, reason in report.failures.items():
         blocks.append(Paragraph(t("{name} could not be fitted: {reason}", name=name, reason=reason), "warning"))
     blocks += [*away_from_data(report, t), *limits_of_use(report, t)]
     return Chapter(t("Summary"), tuple(blocks))
@@ -116,7 +116,7 @@ def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
         digits.metres(horizon.sigma),
         digits.given(horizon.epsilon),
         digits.metres(horizon.max_abs),
-        digits.count(horizon.n),
+        digits.count(horizon.n_points),
         checks,
         away,
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime
 import math
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from functools import lru_cache
 from importlib.metadata import PackageNotFoundError, version
@@ -19,7 +19,7 @@ from geofit.data.accuracy import Check, Seam
 from geofit.data.messages import EMPTY, Message
 from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, OffData
-from geofit.data.site import Section, Site
+from geofit.data.site import ImportIssue, Section, Site
 from geofit.report.accuracy_report import (
     AccuracyReport,
     CheckLine,
@@ -35,10 +35,12 @@ from geofit.report.accuracy_report import (
     OffDataReport,
     OrderLine,
     OutlierLine,
+    PartLine,
     PatchLine,
     PointLine,
     RejectedRow,
     SeamLine,
+    StorageLine,
     SuggestionLine,
 )
 from geofit.report.contour_plan import plan_sheet
@@ -52,7 +54,18 @@ if TYPE_CHECKING:
     from geofit.site.separate import Contradiction
     from geofit.site.throw import FaultCut
 
-__all__ = ["PICTURES", "accuracy_report", "cut_of", "picture_name", "section_picture", "today"]
+__all__ = [
+    "PICTURES",
+    "accuracy_report",
+    "cut_of",
+    "horizon_report",
+    "inputs_of",
+    "picture_name",
+    "rejected_rows",
+    "section_picture",
+    "today",
+    "versions",
+]
 
 #: What the pictures of a horizon show, in the order of the report.
 PICTURES = ("plan", "view", "deviation", "residuals", "uncertainty")
@@ -119,28 +132,34 @@ def accuracy_report(
         site=site.name,
         crs=site.crs,
         date=date or today(),
-        horizons=tuple(_horizon(result) for result in results),
-        failures=tuple((failures or {}).items()),
+        horizons=tuple(horizon_report(result) for result in results),
+        failures=dict(failures or {}),
         orders=None if orders is None else tuple(_order(order) for order in orders),
         contradictions=tuple(
             ContradictionLine(c.upper, c.lower, c.x, c.y, c.lack, c.above, c.below, c.text) for c in contradictions
         ),
         cuts=tuple(_cut(cut) for cut in cuts),
-        inputs=_inputs(site),
-        issues=tuple((word, severities.count(word)) for word in ("error", "warning", "note")),
-        rejected=tuple(RejectedRow(**_issue(i)) for i in site.issues if i.severity in ("error", "warning")),
-        versions=_versions(),
+        inputs=inputs_of(site),
+        issues={word: severities.count(word) for word in ("error", "warning", "note")},
+        rejected=rejected_rows(site.issues),
+        versions=versions(),
         picture=SITE_PICTURE,
         title=site.title,
         sections=tuple(section_sheet(one, site, cut_of(results, one), section_picture(one)) for one in sections),
     )
 
 
+def rejected_rows(issues: Iterable[ImportIssue]) -> tuple[RejectedRow, ...]:
+    """Return the errors and warnings of the readers."""
+    return tuple(RejectedRow(**_issue(i)) for i in issues if i.severity in ("error", "warning"))
+
+
 def _issue(issue: Any) -> dict[str, Any]:
     return {f: getattr(issue, f) for f in ("severity", "file", "row", "column", "value", "reason", "remedy")}
 
 
-def _horizon(result: HorizonResult) -> HorizonReport:
+def horizon_report(result: HorizonResult) -> HorizonReport:
+    """Gather everything that is said about one horizon."""
     surface, a, core = result.surface, result.accuracy, result.core
     d = np.abs(a.residuals)
     out, settings = d[~core], surface.settings
@@ -148,24 +167,21 @@ def _horizon(result: HorizonResult) -> HorizonReport:
     groups = {"kind": a.by_kind, "section": a.by_section, "hole": a.by_hole, "patch": a.by_patch}
     shown = [what for what in PICTURES if _shown(what, result, out)]
     return HorizonReport(
-        name=result.name,
+        horizon=result.name,
         verdict=result.verdict.word,
         lamps=result.verdict.lamps,
         sound=result.sound,
-        n=a.n,
+        n_points=a.n,
+        n_used=a.n - len(result.dropped),
         n_core=int(core.sum()),
         n_periphery=int((~core).sum()),
-        n_dropped=len(result.dropped),
         sigma=a.sigma,
         epsilon=a.epsilon,
         max_abs=a.max_abs,
         mean=a.mean,
-        core_max_abs=float(d[core].max()) if core.any() else None,
-        periphery_sigma=sigma_of(out),
-        periphery_max_abs=float(out.max()) if len(out) else None,
-        within_interior=float((out <= settings.interior_tolerance).mean()) if len(out) else None,
-        tolerances=(settings.boundary_tolerance, settings.interior_tolerance, settings.epsilon),
-        over=tuple(a.over.items()),
+        core=_part(d[core], settings.interior_tolerance),
+        periphery=_part(out, settings.interior_tolerance),
+        over=dict(a.over),
         reason=surface.partition.reason if surface.partition is not None else EMPTY,
         notes=a.notes,
         groups=tuple(
@@ -183,12 +199,15 @@ def _horizon(result: HorizonResult) -> HorizonReport:
             ConflictLine(points.describe(c.kept), points.describe(c.dropped), c.difference, c.text) for c in a.conflicts
         ),
         patches=tuple(PatchLine(p.name, p.degree, (p.control.shape[0], p.control.shape[1])) for p in surface.patches),
-        tin_points=storage.tin_points if storage else None,
-        grid_points=storage.grid_points if storage else None,
-        equal_accuracy=storage.tolerance if storage else None,
-        settings=tuple((key, _word(value)) for key, value in asdict(settings).items()),
-        fit=tuple((k, _word(v)) for k, v in surface.diagnostics.items() if isinstance(v, bool | int | float | str)),
-        pictures=tuple((what, picture_name(what, result.name)) for what in shown),
+        storage=StorageLine(
+            surface.control_points,
+            storage.tolerance if storage else None,
+            storage.tin_points if storage else None,
+            storage.grid_points if storage else None,
+        ),
+        settings=asdict(settings),
+        fit={key: value for key, value in surface.diagnostics.items() if isinstance(value, bool | int | float | str)},
+        pictures={what: picture_name(what, result.name) for what in shown},
         plan=plan_sheet(result),
         excluded=()
         if result.excluded is None
@@ -208,14 +227,11 @@ def _has_uncertainty(offdata: OffData | None) -> bool:
     return offdata is not None and offdata.uncertainty is not None
 
 
-def _word(value: Any) -> str:
-    if value is None:
-        return "auto"
-    if isinstance(value, float):
-        return f"{value:.4g}"
-    if isinstance(value, tuple):
-        return "; ".join(f"{x:.2f} {y:.2f}" for x, y in value)
-    return str(value)
+def _part(d: NDArray[np.float64], tolerance: float) -> PartLine:
+    """Return the figures of some absolute residuals."""
+    if not len(d):
+        return PartLine(0, None, None, None)
+    return PartLine(len(d), sigma_of(d), float(d.max()), float((d <= tolerance).mean()))
 
 
 def _point(result: HorizonResult, i: int) -> PointLine:
@@ -310,7 +326,8 @@ def _cut(cut: FaultCut) -> CutLine:
     return CutLine(cut.fault, cut.horizon, cut.up, cut.down, length, *throws, cut.text, tuple(places))
 
 
-def _inputs(site: Site) -> tuple[InputFile, ...]:
+def inputs_of(site: Site) -> tuple[InputFile, ...]:
+    """Return the files of a site with their hashes, and how many of their rows were used."""
     counts = {c.file: c for c in site.counts}
     lines = []
     for file in dict.fromkeys([*site.inputs, *counts]):
@@ -322,7 +339,8 @@ def _inputs(site: Site) -> tuple[InputFile, ...]:
 
 
 @lru_cache(maxsize=1)
-def _versions() -> tuple[tuple[str, str], ...]:
+def versions() -> Mapping[str, str]:
+    """Return the versions of the programs behind a result."""
     import platform
 
     found = [("geofit", geofit.__version__), ("Python", platform.python_version())]
@@ -332,4 +350,4 @@ def _versions() -> tuple[tuple[str, str], ...]:
         found.append(("OpenCASCADE", ".".join(version("cadquery-ocp").split(".")[:3])))
     except PackageNotFoundError:
         found.append(("OpenCASCADE", "not installed"))
-    return tuple(found)
+    return dict(found)

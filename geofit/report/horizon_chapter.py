@@ -55,17 +55,20 @@ def _sentence(h: HorizonReport, t: Language) -> str:
 
 
 def _facts(h: HorizonReport, t: Language) -> Facts:
-    share, limit = digits.share(h.within_interior), digits.given(h.tolerances[1])
+    share, limit = (
+        digits.share(h.periphery.share_within_interior_tolerance),
+        digits.given(h.settings["interior_tolerance"]),
+    )
     within = t("{share} within {limit} m", share=share, limit=limit) if h.n_periphery else t("no points")
     points = t("{core} core, {periphery} periphery", core=digits.count(h.n_core), periphery=digits.count(h.n_periphery))
     return Facts(
         (
             (t("σ over all points"), digits.length(h.sigma), f"ε = {digits.given(h.epsilon)} m"),
             (t("Largest |d|"), digits.length(h.max_abs), t("mean d {mean}", mean=digits.length(h.mean))),
-            (t("Points"), digits.count(h.n), points),
-            (t("Core, largest |d|"), digits.length(h.core_max_abs), t("interpolated")),
-            (t("Periphery, σ"), digits.length(h.periphery_sigma), within),
-            (t("Control points"), digits.count(h.control_points), t("patches: {count}", count=len(h.patches))),
+            (t("Points"), digits.count(h.n_points), points),
+            (t("Core, largest |d|"), digits.length(h.core.max_abs), t("interpolated")),
+            (t("Periphery, σ"), digits.length(h.periphery.sigma), within),
+            (t("Control points"), digits.count(h.storage.control_points), t("patches: {count}", count=len(h.patches))),
         )
     )
 
@@ -83,7 +86,7 @@ def _style(note: Message) -> Literal["plain", "warning"]:
 
 def _plan(h: HorizonReport, t: Language) -> list[Block]:
     """Lay out the contour plan; of a folded surface, whose contours would cross, the site plan."""
-    name = dict(h.pictures)["plan"]
+    name = h.pictures["plan"]
     if h.plan is not None:
         return [Heading(t("The surface")), Picture(name, plan_caption(h.name, h.plan, t), to_scale=True)]
     folded = t("The surface is folded over: its contours in plan would cross. See the geological sections.")
@@ -95,15 +98,17 @@ def _view(h: HorizonReport, t: Language, missing_picture: Message | None) -> lis
     if missing_picture:
         return [Paragraph(translate(missing_picture, t), "warning")]
     caption = t("Dots: data points. Thick line: edge of the core. Thin lines: contours.")
-    return [Picture(dict(h.pictures)["view"], caption)]
+    return [Picture(h.pictures["view"], caption)]
 
 
 def _deviations(h: HorizonReport, t: Language) -> list[Block]:
-    pictures = dict(h.pictures)
-    boundary, interior, control = (digits.given(value) for value in h.tolerances)
+    pictures = h.pictures
+    boundary, interior, control = (
+        digits.given(h.settings[key]) for key in ("boundary_tolerance", "interior_tolerance", "epsilon")
+    )
     rows = tuple(
-        (_bound(name, over.limit, t), digits.count(over.count), digits.share(over.count / max(h.n, 1)))
-        for name, over in h.over
+        (_bound(name, over.limit, t), digits.count(over.count), digits.share(over.count / max(h.n_points, 1)))
+        for name, over in h.over.items()
     )
     bands = t(
         "Bands end at the tolerances of this fit: boundary {boundary} m, interior {interior} m, control error "

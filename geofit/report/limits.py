@@ -68,10 +68,9 @@ def limits_of_use(report: AccuracyReport, t: Language) -> list[Block]:
         sentences.append(t("The error away from the data is unknown for: {names}.", names=_names(unknown, t)))
     if any(check.name == "above ground" and check.value for h in report.horizons for check in h.checks):
         sentences.append(t("Where a surface lies above the ground, the rock has been eroded or excavated."))
-    counts = dict(report.issues)
-    if counts.get("error"):
+    if report.issues.get("error"):
         sentences.append(
-            t("{count} rows of the input were not used; they are listed in the annex.", count=counts["error"])
+            t("{count} rows of the input were not used; they are listed in the annex.", count=report.issues["error"])
         )
     sentences.append(
         t(

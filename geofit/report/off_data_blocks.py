@@ -87,7 +87,7 @@ def _scheme_row(scheme: LeftOutLine, t: Language) -> tuple[Cell, ...]:
 
 def _uncertainty(h: HorizonReport, off: OffDataReport, t: Language) -> list[Block]:
     blocks: list[Block] = [Heading(t("Standard deviation and where to drill next"), 3)]
-    name = dict(h.pictures).get("uncertainty")
+    name = h.pictures.get("uncertainty")
     if off.sd_mean is None or off.sd_max is None or name is None:
         blocks.append(Paragraph(t("The standard deviation was not examined.")))
     else:

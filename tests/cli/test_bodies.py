@@ -333,3 +333,26 @@ def test_metaballs_of_berea(tmp_path, monkeypatch, capsys):
     assert (figures["balls"], figures["shape"]) == (12, [110, 110, 110])
     assert figures["volume_of_voxels"] == pytest.approx(0.1779 * (110 * 5.345e-6) ** 3, rel=1e-3)
     assert 0.5 < figures["dice"] < 1
+
+
+def test_what_is_printed_and_what_is_written_follow_the_published_schema(drilled, monkeypatch, capsys):
+    jsonschema = pytest.importorskip("jsonschema", reason="validates the results; it comes with the extra 'test'")
+    from geofit.report.schema import result_schema
+
+    validator = jsonschema.Draft202012Validator(result_schema())
+    cube = np.ones((12, 12, 12), np.uint8)
+    cube[:, 4:8, 4:8] = 0
+    np.save(drilled / "tube.npy", cube)
+    tables = (drilled / "collar.csv", "--intervals", drilled / "lithology.csv", "--code", "ORE")
+    rock = (drilled / "tube.npy", "--pore", "0", "--voxel", "5e-6")
+    for command, arguments, kind, stem in (("body", tables, "body", "ORE"), ("pores", rock, "pores", "tube")):
+        code, out, err = run(monkeypatch, capsys, command, *arguments, "--out", drilled / kind, "--json")
+        assert code == 0, err
+        printed = json.loads(out)
+        written = json.loads((drilled / kind / f"{stem}.json").read_text(encoding="utf-8"))
+        for data in (printed, written):
+            validator.validate(data)
+        assert (printed["kind"], written["kind"]) == (kind, kind)
+        assert {key: printed[key] for key in written} == written
+        written["unknown"] = 1
+        assert not validator.is_valid(written)

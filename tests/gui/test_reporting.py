@@ -78,15 +78,14 @@ def test_the_window_s_report_says_what_the_command_line_s_says(app, qtbot, site_
 
     ours, theirs = (json.loads((tmp_path / side / "report.json").read_text("utf-8")) for side in ("gui", "cli"))
     for data, prefix in ((ours, "dam_"), (theirs, "")):
-        assert [one["name"] for one in data["horizons"]] == list(NAMES)
+        assert [one["horizon"] for one in data["horizons"]] == list(NAMES)
         for one in data["horizons"]:
-            assert one["tin_points"] > 0
+            assert one["storage"]["tin_points"] > 0
             assert one["off_data"] is not None
-            assert one["read_back"]["file"] == f"{prefix}{one['name']}.step"
+            assert one["read_back"]["file"] == f"{prefix}{one['horizon']}.step"
             # The header of a STEP file has the file's name.
             for key in ("file", "sha256", "bytes"):
                 del one["read_back"][key]
-            one["fit"] = [pair for pair in one["fit"] if pair[0] != "seconds"]
     assert ours == theirs
 
     # What the report found out belongs to the document, and its panel shows it.

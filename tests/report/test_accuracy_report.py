@@ -15,13 +15,14 @@ from geofit.data.errors import MissingDependencyError
 from geofit.data.languages import EN, ZH
 from geofit.data.messages import message
 from geofit.report import fonts
-from geofit.report.accuracy_report import AccuracyReport, to_json, write_json
+from geofit.report.accuracy_report import AccuracyReport
 from geofit.report.chapters import document
 from geofit.report.digits import metres
 from geofit.report.gather import accuracy_report, today
 from geofit.report.html import write_html
 from geofit.report.pdf import write_pdf
 from geofit.report.pictures import draw, draw_site
+from geofit.report.schema import report_document, to_json, write_json
 from geofit.site.order import Order
 from geofit.site.overlap import Crossing
 
@@ -66,7 +67,7 @@ def written(request, report, images, tmp_path_factory):
     """Folder with the report in a language."""
     folder = tmp_path_factory.mktemp(request.param.code)
     pages = document(report, request.param)
-    write_json(report, folder / "report.json")
+    write_json(report_document(report), folder / "report.json")
     write_html(pages, images, folder / "report.html")
     write_pdf(pages, images, folder / "report.pdf")
     return folder, request.param
@@ -137,9 +138,10 @@ def _exponent(value: float) -> int:
 
 
 def test_the_json_names_every_horizon_and_holds_no_nan(report):
-    assert [one["name"] for one in json.loads(to_json(report))["horizons"]] == [one.name for one in report.horizons]
-    assert json.loads(to_json(report))["horizons"][0]["verdict"] == "WARNING"
-    assert "NaN" not in to_json(report)
+    text = to_json(report_document(report))
+    assert [one["horizon"] for one in json.loads(text)["horizons"]] == [one.name for one in report.horizons]
+    assert json.loads(text)["horizons"][0]["verdict"] == "WARNING"
+    assert "NaN" not in text
 
 
 def test_every_headline_figure_of_the_json_stands_in_html_and_pdf(written):
@@ -152,7 +154,8 @@ def test_every_headline_figure_of_the_json_stands_in_html_and_pdf(written):
     for form, text in pages.items():
         numbers = _numbers(text)
         for h in data["horizons"]:
-            figures = {key: h[key] for key in ("sigma", "epsilon", "max_abs", "mean", "periphery_sigma", "n", "n_core")}
+            figures = {key: h[key] for key in ("sigma", "epsilon", "max_abs", "mean", "n_points", "n_core")}
+            figures["periphery sigma"] = h["periphery"]["sigma"]
             figures |= {f"worst {i}": p["residual"] for i, p in enumerate(h["worst"])}
             figures |= {f"row {i}": p["row"] for i, p in enumerate(h["worst"])}
             figures |= {f"{g['by']} {g['name']}": g["sigma"] for g in h["groups"] if g["sigma"] > 1e-9}
@@ -167,7 +170,7 @@ def test_every_headline_figure_of_the_json_stands_in_html_and_pdf(written):
                     figures |= {f"hole {i} {k}": hole[k] for k in ("x", "y", "sd", "mean_after", "max_after")}
                 figures |= {f"outlier {k}": h["off_data"]["outliers"][0][k] for k in ("error", "sd", "ratio")}
             absent = [name for name, value in figures.items() if not _holds(numbers, value)]
-            assert not absent, f"{form} {t.code} {h['name']}: {absent}"
+            assert not absent, f"{form} {t.code} {h['horizon']}: {absent}"
         pair = data["orders"][0]
         for key in ("minimum", "mean", "crossing_area", "crossing_volume"):
             assert _holds(numbers, pair[key]), f"{form}: {key}"

@@ -18,7 +18,8 @@ from geofit.data.files import file_stems, replacing
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report import fonts, plots, scene
 from geofit.report.pictures import Pictures, draw, draw_site, write_picture
-from geofit.report.result import HorizonResult, horizon_data, write_json
+from geofit.report.result import HorizonResult
+from geofit.report.schema import horizon_document, write_json
 from geofit.report.style import bands
 from geofit.report.tables import write_issues, write_residuals
 from geofit.report.view import choose_view
@@ -38,32 +39,32 @@ def pictures(result) -> Pictures:
 
 
 def test_json_has_the_promised_keys_and_the_known_figures(result, tmp_path):
-    write_json(result, tmp_path / "a.json")
+    write_json(horizon_document(result), tmp_path / "a.json")
     data = json.loads((tmp_path / "a.json").read_text(encoding="utf-8"))
     promised = {
         "horizon", "n_points", "n_used", "n_core", "n_periphery", "epsilon", "sigma", "max_abs", "verdict",
         "core", "periphery", "seams", "patches", "checks", "conflicts", "rejected", "read_back", "storage", "seconds",
-        "inputs", "settings", "version",
+        "inputs", "settings", "versions", "schema_version", "kind",
     }  # fmt: skip
     assert promised <= set(data)
     assert (data["n_points"], data["n_used"], data["n_core"], data["n_periphery"]) == (200, 199, 120, 80)
     d = result.accuracy.residuals
     assert data["sigma"] == pytest.approx(np.sqrt((d**2).sum() / 199), rel=1e-12)
     assert data["periphery"]["share_within_interior_tolerance"] == pytest.approx((np.abs(d[120:]) <= 0.1).mean())
-    assert data["core"] == {"n": 120, "max_abs": 0.0}
-    assert data["seams"][1] == {"a": "core", "b": "east", "max_gap": 2e-10, "max_angle_deg": 0.0003}
-    assert data["patches"][0] == {"name": "core", "degree": [3, 3], "n_control": 121}
+    assert (data["core"]["n"], data["core"]["max_abs"]) == (120, 0.0)
+    assert data["seams"][1] == {"first": "core", "second": "east", "gap": 2e-10, "angle": 0.0003}
+    assert data["patches"][0] == {"name": "core", "degree": [3, 3], "control": [11, 11]}
     assert data["read_back"]["valid"] is True
     assert data["read_back"]["free_edges"] == 8
     assert data["storage"]["control_points"] == 363
-    assert data["inputs"] == [{"file": "picks.csv", "sha256": "ab" * 32}]
+    assert [(one["file"], one["sha256"]) for one in data["inputs"]] == [("picks.csv", "ab" * 32)]
     assert data["rejected"][0]["row"] == 7
     assert data["settings"]["epsilon"] == 0.5
-    assert data["version"] == geofit.__version__
+    assert data["versions"]["geofit"] == geofit.__version__
 
 
 def test_json_holds_no_nan(result):
-    text = json.dumps(horizon_data(result), allow_nan=False)
+    text = json.dumps(horizon_document(result), allow_nan=False)
     assert "NaN" not in str(text)
 
 
