@@ -29,6 +29,7 @@ test: .venv/.installed-all
 	$(BIN)/python -m pytest
 
 audit: .venv/.installed-all
+	-@$(PIP) install --quiet pip-audit
 	$(BIN)/python tools/audit.py
 
 system-packages:
