@@ -35,6 +35,8 @@ _PLAIN: dict[str, _Spec] = {
     "export_other": (QT_TRANSLATE_NOOP("Actions", "Export &other formats…"), "Ctrl+Shift+E", "", ""),
     "report": (QT_TRANSLATE_NOOP("Actions", "&Report…"), "Ctrl+R",
                QT_TRANSLATE_NOOP("Actions", "Accuracy report as HTML or PDF, in English or Chinese"), "report"),
+    "section_sheet": (QT_TRANSLATE_NOOP("Actions", "Section s&heet…"), None,
+                      QT_TRANSLATE_NOOP("Actions", "Sections to scale with a title block, as PDF, SVG or DXF"), ""),
     "screenshot": (QT_TRANSLATE_NOOP("Actions", "S&creenshot…"), "Ctrl+Shift+P",
                    QT_TRANSLATE_NOOP("Actions", "Picture of the 3D view at print size"), "screenshot"),
     "issues": (QT_TRANSLATE_NOOP("Actions", "Import pro&blems…"), None,

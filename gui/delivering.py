@@ -6,6 +6,7 @@ import logging
 from collections.abc import Mapping
 from pathlib import Path
 
+import numpy as np
 from PySide6.QtCore import QObject, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QWidget
@@ -96,6 +97,22 @@ class Delivering(QObject):
         bare = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         title = self.tr("Export {name}").format(name=target.name)
         self._activity.do(title, export_surfaces, bare, to, target, options, on_done=self._written, apart=True)
+
+    def section_sheet(self) -> None:
+        """Ask for sections and a title block, and write the sections to scale."""
+        from geofit.gui.dialogs.section_sheet import SectionSheetDialog
+
+        self._showing.begin_section()
+        if self._showing.line is None:
+            return
+        site, line = self._document.site_in_use(), np.asarray(self._showing.line, float)
+        surfaces = self._document.surfaces()
+        dialog = SectionSheetDialog(
+            site, surfaces, line, self._showing.thickness, self._showing.uncertainties(), self._folder(), self._window
+        )
+        dialog.exec()
+        if dialog.files:
+            self._written(list(dialog.files))
 
     def report(self) -> None:
         """Ask for language and format, and write the accuracy report."""

@@ -148,6 +148,7 @@ class MainWindow(QMainWindow):
             "save_as": files.save_as,
             "export_step": give.export_step,
             "export_other": give.export_other,
+            "section_sheet": give.section_sheet,
             "report": give.report,
             "screenshot": give.screenshot,
             "issues": lambda: self.help.issues(self.session.document.site),

@@ -36,7 +36,9 @@ class Menus(QObject):
         bar = window.menuBar()
         file = self._menu(bar.addMenu(self.tr("&File")), "new open sample")
         self.recent = file.addMenu(self.tr("Open &recent"))
-        self._menu(file, "| save save_as | export_step export_other report screenshot | issues close | quit")
+        self._menu(
+            file, "| save save_as | export_step export_other section_sheet report screenshot | issues close | quit"
+        )
         edit = bar.addMenu(self.tr("&Edit"))
         edit.addActions([self.undo, self.redo])
         self._menu(edit, "| exclude rename | preferences")

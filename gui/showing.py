@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from geofit.data.accuracy import ReadBack
+from geofit.data.prediction import Uncertainty
 from geofit.data.settings import FitSettings
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
@@ -124,13 +125,17 @@ class Showing(QObject):
         """Show the section along the present line."""
         document = self._document
         site = document.site_in_use() if document.site.horizons else None
-        uncertain = {
-            name: found.uncertainty
-            for name in document.horizons
-            if (found := document.offdata(name)) is not None and found.uncertainty is not None
-        }
+        uncertain = self.uncertainties()
         panel = self._panels.section
         panel.show_section(site, document.surfaces(), self.line, self.thickness, uncertain, faded=self.faded)
+
+    def uncertainties(self) -> dict[str, Uncertainty]:
+        """Return the standard deviations of the horizons that were examined."""
+        return {
+            name: found.uncertainty
+            for name in self._document.horizons
+            if (found := self._document.offdata(name)) is not None and found.uncertainty is not None
+        }
 
     def set_faded(self, on: bool) -> None:
         """Fade surfaces above the ground and beyond their data, in view and section, or draw them in full."""

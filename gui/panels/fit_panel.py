@@ -194,7 +194,7 @@ class FitPanel(QWidget):
         target.setAccessibleDescription(about)
         row = QHBoxLayout()
         row.setSpacing(6)
-        row.addWidget(label, 4)
+        row.addWidget(label, 5)
         row.addWidget(field, 5)
         form = self._form if name in FIRST else self._rest
         form.addLayout(row)

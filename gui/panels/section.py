@@ -352,8 +352,8 @@ class SectionPanel(QWidget):
                 if away.min() < least:
                     best, least = (name, int(index[away.argmin()])), float(away.min())
         if best is not None:
-            name, index = best
-            self.point_chosen.emit(name, Row.of(self._data.site.horizons[name], index))
+            name, chosen = best
+            self.point_chosen.emit(name, Row.of(self._data.site.horizons[name], chosen))
 
 
 def _spin(low: float, high: float, step: float, unit: str, longest: str) -> QDoubleSpinBox:

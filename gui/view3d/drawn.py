@@ -54,9 +54,8 @@ def drawn_of(
     shape = shape_of(surface)
     if len(surface.points):
         support = support_of(surface.points.xyz, ground)
-        fine = split(shape, support.depth(shape.xyz))
-        few = shape.coarse or shape
-        shape = replace(fine, coarse=fine if few is shape else split(few, support.depth(few.xyz)))
+        parted, rough = split(shape, support.depth(shape.xyz)), shape.coarse or shape
+        shape = replace(parted, coarse=parted if rough is shape else split(rough, support.depth(rough.xyz)))
     coarse = shape.coarse or shape
     held = _supported(surface, ground, shape), _supported(surface, ground, coarse)
     if uncertainty is None:

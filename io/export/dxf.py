@@ -15,7 +15,7 @@ from geofit.sampling.cut import CutLine
 if TYPE_CHECKING:
     from ezdxf.document import Drawing
 
-__all__ = ["write_contours_dxf", "write_mesh_dxf", "write_section_dxf"]
+__all__ = ["drawing_of", "write_contours_dxf", "write_mesh_dxf", "write_section_dxf"]
 
 #: Colour indices of AutoCAD for the horizons in turn: apart from each other on white and on black.
 COLOURS = (30, 84, 150, 14, 200, 42, 120, 220)
@@ -84,18 +84,25 @@ def write_section_dxf(cuts: Mapping[str, Sequence[CutLine]], path: str | PathLik
 @contextmanager
 def _drawing(path: str | PathLike[str], names: list[str]) -> Iterator[tuple[Drawing, dict[str, str]]]:
     """Give a drawing in metres with a layer for each name; it is written when the block ends without an error."""
+    layers = file_stems(names)
+    with drawing_of(path, list(layers.values())) as document:
+        yield document, layers
+
+
+@contextmanager
+def drawing_of(path: str | PathLike[str], layers: Sequence[str]) -> Iterator[Drawing]:
+    """Give a drawing in metres with layers; it is written when the block ends without an error."""
     import ezdxf
 
-    layers = file_stems(names)
     options: Any = ezdxf.options
     before = options.write_fixed_meta_data_for_testing
     # Otherwise the time of writing and a random identifier stand in the header.
     options.write_fixed_meta_data_for_testing = True
     try:
         document = ezdxf.new("R2010", units=METRES)
-        for k, layer in enumerate(layers.values()):
+        for k, layer in enumerate(layers):
             document.layers.add(layer, color=COLOURS[k % len(COLOURS)])
-        yield document, layers
+        yield document
         with replacing(path) as part:
             document.saveas(part)
     finally:

@@ -1,0 +1,367 @@
+"""A section sheet: sections to scale on pages of a standard size, with a frame, a legend and a title block."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geofit.data.errors import SettingsError
+from geofit.data.files import file_stems, replacing
+from geofit.data.languages import EN, Language
+from geofit.data.messages import message
+from geofit.report.style import INK, LINE, MUTED, drawing, horizon_colours, kind_style
+from geofit.site.section_view import HoleTrack, SectionView, lithologies
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["PAPERS", "SCALES", "SheetTitle", "fitting_scale", "lithology_style", "write_sheet_pdf", "write_sheet_svg"]
+
+#: Paper in landscape, millimetres.
+PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A1": (841.0, 594.0), "A0": (1189.0, 841.0)}
+#: Scales on offer, 1 : so many.
+SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
+#: Millimetres: frame from the paper's edge, title block, room for the numbers at the left and below, legend.
+EDGE, BLOCK, LEFT, BELOW, LEGEND = 10.0, 24.0, 20.0, 14.0, 44.0
+#: Width of a hole's column of lithology, millimetres.
+COLUMN = 2.2
+GROUND = "#6b7d3a"
+DASHES = (0, (5.0, 3.0))
+#: Lines of the patterns, and letters of the PDF as text.
+_THIN: dict[Any, Any] = {"hatch.linewidth": 0.25, "pdf.fonttype": 42}
+_SOILS = ("#e8d9a0", "#c9b18a", "#b7c9a8", "#9fb6c4", "#d3a6a0", "#a9a1c6", "#dcc3d8", "#8fb3a2", "#d9cbb6", "#b2b2b2")
+_HATCHES = ("", "....", "////", "\\\\\\\\", "xxxx", "----", "++++", "oo", "||||", "**")
+
+
+@dataclass(frozen=True)
+class SheetTitle:
+    """What the title block says; empty lines stay empty. ``date`` is ISO 8601."""
+
+    title: str
+    project: str = ""
+    number: str = ""
+    author: str = ""
+    date: str = ""
+
+
+def lithology_style(codes: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Return the colour and the pattern of each code: the same for the same list of codes.
+
+    Examples
+    --------
+    >>> lithology_style(["clay", "sand"])["sand"]
+    ('#c9b18a', '....')
+    """
+    return {
+        code: (_SOILS[k % len(_SOILS)], _HATCHES[(k + k // len(_SOILS)) % len(_HATCHES)])
+        for k, code in enumerate(sorted(codes))
+    }
+
+
+def fitting_scale(views: Sequence[SectionView], paper: str, exaggeration: float = 1.0) -> int:
+    """Return the largest of :data:`SCALES` at which every section fits the paper.
+
+    Raises
+    ------
+    SettingsError
+        If none does.
+    """
+    wide, high = _room(paper)
+    for scale in SCALES:
+        sizes = [_size(view, scale, exaggeration) for view in views]
+        if all(across <= wide and up <= high for across, up in sizes):
+            return scale
+    raise SettingsError(
+        message(
+            "section.no-scale",
+            "No scale up to 1:{scale} brings the sections onto {paper}. Choose larger paper or shorter sections.",
+            scale=SCALES[-1],
+            paper=paper,
+        )
+    )
+
+
+def write_sheet_pdf(
+    views: Sequence[SectionView],
+    block: SheetTitle,
+    path: str | PathLike[str],
+    *,
+    paper: str = "A3",
+    scale: int | None = None,
+    exaggeration: float = 1.0,
+    language: Language = EN,
+) -> int:
+    """Write sections to scale as PDF, one page each; return the scale, 1 : so many.
+
+    Parameters
+    ----------
+    views : sequence of SectionView
+        At least one.
+    block : SheetTitle
+        What the title block says.
+    path : path
+        The file.
+    paper : str
+        One of :data:`PAPERS`.
+    scale : int, optional
+        1 : so many; None: the largest at which all fit.
+    exaggeration : float
+        Elevations are drawn so many times higher; the title block says so.
+    language : Language
+        That of the words.
+
+    Raises
+    ------
+    SettingsError
+        If a section does not fit the paper at the scale.
+    """
+    import matplotlib as mpl
+    from matplotlib.backends.backend_pdf import PdfPages
+
+    chosen = _checked(views, paper, scale, exaggeration)
+    information: dict[str, Any] = {"CreationDate": None, "ModDate": None, "Title": block.title}
+    with drawing(8.0), mpl.rc_context(_THIN), replacing(path) as part, PdfPages(part, metadata=information) as pages:
+        for number, view in enumerate(views, 1):
+            pages.savefig(_page(views, view, number, block, paper, chosen, exaggeration, language))
+    return chosen
+
+
+def write_sheet_svg(
+    views: Sequence[SectionView],
+    block: SheetTitle,
+    path: str | PathLike[str],
+    *,
+    paper: str = "A3",
+    scale: int | None = None,
+    exaggeration: float = 1.0,
+    language: Language = EN,
+) -> tuple[Path, ...]:
+    """Write sections to scale as SVG, one file each; several get the names of their sections. Return the files.
+
+    Parameters and errors are those of :func:`write_sheet_pdf`.
+    """
+    import matplotlib as mpl
+
+    chosen, path = _checked(views, paper, scale, exaggeration), Path(path)
+    stems = file_stems([view.name or str(k) for k, view in enumerate(views, 1)])
+    files = []
+    with drawing(8.0), mpl.rc_context({**_THIN, "svg.hashsalt": "geofit", "svg.fonttype": "path"}):
+        for number, (view, stem) in enumerate(zip(views, stems.values(), strict=True), 1):
+            file = path if len(views) == 1 else path.with_name(f"{path.stem}_{stem}{path.suffix}")
+            figure = _page(views, view, number, block, paper, chosen, exaggeration, language)
+            with replacing(file) as part:
+                figure.savefig(part, format="svg", metadata={"Date": None})
+            files.append(file)
+    return tuple(files)
+
+
+def _checked(views: Sequence[SectionView], paper: str, scale: int | None, exaggeration: float) -> int:
+    if paper not in PAPERS or not exaggeration > 0 or not views:
+        raise SettingsError(
+            message(
+                "section.sheet-settings",
+                "A sheet needs a section, paper of {papers}, and an exaggeration above 0; given: {paper}, {factor:g}.",
+                papers=", ".join(PAPERS),
+                paper=paper,
+                factor=exaggeration,
+            )
+        )
+    least = fitting_scale(views, paper, exaggeration)
+    if scale is not None and scale < least:
+        raise SettingsError(
+            message(
+                "section.scale-too-large",
+                "At 1:{scale} the sections are larger than {paper}. Choose 1:{least}, larger paper, or shorter "
+                "sections.",
+                scale=scale,
+                paper=paper,
+                least=least,
+            )
+        )
+    return least if scale is None else scale
+
+
+def _room(paper: str) -> tuple[float, float]:
+    wide, high = PAPERS[paper]
+    return wide - 2 * EDGE - LEFT - LEGEND - 4, high - 2 * EDGE - BLOCK - BELOW - 22
+
+
+def _limits(view: SectionView) -> tuple[float, float]:
+    """Return elevations of the drawing: what is shown, and a margin."""
+    low, high = view.levels
+    room = max(0.04 * (high - low), 0.5)
+    return low - room, high + room
+
+
+def _size(view: SectionView, scale: int, exaggeration: float) -> tuple[float, float]:
+    low, high = _limits(view)
+    return 1000 * view.length / scale, 1000 * exaggeration * (high - low) / scale
+
+
+def _page(
+    views: Sequence[SectionView],
+    view: SectionView,
+    number: int,
+    block: SheetTitle,
+    paper: str,
+    scale: int,
+    exaggeration: float,
+    t: Language,
+) -> Figure:
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Rectangle
+
+    wide, high = PAPERS[paper]
+    figure = Figure(figsize=(wide / 25.4, high / 25.4), dpi=72)
+
+    def box(x: float, y: float, width: float, height: float) -> None:
+        figure.add_artist(
+            Rectangle((x / wide, y / high), width / wide, height / high, fill=False, ec=INK, lw=0.7,
+                      transform=figure.transFigure)
+        )  # fmt: skip
+
+    box(EDGE, EDGE, wide - 2 * EDGE, high - 2 * EDGE)
+    room_wide, room_high = _room(paper)
+    across, up = _size(view, scale, exaggeration)
+    bottom = EDGE + BLOCK + BELOW + max((room_high - up) / 2, 0)
+    left = EDGE + LEFT + max((room_wide - across) / 2, 0)
+    axes = figure.add_axes((left / wide, bottom / high, across / wide, up / high))
+    colours = horizon_colours([*view.points, *(name for name in view.traces if name not in view.points)])
+    styles = lithology_style(lithologies(list(views)))
+    _draw(axes, view, colours, styles, scale, exaggeration, t)
+    _legend(figure, axes, view, styles, (wide, high), t)
+    _block(figure, view, number, len(views), block, (wide, high), scale, exaggeration, t, box)
+    return figure
+
+
+def _draw(
+    axes: Axes,
+    view: SectionView,
+    colours: Mapping[str, str],
+    styles: Mapping[str, tuple[str, str]],
+    scale: int,
+    exaggeration: float,
+    t: Language,
+) -> None:
+    axes.set_xlim(0, view.length)
+    axes.set_ylim(*_limits(view))
+    for bend in view.bends[1:-1]:
+        axes.axvline(bend, color=LINE, lw=0.8, zorder=0)
+    if len(view.ground):
+        axes.plot(*view.ground.T, color=GROUND, lw=1.2, label=t("ground"), zorder=3)
+    banded = False
+    for name, traces in view.traces.items():
+        told = any(one.supported for one in traces)
+        named = False
+        for one in traces:
+            first = not named and one.supported == told
+            named |= first
+            axes.plot(
+                one.distance, one.z, color=colours[name], lw=1.4 if one.supported else 1.0,
+                ls="-" if one.supported else DASHES, label=name if first else None, zorder=5,
+            )  # fmt: skip
+            if one.band is not None and one.supported and (np.diff(one.distance) >= 0).all():
+                axes.fill_between(
+                    one.distance, one.z - one.band, one.z + one.band, color=colours[name], alpha=0.18, lw=0,
+                    label=None if banded else t("90 % band"), zorder=1,
+                )  # fmt: skip
+                banded = True
+    half = COLUMN * scale / 2000
+    for hole in view.holes:
+        _column(axes, hole, half, styles)
+    for name, places in view.points.items():
+        if len(places):
+            marker = kind_style("borehole")[0]
+            axes.plot(*places.T, ls="none", marker=marker, ms=2.6, color=colours[name], mec="white", mew=0.3, zorder=6)
+    axes.set_xlabel(t("Distance along the section, m"))
+    axes.set_ylabel(t("Elevation, m"))
+    axes.yaxis.grid(True, color=LINE, lw=0.5)
+    axes.set_axisbelow(True)
+
+
+def _column(axes: Axes, hole: HoleTrack, half: float, styles: Mapping[str, tuple[str, str]]) -> None:
+    """Draw a hole with a column for each of its interval tables side by side, its name over the collar."""
+    from matplotlib.patches import Polygon
+
+    axes.plot(*hole.track.T, color=INK, lw=0.6, zorder=4)
+    tables = list(dict.fromkeys(interval.table for interval in hole.intervals))
+    for interval in hole.intervals:
+        colour, hatch = styles[interval.code]
+        left, right = (np.array([2 * half * (tables.index(interval.table) + k), 0.0]) for k in (0, 1))
+        outline = np.concatenate([interval.track + left, interval.track[::-1] + right])
+        axes.add_patch(Polygon(outline, fc=colour, ec=INK, lw=0.3, hatch=hatch, zorder=4))
+    top = hole.track[hole.track[:, 1].argmax()]
+    axes.annotate(
+        hole.name, top, xytext=(0, 3), textcoords="offset points", ha="center", va="bottom", rotation=90, size=6,
+        color=INK, zorder=7,
+    )  # fmt: skip
+
+
+def _legend(
+    figure: Figure,
+    axes: Axes,
+    view: SectionView,
+    styles: Mapping[str, tuple[str, str]],
+    paper: tuple[float, float],
+    t: Language,
+) -> None:
+    from matplotlib.lines import Line2D
+    from matplotlib.patches import Patch
+
+    wide, high = paper
+    handles, labels = axes.get_legend_handles_labels()
+    if any(not one.supported for traces in view.traces.values() for one in traces):
+        handles.append(Line2D([], [], color=MUTED, lw=1.0, ls=DASHES))
+        labels.append(t("above ground or\nbeyond the data"))
+    here = {one.code for hole in view.holes for one in hole.intervals}
+    for code, (colour, hatch) in styles.items():
+        if code in here:
+            handles.append(Patch(fc=colour, ec=INK, lw=0.3, hatch=hatch))
+            labels.append(code)
+    corner = ((wide - EDGE - LEGEND) / wide, (high - EDGE - 14) / high)
+    figure.legend(handles, labels, loc="upper left", bbox_to_anchor=corner, fontsize=6.5, borderaxespad=0)
+
+
+def _block(
+    figure: Figure,
+    view: SectionView,
+    number: int,
+    total: int,
+    block: SheetTitle,
+    paper: tuple[float, float],
+    scale: int,
+    exaggeration: float,
+    t: Language,
+    box: Any,
+) -> None:
+    """Write the title over the drawing, and the title block below it."""
+    wide, high = paper
+    name = f"{block.title} · {view.name}" if view.name else block.title
+    figure.text((EDGE + 6) / wide, (high - EDGE - 9) / high, name, size=13, weight="bold", color=INK)
+    (x0, y0), (x1, y1) = view.line[[0, -1]]
+    line = t(
+        "from ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m; holes and points within {half:g} m",
+        x0=x0, y0=y0, x1=x1, y1=y1, length=view.length, half=view.thickness / 2,
+    )  # fmt: skip
+    figure.text((EDGE + 6) / wide, (high - EDGE - 14) / high, line, size=7, color=MUTED)
+    true = t("true to scale") if exaggeration == 1 else t("elevations {factor:g} times higher", factor=exaggeration)
+    cells = (
+        (t("Project"), block.project, 0.28),
+        (t("Drawing number"), block.number, 0.16),
+        (t("Prepared"), block.author, 0.16),
+        (t("Date"), block.date, 0.12),
+        (t("Scale"), f"1:{scale} · {true}", 0.2),
+        (t("Sheet"), f"{number} / {total}", 0.08),
+    )
+    at, width = EDGE, wide - 2 * EDGE
+    for word, value, share in cells:
+        box(at, EDGE, share * width, BLOCK - 8)
+        figure.text((at + 2) / wide, (EDGE + BLOCK - 12) / high, word, size=6, color=MUTED)
+        figure.text((at + 2) / wide, (EDGE + 4) / high, value, size=8.5, color=INK)
+        at += share * width

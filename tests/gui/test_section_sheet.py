@@ -1,0 +1,86 @@
+"""The section sheet through its dialog: sections along an axis, files beside the project, and what was written said."""
+
+from __future__ import annotations
+
+import pypdfium2
+import pytest
+from panel_samples import SITE, fitted, sample_site
+from PySide6.QtCore import Qt
+
+from geofit.gui.dialogs.section_sheet import SectionSheetDialog
+from geofit.project.commands import SetSurface
+
+NAME = "T3-T2"
+
+
+@pytest.fixture
+def shown(app):
+    app.desktop.session.begin(sample_site(), SITE)
+    recipe = app.document.recipe(NAME)
+    app.document.put(recipe, fitted())
+    app.window.fitting.push(SetSurface(recipe))
+    app.idle()
+    return app
+
+
+def opened(shown, qtbot, folder):
+    showing = shown.window.showing
+    showing.begin_section()
+    site, surfaces = shown.document.site_in_use(), shown.document.surfaces()
+    dialog = SectionSheetDialog(site, surfaces, showing.line, 50.0, {}, folder)
+    qtbot.addWidget(dialog)
+    dialog.show()
+    return dialog
+
+
+def test_sections_every_so_many_metres_as_pdf_and_dxf(shown, qtbot, tmp_path, monkeypatch):
+    said = []
+
+    def drive(dialog):
+        dialog.show()
+        assert not dialog.spacing.isEnabled()
+        dialog.which.setCurrentIndex(dialog.which.findData("across"))
+        assert dialog.spacing.isEnabled()
+        dialog.spacing.setValue(700.0)
+        dialog.half.setValue(150.0)
+        dialog.project.setText("上坝址")
+        dialog.forms["dxf"].setChecked(True)
+        dialog.target.setText(str(tmp_path / "sheet.pdf"))
+        qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+        qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+        said.append(dialog.message.text())
+        dialog.close()
+
+    monkeypatch.setattr(SectionSheetDialog, "exec", drive)
+    shown.trigger("section_sheet")
+    assert (tmp_path / "sheet.dxf").is_file()
+    pdf = pypdfium2.PdfDocument(tmp_path / "sheet.pdf")
+    words = [page.get_textpage().get_text_range() for page in pdf]
+    pdf.close()
+    assert len(words) >= 2
+    assert "0+700" in words[1]
+    assert "上坝址" in words[0]
+    assert str(tmp_path / "sheet.pdf") in said[0]
+    assert "1:" in said[0]
+    assert str(tmp_path / "sheet.dxf") in shown.window.statusBar().currentMessage()
+
+
+def test_files_are_proposed_beside_the_project_and_nothing_is_written_without_a_form(shown, qtbot):
+    dialog = opened(shown, qtbot, shown.document.folder)
+    assert dialog.target.text() == str(SITE.resolve().parent / "sections")
+    assert dialog.go.isEnabled()
+    dialog.forms["pdf"].setChecked(False)
+    assert not dialog.go.isEnabled()
+    dialog.which.setCurrentIndex(dialog.which.findData("sections"))
+    assert list(dialog.lines()) == [section.name for section in shown.document.site.sections]
+
+
+def test_a_scale_that_does_not_fit_is_said_and_leaves_nothing(shown, qtbot, tmp_path):
+    folder = tmp_path / "out"
+    folder.mkdir()
+    dialog = opened(shown, qtbot, folder)
+    dialog.scale.setCurrentIndex(dialog.scale.findData(100))
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+    assert "At 1:100 the sections are larger than A3" in dialog.message.text()
+    assert not list(folder.iterdir())
