@@ -27,6 +27,8 @@ def run_site(
     pdf: bool = False,
     apart: bool = False,
     bands: bool = False,
+    scheduler: str | None = None,
+    workers: int | None = None,
 ) -> int:
     """Fit, write and report the horizons of a site; print what was found; return the exit code."""
     from geofit.data.accuracy import plain
@@ -37,7 +39,17 @@ def run_site(
     print_issues(site.issues, str(out / "import_issues.csv"))
     print_counts(site.counts)
     delivery = deliver(
-        site, out, horizons, changes, progress, language=language or EN, pdf=pdf, apart=apart, bands=bands
+        site,
+        out,
+        horizons,
+        changes,
+        progress,
+        language=language or EN,
+        pdf=pdf,
+        apart=apart,
+        bands=bands,
+        scheduler=scheduler,
+        workers=workers,
     )
     if as_json:
         print_json(

@@ -72,6 +72,8 @@ def deliver(
     pdf: bool = False,
     apart: bool = False,
     bands: bool = False,
+    scheduler: str | None = None,
+    workers: int | None = None,
 ) -> Delivery:
     """Fit horizons of a site, examine them, and write everything that belongs to them.
 
@@ -100,6 +102,8 @@ def deliver(
         Whether horizons of the site's order that cross are separated (:func:`geofit.separate_horizons`).
     bands : bool
         Whether ``_upper90.step`` and ``_lower90.step`` are written: the rock lies between them with 90 %.
+    scheduler, workers : str, int, optional
+        Where the horizons are fitted side by side; see :func:`geofit.fit_site`.
 
     Raises
     ------
@@ -122,7 +126,8 @@ def deliver(
     # Also when there is nothing to list: a file of an earlier run would mislead.
     _make(out)
     _write_issues(site, out, language)
-    fits = fit_site(site, names, changes, _within(progress, 0.0, FITS), apart=apart)
+    listen = _within(progress, 0.0, FITS)
+    fits = fit_site(site, names, changes, listen, apart=apart, scheduler=scheduler, workers=workers)
     stems = file_stems(fits.surfaces)
     results: list[HorizonResult] = []
     images: dict[str, bytes] = {}
