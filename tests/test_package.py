@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 #: folder and those below; names imported inside functions count.
 FLOORS = (
     "data", "sample", "splines", "geometry", "implicit", "surfaces", "sampling", "cad", "checks", "fitting",
-    "prediction", "site", "bodies", "pores", "medial", "caves", "io", "report", "project", "cli", "gui",
+    "streaming", "prediction", "site", "bodies", "pores", "medial", "caves", "io", "report", "project", "cli", "gui",
 )  # fmt: skip
 FLOOR = {folder: height for height, folder in enumerate(FLOORS)}
 #: Who alone may import these, at the named places.

@@ -17,10 +17,12 @@ from geofit.cli.options import (
     Frame,
     Json,
     Out,
+    Scheduler,
     Seam,
     SectionColumn,
     Sep,
     SurfaceColumn,
+    Workers,
     X,
     Y,
     Z,
@@ -40,7 +42,10 @@ def _help(setting: str, default: str) -> str:
 @app.command()
 @guarded
 def fit(
-    source: Annotated[Path, typer.Argument(metavar="SITE_OR_CSV", help="site.toml, or a table of points.")],
+    source: Annotated[
+        Path,
+        typer.Argument(metavar="SITE_OR_CSV", help="site.toml, a table of points, or a cloud (LAS, LAZ, Parquet)."),
+    ],
     out: Out,
     horizon: Annotated[list[str] | None, typer.Option(help="Fit this horizon only; may be repeated.")] = None,
     epsilon: Annotated[float | None, typer.Option(help=_help("epsilon", "0.5"))] = None,
@@ -89,6 +94,12 @@ def fit(
         bool,
         typer.Option("--bands", help="Write NAME_upper90.step and NAME_lower90.step: 90 % of the rock between them."),
     ] = False,
+    stream: Annotated[
+        bool,
+        typer.Option("--stream", help="Read the table as a cloud, never whole; tables above 512 MB always are."),
+    ] = False,
+    scheduler: Scheduler = None,
+    workers: Workers = None,
     as_json: Json = False,
 ) -> int:
     """Fit horizons, check them, and write STEP, reports, tables and pictures."""
@@ -112,9 +123,22 @@ def fit(
     columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "sep": sep, "decimal": decimal}
     columns["crs"] = crs
     FitSettings(**changes)  # a bad value is told before files are read
+    from geofit.io.clouds import is_cloud
+
+    if source.suffix.casefold() != ".toml" and (stream or is_cloud(source)):
+        from geofit.cli.cloud import fit_cloud_file
+
+        only = [word for word, given in (("--repair", apart), ("--bands", bands), ("--crs", crs)) if given]
+        return fit_cloud_file(
+            source, out, columns, horizon, boundary, changes, only, scheduler or "local", workers, as_json
+        )
     with listening() as progress:
         site = read_source(source, columns, boundary)
-        return run_site(site, out, tuple(horizon or ()), changes, as_json, progress, apart=apart, bands=bands)
+        where = scheduler or ("local" if workers else None)
+        names = tuple(horizon or ())
+        return run_site(
+            site, out, names, changes, as_json, progress, apart=apart, bands=bands, scheduler=where, workers=workers
+        )
 
 
 def _core(text: str | None) -> str | tuple[tuple[float, float], ...] | None:

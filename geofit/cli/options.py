@@ -52,6 +52,13 @@ Crs = Annotated[
     str | None,
     typer.Option("--crs", help="CSV: grid of the site, EPSG:number; longitude and latitude are projected to it."),
 ]
+Scheduler = Annotated[
+    str | None,
+    typer.Option(
+        help="Fit side by side: local (processes), tcp://host:port of a Dask scheduler, or the file that it writes."
+    ),
+]
+Workers = Annotated[int | None, typer.Option(min=1, help="Local processes. Default: one a processor.")]
 Tolerance = Annotated[float, typer.Option(help="Largest distance of triangles and lines from the surface, m.")]
 FORMATS = (
     "step, iges, brep, dxf (contours), dxf-mesh, ifc, landxml, tsurf, geoh5, omf, vtp, vtm, obj, ply, stl, glb, "

@@ -101,7 +101,7 @@ def covariance(plane: Rows) -> tuple[Floats, Floats]:
 
 def spread(z: Rows) -> float:
     """Return the standard deviation of (n,) values, the largest one of (n, k)."""
-    if isinstance(z, np.ndarray) and len(z) <= BLOCK:
-        return float(np.std(z, axis=0).max())
+    if len(z) <= BLOCK:
+        return float(np.std(z[:BLOCK], axis=0).max())
     columns = z if z.ndim > 1 else LongArray((len(z), 1), lambda start, stop: z[start:stop].reshape(-1, 1))
     return float(np.sqrt(np.diag(covariance(columns)[1]).max() / len(z)))

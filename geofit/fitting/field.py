@@ -137,9 +137,9 @@ def precision_band(space: TensorSpace, field: Field) -> Floats:
 
 def drift_of(plane: Rows) -> Floats:
     """Return (3, r) the combinations of 1, u, v that (n, 2) places determine: no slope across a line of points."""
-    if isinstance(plane, np.ndarray) and len(plane) <= BLOCK:
-        centre = plane.mean(axis=0)
-        _, size, axes = np.linalg.svd(plane - centre, full_matrices=False)
+    if len(plane) <= BLOCK:
+        centre = plane[:BLOCK].mean(axis=0)
+        _, size, axes = np.linalg.svd(plane[:BLOCK] - centre, full_matrices=False)
     else:
         centre, products = covariance(plane)
         squares, columns = np.linalg.eigh(products)

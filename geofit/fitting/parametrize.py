@@ -20,7 +20,7 @@ from geofit.fitting.fold import Loft, backtracking, loft
 from geofit.fitting.sections import section_labels
 from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
 
-__all__ = ["Chart", "choose_chart"]
+__all__ = ["STEEP", "Chart", "box_of", "choose_chart", "direction_of"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -88,7 +88,7 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
         return _section_chart(points, reason)
     section = section_labels(points)
     upright = kind == "best-plane"
-    frame = best_plane_frame(points) if upright else map_frame(points, _direction(section, points, boundary))
+    frame = best_plane_frame(points) if upright else map_frame(points, direction_of(section, points, boundary))
     local = frame.to_local(points.xyz)
     places: Sequence[Floats] = [local[:, :2]]
     notes = [reason]
@@ -112,7 +112,7 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
             )
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)
-    return Chart(frame, local[:, :2], local[:, 2], _box(np.concatenate(places)), tuple(notes), placed, section)
+    return Chart(frame, local[:, :2], local[:, 2], box_of(np.concatenate(places)), tuple(notes), placed, section)
 
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]:
@@ -166,7 +166,7 @@ def _dip(points: PointSet, plane: Frame) -> float:
     return float(np.degrees(np.arccos(np.clip(plane.axes[2, 2], -1, 1))))
 
 
-def _direction(section: NDArray[np.str_], points: PointSet, boundary: Floats | None) -> float | None:
+def direction_of(section: NDArray[np.str_], points: PointSet, boundary: Floats | None) -> float | None:
     """Return the direction of v: along the sections, else along a tilted study area's longer side."""
     along = section_azimuth(points.xyz[:, :2], section)
     if along is not None or boundary is None or len(boundary) < 3:
@@ -196,11 +196,12 @@ def _section_chart(points: PointSet, reason: Message) -> Chart:
         raise FitError(text)
     frame = replace(map_frame(points), kind="sections")
     local = frame.to_local(points.xyz)
-    area = _box(surface.plane[surface.on_line])
+    area = box_of(surface.plane[surface.on_line])
     return Chart(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
 
 
-def _box(plane: Floats) -> Rectangle:
+def box_of(plane: Floats) -> Rectangle:
+    """Return the rectangle of (n, 2) places, at least a strip wide."""
     low, high = (np.array([end(axis) for axis in plane.T]) for end in (np.min, np.max))
     # A line of points still needs a strip to stand on.
     extent = float((high - low).max())

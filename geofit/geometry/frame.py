@@ -7,9 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.long_arrays import covariance
 from geofit.data.points import PointSet
 
-__all__ = ["Frame", "best_plane_frame", "map_frame", "section_azimuth"]
+__all__ = ["Frame", "best_plane_frame", "map_frame", "plane_axes", "section_azimuth"]
 
 Floats = NDArray[np.float64]
 
@@ -84,16 +85,20 @@ def map_frame(points: PointSet, along: float | None = None) -> Frame:
 
 def best_plane_frame(points: PointSet) -> Frame:
     """Return a frame over the plane of least squares: u along the strike, v up the dip, w upwards."""
-    xyz = points.xyz - points.xyz.mean(axis=0)
     # Eigenvectors of the 3 x 3 moments: a million points need no decomposition of their own.
-    normal = np.linalg.eigh(xyz.T @ xyz)[1][:, 0]
+    return Frame(_origin(points.xyz), plane_axes(covariance(points.xyz)[1]), "best-plane")
+
+
+def plane_axes(products: Floats) -> Floats:
+    """Return the (3, 3) axes of the plane of least squares from the products of coordinates about their mean."""
+    normal = np.linalg.eigh(products)[1][:, 0]
     if normal[2] < 0:
         normal = -normal
     strike = np.cross([0.0, 0.0, 1.0], normal)
     if np.linalg.norm(strike) < 1e-9:
         strike = np.array([1.0, 0.0, 0.0])
     strike /= np.linalg.norm(strike)
-    return Frame(_origin(points.xyz), np.array([strike, np.cross(normal, strike), normal]), "best-plane")
+    return np.array([strike, np.cross(normal, strike), normal])
 
 
 def _origin(xyz: Floats) -> Floats:

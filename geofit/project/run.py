@@ -71,6 +71,7 @@ def deliver(
     pdf: bool = False,
     apart: bool = False,
     bands: bool = False,
+    scheduler: str | None = None,
     workers: int = 1,
 ) -> Delivery:
     """Fit horizons of a site, examine them, and write everything that belongs to them.
@@ -100,9 +101,11 @@ def deliver(
         Whether horizons of the site's order that cross are separated (:func:`geofit.separate_horizons`).
     bands : bool
         Whether ``_upper90.step`` and ``_lower90.step`` are written: the rock lies between them with 90 %.
+    scheduler : str, optional
+        Where the horizons are fitted side by side; see :func:`geofit.fit_site`. None: one after another.
     workers : int
-        Processes that examine and draw horizons side by side; 1: none, all is done here. A script that asks for more
-        needs the guard ``if __name__ == "__main__"``.
+        Processes that fit (with a scheduler), examine and draw horizons side by side; 1: none, all is done here. A
+        script that asks for more needs the guard ``if __name__ == "__main__"``.
 
     Raises
     ------
@@ -124,7 +127,8 @@ def deliver(
     _make(out)
     _write_issues(site, out, language)
     with crew(min(workers, len(names))) as hands:
-        fits = fit_site(site, names, changes, _within(progress, 0.0, FITS), apart=apart)
+        listen = _within(progress, 0.0, FITS)
+        fits = fit_site(site, names, changes, listen, apart=apart, scheduler=scheduler, workers=workers)
         return _deliver(site, fits, out, hands, progress, language, date, pdf, bands)
 
 

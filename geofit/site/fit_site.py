@@ -9,9 +9,12 @@ from functools import partial
 from itertools import combinations
 from typing import Any
 
+import numpy as np
+
 from geofit.data.errors import FitError, PointsError, SettingsError
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
+from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
@@ -22,6 +25,7 @@ from geofit.site.order import Order, compare_horizons
 from geofit.site.separate import Contradiction, separate_horizons
 from geofit.site.site_checks import check_surroundings
 from geofit.site.throw import FaultCut
+from geofit.streaming.executors import run_tasks
 
 __all__ = ["SiteFit", "compare", "fit_site"]
 
@@ -58,6 +62,8 @@ def fit_site(
     progress: Progress | None = None,
     *,
     apart: bool = False,
+    scheduler: str | None = None,
+    workers: int | None = None,
 ) -> SiteFit:
     """Fit horizons of a site, and ask of each what the dips and the ground of the site say.
 
@@ -73,6 +79,9 @@ def fit_site(
         Called as ``progress("horizon: stage", fraction)``.
     apart : bool
         Whether horizons of ``site.order`` that cross are pushed apart (:func:`geofit.site.separate.separate_horizons`).
+    scheduler, workers : str, int, optional
+        Where the horizons are fitted, side by side (:func:`geofit.streaming.executors.run_tasks`); by default one after
+        the other in this process. The surfaces are the same.
 
     Returns
     -------
@@ -83,14 +92,30 @@ def fit_site(
     ------
     Cancelled
         If ``progress`` returned False.
+    SchedulerError
+        If the scheduler is lost.
 
     Notes
     -----
     Each horizon as :func:`geofit.fit_horizon` does it; each block of a faulted one as :func:`geofit.fit_blocks`.
     """
     names = tuple(names) or tuple(site.horizons)
-    fits = _Fits(site, changes or {})
-    found = SiteFit()
+    if scheduler is None:
+        found = _one_by_one(site, names, changes or {}, progress)
+    else:
+        found = _side_by_side(site, names, changes or {}, progress, scheduler, workers)
+    if apart:
+        tell(progress, "repair", 1.0)
+        _push_apart(site, found)
+    found.surfaces = {
+        name: check_surroundings(surface, site, "" if found.horizon[name] == name else found.horizon[name])
+        for name, surface in found.surfaces.items()
+    }
+    return found
+
+
+def _one_by_one(site: Site, names: Sequence[str], changes: Mapping[str, Any], progress: Progress | None) -> SiteFit:
+    fits, found = _Fits(site, changes), SiteFit()
     for k, name in enumerate(names):
 
         def listen(stage: str | Message, fraction: float, /, name: str = name, k: int = k) -> None:
@@ -104,14 +129,42 @@ def fit_site(
             found.failures[name] = reason
 
         guarded(partial(fits.add, name, found, listen), None, failed)
-    if apart:
-        tell(progress, "repair", 1.0)
-        _push_apart(site, found)
-    found.surfaces = {
-        name: check_surroundings(surface, site, "" if found.horizon[name] == name else found.horizon[name])
-        for name, surface in found.surfaces.items()
-    }
     return found
+
+
+def _side_by_side(
+    site: Site,
+    names: Sequence[str],
+    changes: Mapping[str, Any],
+    progress: Progress | None,
+    scheduler: str,
+    workers: int | None,
+) -> SiteFit:
+    """Fit each horizon with the faults that cut it where a scheduler sends it, and put all together in their order."""
+    tasks = [(_alone(site, name), name, dict(changes)) for name in names]
+    parts: dict[int, SiteFit] = {}
+    for k, part in run_tasks(_fitted_alone, tasks, scheduler, workers):
+        parts[k] = part
+        text = message("run.stage-of", "{name}: {stage}", name=names[k], stage="done")
+        tell(progress, text, len(parts) / len(names))
+    found = SiteFit()
+    for _, part in sorted(parts.items()):
+        for name in ("surfaces", "horizon", "seconds", "failures", "faults"):
+            getattr(found, name).update(getattr(part, name))
+        found.cuts += part.cuts
+    return found
+
+
+def _alone(site: Site, name: str) -> Site:
+    """Return the site with the points of one horizon and its faults alone; of the others the names stay."""
+    needed = {name, *(fault for fault, cut in site.faults.items() if name in cut)}
+    empty = PointSet(np.empty((0, 3)))
+    return replace(site, horizons={key: one if key in needed else empty for key, one in site.horizons.items()})
+
+
+def _fitted_alone(task: tuple[Site, str, dict[str, Any]]) -> SiteFit:
+    site, name, changes = task
+    return _one_by_one(site, (name,), changes, None)
 
 
 class _Fits:

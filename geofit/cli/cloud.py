@@ -1,0 +1,63 @@
+"""``geofit fit`` of a cloud: what it takes of the options, and what it prints."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from geofit.cli.console import listening, print_issues, print_json, say
+from geofit.data.errors import InputError
+from geofit.data.messages import message
+
+__all__ = ["fit_cloud_file"]
+
+
+def fit_cloud_file(
+    source: Path,
+    out: Path,
+    columns: Mapping[str, str | None],
+    horizons: Sequence[str] | None,
+    boundary: Path | None,
+    changes: dict[str, Any],
+    refused: Sequence[str],
+    scheduler: str,
+    workers: int | None,
+    as_json: bool,
+) -> int:
+    """Fit one surface to a file of points that need not fit into the memory; return the exit code."""
+    from geofit.io.boundary import read_boundary
+    from geofit.io.clouds import open_cloud
+    from geofit.project.cloud_run import deliver_cloud
+
+    if refused or len(horizons or ()) > 1:
+        raise InputError(
+            message("cli.not-for-clouds", "{option} is not for clouds", option=refused[0] if refused else "--horizon"),
+            message("cli.cloud-one-surface", "A cloud makes one surface over its own coordinates."),
+            file=str(source),
+        )
+    roles = {"x": columns.get("x"), "y": columns.get("y"), "z": columns.get("z"), "horizon": columns.get("surface")}
+    name = horizons[0] if horizons else None
+    cloud = open_cloud(source, roles, name, columns.get("sep"), columns.get("decimal"))
+    area = None if boundary is None else read_boundary(boundary)
+    with listening() as progress:
+        done = deliver_cloud(cloud, out, changes, area, progress, scheduler=scheduler, workers=workers)
+    print_issues(cloud.issues, str(out / f"{done.files[0].stem}_import_issues.csv"))
+    accuracy = done.accuracy
+    if as_json:
+        print_json(done.figures)
+        return done.exit_code
+    say(
+        message(
+            "cli.cloud-result",
+            "{name}: {n} points, sigma {sigma:.4g} m, largest {largest:.4g} m, epsilon {epsilon:g} m: {verdict}",
+            name=done.fit.surface.name,
+            n=done.fit.n,
+            sigma=accuracy.sigma,
+            largest=accuracy.max_abs,
+            epsilon=accuracy.epsilon,
+            verdict="PASS" if accuracy.passed else "FAIL",
+        )
+    )
+    say(message("cli.cloud-files", "Surface, figures, grid of deviations and distances are in {folder}", folder=out))
+    return done.exit_code

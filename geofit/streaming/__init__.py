@@ -1,0 +1,1 @@
+"""Clouds of points that are longer than the memory, and many tasks on several processors or machines."""

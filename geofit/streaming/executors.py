@@ -1,0 +1,190 @@
+"""Many tasks on the processors of this machine, or on those of a Dask cluster, by the same call.
+
+``"local"`` starts processes of this machine; ``"tcp://host:port"`` is the address of a Dask scheduler, and the path of
+a file the one that a Dask scheduler writes (``dask scheduler --scheduler-file FILE``, as jobs of Slurm do). A task is a
+function of one argument; its result does not depend on where it runs. A worker that dies costs its task a second try.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import multiprocessing
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
+from pathlib import Path
+from typing import Any, TypeVar
+
+from geofit.data.errors import GeofitError, MissingDependencyError, SettingsError
+from geofit.data.messages import message
+
+__all__ = ["WORKERS", "SchedulerError", "run_tasks"]
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+#: Processes of this machine.
+WORKERS = max(1, os.cpu_count() or 1)
+#: Workers that may die over one and the same task before it is given up.
+TRIES = 3
+#: Seconds within which a scheduler must answer.
+PATIENCE = 20
+#: Seconds between two looks at a cluster.
+LOOK = 0.02
+
+
+class SchedulerError(GeofitError):
+    """A scheduler is lost, or workers die again and again; what was ready stays."""
+
+
+def run_tasks(
+    work: Callable[[T], R], tasks: Sequence[T], scheduler: str = "local", workers: int | None = None
+) -> Iterator[tuple[int, R]]:
+    """Yield the place of each task and its result, as they get ready.
+
+    Parameters
+    ----------
+    work : callable
+        A function at the top of a module, of one argument that can be sent to another process.
+    tasks : sequence
+        Its arguments.
+    scheduler : str
+        "local", the address of a Dask scheduler, or the path of its file.
+    workers : int, optional
+        Number of local processes; by default as many as there are processors. With one, no process is started.
+
+    Raises
+    ------
+    SchedulerError
+        If the scheduler cannot be reached or is lost, or workers die over one task.
+    MissingDependencyError
+        If a Dask scheduler is named and the extra ``scale`` is not installed.
+    """
+    if scheduler == "local":
+        count = min(workers or WORKERS, len(tasks))
+        if count <= 1:
+            yield from ((k, work(task)) for k, task in enumerate(tasks))
+        else:
+            yield from _on_processes(work, tasks, count)
+    else:
+        yield from _on_dask(work, tasks, scheduler)
+
+
+def _on_processes(work: Callable[[T], R], tasks: Sequence[T], count: int) -> Iterator[tuple[int, R]]:
+    """Run tasks in processes; where one dies all are started anew, and what was under way is tried again."""
+    left, tried = dict(enumerate(tasks)), [0] * len(tasks)
+    while left:
+        pool = ProcessPoolExecutor(count, multiprocessing.get_context("spawn"), initializer=_one_thread)
+        waiting = iter(list(left))
+        running: dict[Future[R], int] = {}
+        try:
+            while True:
+                # Few tasks at a time: what has not begun is not counted as tried.
+                for k in itertools.islice(waiting, count + 1 - len(running)):
+                    running[pool.submit(work, left[k])] = k
+                if not running:
+                    break
+                done, _ = wait(running, return_when=FIRST_COMPLETED)
+                for future in done:
+                    result = future.result()
+                    k = running.pop(future)
+                    del left[k]
+                    yield k, result
+        except BrokenProcessPool:
+            for k in running.values():
+                tried[k] += 1
+                if tried[k] >= TRIES:
+                    raise SchedulerError(
+                        message(
+                            "streaming.workers-die",
+                            "Worker processes died {count} times over task {task} of {total}, perhaps for want of "
+                            "memory. Free memory, or use fewer workers; what was ready is kept.",
+                            count=TRIES,
+                            task=k + 1,
+                            total=len(tasks),
+                        )
+                    ) from None
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _one_thread() -> None:
+    """Keep each process to one thread: there are as many processes as processors."""
+    from threadpoolctl import threadpool_limits
+
+    threadpool_limits(limits=1)
+
+
+def _on_dask(work: Callable[[T], R], tasks: Sequence[T], scheduler: str) -> Iterator[tuple[int, R]]:
+    client, distributed = _client(scheduler)
+    total = len(tasks)
+    try:
+        futures = {k: client.submit(work, task, pure=False) for k, task in enumerate(tasks)}
+        while futures:
+            ready = [k for k, future in futures.items() if future.status in ("finished", "error")]
+            for k in ready:
+                result = futures[k].result()
+                del futures[k]
+                yield k, result
+            gone = any(future.status in ("cancelled", "lost") for future in futures.values())
+            if gone or client.status != "running":
+                raise _lost(scheduler, total - len(futures), total)
+            if not ready:
+                time.sleep(LOOK)
+    except (OSError, distributed.CancelledError, distributed.KilledWorker):
+        raise _lost(scheduler, total - len(futures), total) from None
+    finally:
+        with contextlib.suppress(Exception):  # the result is known; a cluster that is gone cannot be left politely
+            client.close(timeout=2)
+
+
+def _client(scheduler: str) -> tuple[Any, Any]:
+    try:
+        import distributed
+    except ImportError as error:
+        raise MissingDependencyError(
+            message(
+                "streaming.needs-dask",
+                "The scheduler {scheduler} needs Dask, which cannot be imported ({error}). Install it: pip install "
+                "'geofit[scale]', or use --scheduler local.",
+                scheduler=scheduler,
+                error=error,
+            )
+        ) from None
+    if "://" not in scheduler and not Path(scheduler).is_file():
+        raise SettingsError(
+            message(
+                "streaming.unknown-scheduler",
+                "The scheduler '{scheduler}' is neither 'local', nor an address (tcp://host:port), nor a scheduler "
+                "file that is there.",
+                scheduler=scheduler,
+            )
+        )
+    named = {"address": scheduler} if "://" in scheduler else {"scheduler_file": scheduler}
+    try:
+        return distributed.Client(**named, timeout=PATIENCE, set_as_default=False), distributed
+    except (OSError, TimeoutError, ValueError):
+        raise SchedulerError(
+            message(
+                "streaming.no-scheduler",
+                "No scheduler answers at {scheduler} within {seconds} s. Check the address and that it runs.",
+                scheduler=scheduler,
+                seconds=PATIENCE,
+            )
+        ) from None
+
+
+def _lost(scheduler: str, ready: int, total: int) -> SchedulerError:
+    return SchedulerError(
+        message(
+            "streaming.scheduler-lost",
+            "The scheduler at {scheduler} or its workers are lost; {ready} of {total} tasks are ready and kept. Start "
+            "the same command again: it goes on with the others.",
+            scheduler=scheduler,
+            ready=ready,
+            total=total,
+        )
+    )
