@@ -1,4 +1,4 @@
-"""Fit bodies to the logs of Copper Creek and write docs/real_bodies.md; with ``--planted N``, print the coverage.
+"""Fit bodies to the logs of Copper Creek and write docs/real_bodies.md; with ``--planted N``, score planted bodies.
 
 The data are looked for in GEOFIT_DATA, else in ../shared/data next to the repository.
 """
@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +21,8 @@ from geofit.io.boreholes import read_boreholes
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "real_bodies.md"
 CODES = 4
+#: Classes of the probability of lying inside.
+LIMITS = (0.01, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 0.99)
 
 
 def write_page(data: Path) -> None:
@@ -58,28 +61,44 @@ def write_page(data: Path) -> None:
 
 
 def planted(count: int) -> None:
-    """Print how often P10 to P90 holds the true volume of planted bodies."""
+    """Print how well volumes, their P10 to P90 and the probability of planted bodies of ten kinds hold."""
     sys.path.insert(0, str(ROOT / "tests"))
-    from bodies.planted import SIZE, drilled, ellipsoid, pair, torus
+    from bodies.planted import ORIGIN, SIZE
+    from bodies.shapes import KINDS, case
 
-    held, errors = [], []
+    from geofit.bodies.posterior import Posterior
+
+    held: dict[str, list[bool]] = {kind: [] for kind in KINDS}
+    errors: dict[str, list[float]] = {kind: [] for kind in KINDS}
+    chance, truth, wrong = [], [], 0
     for seed in range(count):
-        rng = np.random.default_rng(1000 + seed)
-        kind = seed % 3
-        if kind == 0:
-            a, b, c = rng.uniform(0.25, 0.65, 3).tolist()
-            (truth, volume), rows = ellipsoid((a, b, c)), 7
-        elif kind == 1:
-            (truth, volume), rows = torus(rng.uniform(0.45, 0.6), rng.uniform(0.2, 0.28)), 9
-        else:
-            (truth, volume), rows = pair(), 9
-        body = fit_body(drilled(truth, seed, rows=rows, step=(0.04, 0.02, 0.06)[seed // 3 % 3]))
+        one = case(seed)
+        if len(one.data.contacts) < 6:
+            print(f"{seed} ({one.kind}): {len(one.data.contacts)} contacts only, not fitted")
+            continue
+        body, volume = fit_body(one.data), one.volume()
         volumes = body.volumes()
-        held.append(volumes.p10 < volume * SIZE**3 < volumes.p90)
-        errors.append(volumes.best / (volume * SIZE**3) - 1)
-    middle, worst = np.median(np.abs(errors)), np.abs(errors).max()
-    print(f"{count} bodies: P10-P90 holds {np.mean(held):.1%}")
-    print(f"error of the volume: median {middle:.1%}, mean {np.mean(errors):+.1%}, worst {worst:.1%}")
+        held[one.kind].append(volumes.p10 < volume < volumes.p90)
+        errors[one.kind].append(volumes.best / volume - 1)
+        assert body.accuracy is not None
+        wrong += body.accuracy.wrong_side
+        places = np.random.default_rng(seed).uniform(-0.9, 0.9, (3000, 3))
+        chance.append(Posterior(body).probability(places * SIZE + ORIGIN))
+        truth.append(one.truth(places) < 0)
+    for kind, found in errors.items():
+        if found:
+            middle, worst = np.median(np.abs(found)), np.abs(found).max()
+            print(
+                f"{kind:<20}{len(found):>4}: volume median {middle:.1%}, mean {np.mean(found):+.1%}, "
+                f"worst {worst:.1%}; P10-P90 holds {np.mean(held[kind]):.0%}"
+            )
+    every, hold = np.concatenate(list(errors.values())), np.concatenate(list(held.values()))
+    print(f"all {len(every)}: median {np.median(np.abs(every)):.1%}, mean {every.mean():+.1%}, holds {hold.mean():.1%}")
+    print(f"samples on the wrong side: {wrong}")
+    p, inside = np.concatenate(chance), np.concatenate(truth)
+    for low, high in pairwise(LIMITS):
+        own = (p > low) & (p <= high)
+        print(f"P {low:.2f}-{high:.2f}: {own.sum():>6} places, mean {p[own].mean():.3f}, true {inside[own].mean():.3f}")
 
 
 def main() -> int:

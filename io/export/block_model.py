@@ -1,12 +1,15 @@
-"""Block model of a body as CSV: centre, edge, field and chance of lying inside."""
+"""Block model of a body as CSV, OMF or geoh5: centre, edge, field and chance of lying inside."""
 
 from __future__ import annotations
 
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from geofit.bodies.blocks import block_model
+from geofit.bodies.blocks import BlockModel, block_model
+from geofit.data.errors import InputError
 from geofit.data.files import replacing
+from geofit.data.messages import message
 
 if TYPE_CHECKING:
     from geofit.bodies.body import ImplicitBody
@@ -15,10 +18,11 @@ __all__ = ["write_block_model"]
 
 
 def write_block_model(body: ImplicitBody, path: str | PathLike[str], spacing: float | None = None) -> None:
-    """Write every block around a body.
+    """Write every block around a body, in the format of the file's ending.
 
-    Columns: ``x``, ``y``, ``z`` of the centre in map coordinates and the edge ``size``, metres; ``field``, negative
-    inside, near the surface about the distance in metres; ``probability`` that the centre lies inside.
+    ``.csv``: columns ``x``, ``y``, ``z`` of the centre in map coordinates and the edge ``size``, metres; ``field``,
+    negative inside, near the surface about the distance in metres; ``probability`` that the centre lies inside.
+    ``.omf`` and ``.geoh5``: a block model with ``field`` and ``probability`` at its cells.
 
     Parameters
     ----------
@@ -31,10 +35,33 @@ def write_block_model(body: ImplicitBody, path: str | PathLike[str], spacing: fl
 
     Raises
     ------
+    InputError
+        If the file's ending is none of these.
+    MissingDependencyError
+        If h5py, which writes geoh5, is not installed.
     SettingsError
         If the spacing is not a length, or gives more than five million blocks.
     """
-    model = block_model(body, spacing)
+    ending = Path(path).suffix.casefold()
+    if ending == ".omf":
+        from geofit.io.export.omf import write_omf_blocks
+
+        write_omf_blocks({body.name: block_model(body, spacing)}, path)
+    elif ending == ".geoh5":
+        from geofit.io.export.geoh5 import write_geoh5_blocks
+
+        write_geoh5_blocks({body.name: block_model(body, spacing)}, path)
+    elif ending == ".csv":
+        _write_csv(block_model(body, spacing), path)
+    else:
+        raise InputError(
+            message("export.block-model-ending", "A block model cannot be written as '{ending}'", ending=ending),
+            message("export.block-model-endings", "Name the file .csv, .omf or .geoh5."),
+            file=str(path),
+        )
+
+
+def _write_csv(model: BlockModel, path: str | PathLike[str]) -> None:
     rows = zip(*model.centres.T.tolist(), model.value.tolist(), model.probability.tolist(), strict=True)
     with replacing(path) as part, part.open("w", encoding="utf-8", newline="\n") as out:
         out.write("x,y,z,size,field,probability\n")

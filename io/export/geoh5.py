@@ -1,4 +1,4 @@
-"""geoh5 2.1 (HDF5): triangles of horizons and data points with their deviations.
+"""geoh5 2.1 (HDF5): triangles of horizons, data points with their deviations, block models of bodies.
 
 Layout: Mira Geoscience, "GEOH5 format", https://mirageoscience-geoh5py.readthedocs-hosted.com. Written with
 h5py alone: geoh5py, which reads it in the tests, holds numpy below 2.
@@ -10,7 +10,7 @@ import uuid
 from collections.abc import Mapping
 from io import BytesIO
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +22,18 @@ from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
 from geofit.io.extra import need
 
-__all__ = ["write_geoh5"]
+if TYPE_CHECKING:
+    from geofit.bodies.blocks import BlockModel
+
+__all__ = ["write_geoh5", "write_geoh5_blocks"]
 
 Floats = NDArray[np.float64]
 
 #: Types that the format fixes.
-SURFACE, POINTS, ROOT = (
+SURFACE, POINTS, BLOCKS, ROOT = (
     "f26feba3-aded-494b-b9e9-b2bbcbe298e1",
     "202c5db1-a56d-4004-9cad-baafd8899406",
+    "b020a277-90e2-4cd7-84d6-612ee3f25051",
     "dd99b610-be92-48c0-873c-5b5946ea2840",
 )
 #: Identifiers are made of names in this space, so that the same surfaces give the same bytes.
@@ -91,6 +95,34 @@ def write_geoh5(
         part.write_bytes(whole.getvalue())
 
 
+def write_geoh5_blocks(blocks: Mapping[str, BlockModel], path: str | PathLike[str]) -> None:
+    """Write a Block model a body (data at cells: ``field``, negative inside, and ``probability``), map coordinates.
+
+    Parameters
+    ----------
+    blocks : mapping of str to BlockModel
+        Block models by body.
+    path : path
+        The file.
+
+    Raises
+    ------
+    MissingDependencyError
+        If h5py is not installed.
+    """
+    h5py = need("h5py", "geoh5", message("export.need-package", "Writing {format}", format="geoh5"))
+    whole = BytesIO()
+    with h5py.File(whole, "w", track_order=False) as file:
+        model = _Model(file.create_group("GEOSCIENCE"), h5py.string_dtype())
+        for name, body in blocks.items():
+            item = model.blocks(name, body.centres[0] - body.spacing / 2, body.spacing, body.shape)
+            for word, values in (("field", body.value), ("probability", body.probability)):
+                # Cells of the format: z runs fastest, then the first axis, then the second.
+                model.values(item, word, "Cell", values.reshape(body.shape).transpose(1, 0, 2).ravel())
+    with replacing(path) as part:
+        part.write_bytes(whole.getvalue())
+
+
 class _Model:
     """The workspace while it is being filled."""
 
@@ -118,12 +150,24 @@ class _Model:
         base["Root"] = self._root
 
     def add(self, name: str, kind: str, word: str, xyz: Floats) -> Any:
+        item = self._object(name, kind, word)
+        item["Vertices"] = np.ascontiguousarray(xyz, "<f8").view(VERTEX).reshape(-1)
+        return item
+
+    def blocks(self, name: str, corner: Floats, spacing: float, shape: tuple[int, int, int]) -> Any:
+        item = self._object(name, BLOCKS, "Block model")
+        item.attrs.create("Origin", np.array(tuple(corner.tolist()), VERTEX))
+        item.attrs.create("Rotation", 0.0, dtype="<f8")
+        for axis, count in zip("UVZ", shape, strict=True):
+            item[f"{axis} cell delimiters"] = spacing * np.arange(count + 1, dtype="<f8")
+        return item
+
+    def _object(self, name: str, kind: str, word: str) -> Any:
         item = self._entity("Objects", name, SHOWN | {"Last focus": "None"}, of=kind)
         types = self._base["Types/Object types"]
         if f"{{{kind}}}" not in types:
             self._set(types.create_group(f"{{{kind}}}"), {"ID": f"{{{kind}}}", "Name": word, "Description": word})
         item["Type"] = types[f"{{{kind}}}"]
-        item["Vertices"] = np.ascontiguousarray(xyz, "<f8").view(VERTEX).reshape(-1)
         item.create_group("Data")
         self._root["Objects"][item.attrs["ID"]] = item
         return item

@@ -1,11 +1,11 @@
-"""IFC4X3: horizons as the B-spline surfaces that they are, boreholes and adits as lines in space."""
+"""IFC4X3: horizons as the B-spline surfaces that they are, bodies as closed solids, boreholes and adits as lines."""
 
 from __future__ import annotations
 
 import uuid
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from geofit.data.site import Hole
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.extra import need
 from geofit.splines.patch import Patch
+
+if TYPE_CHECKING:
+    from geofit.bodies.body import ImplicitBody
 
 __all__ = ["write_ifc"]
 
@@ -35,13 +38,16 @@ def write_ifc(
     site: str = "site",
     crs: str = "",
     tolerance: float = 0.05,
+    bodies: Mapping[str, ImplicitBody] | None = None,
+    voids: Collection[str] = (),
 ) -> None:
     """Write an IFC4X3 file in metres and map coordinates.
 
     Each horizon is an IfcGeotechnicalStratum: its representation ``Surface`` holds its patches as
     IfcBSplineSurfaceWithKnots, whole; ``FootPrint`` the outline in plan that trims them, if there is one;
-    ``Body`` the triangles, trimmed, for viewers without NURBS. Each hole is an IfcBorehole with its axis. The
-    geometry stays about each horizon's origin, which is its placement.
+    ``Body`` the triangles, trimmed, for viewers without NURBS. Each body is an IfcGeotechnicalStratum of the type SOLID
+    or VOID: a closed IfcTriangulatedFaceSet, with its volumes and sigma as properties. Each hole is an IfcBorehole with
+    its axis. The geometry stays about the origin of each horizon or body, which is its placement.
 
     Parameters
     ----------
@@ -56,17 +62,29 @@ def write_ifc(
     crs : str
         Label of the coordinate system; empty: none in the file.
     tolerance : float
-        Largest distance in metres of the triangles from the surface.
+        Largest distance in metres of the triangles from the surface of a horizon.
+    bodies : mapping of str to ImplicitBody, optional
+        Bodies by name.
+    voids : collection of str
+        Names of the bodies that are empty, such as karst and old workings.
 
     Raises
     ------
     MissingDependencyError
         If ifcopenshell is not installed.
     InputError
-        If there is neither a surface nor a hole.
+        If there is neither a surface, a body nor a hole, or a void is not among the bodies.
     """
     ifcopenshell = need("ifcopenshell", "ifc", message("export.need-package", "Writing {format}", format="IFC"))
-    if not surfaces and not holes:
+    bodies = {} if bodies is None else bodies
+    unknown = sorted(set(voids) - set(bodies))
+    if unknown:
+        raise InputError(
+            message("export.void-no-body", "The void '{name}' is not among the bodies", name=unknown[0]),
+            message("export.bodies-are", "The bodies are: {names}.", names=", ".join(bodies)),
+            file=str(path),
+        )
+    if not surfaces and not holes and not bodies:
         raise InputError(
             message("export.no-surface-write", "No surface to write"),
             message("export.give-least-horizon", "Give at least one horizon."),
@@ -75,6 +93,8 @@ def write_ifc(
     model = _Model(ifcopenshell, site, crs)
     for name, surface in surfaces.items():
         model.horizon(name, surface, tolerance)
+    for name, body in bodies.items():
+        model.body(name, body, void=name in voids)
     for hole in holes:
         model.hole(hole)
     model.close()
@@ -154,6 +174,31 @@ class _Model:
             ObjectType="HORIZON",
         )
         self._parts.append(stratum)
+
+    def body(self, name: str, body: ImplicitBody, *, void: bool) -> None:
+        add, mesh = self.file, body.overview
+        faces = add.createIfcTriangulatedFaceSet(
+            add.createIfcCartesianPointList3D(mesh.vertices.tolist()), None, True, (mesh.triangles + 1).tolist()
+        )
+        shape = add.createIfcShapeRepresentation(self._body, "Body", "Tessellation", [faces])
+        stratum = add.createIfcGeotechnicalStratum(
+            self._id("body", name),
+            None,
+            name,
+            ObjectPlacement=self._placed(body.origin.tolist()),
+            Representation=add.createIfcProductDefinitionShape(None, None, [shape]),
+            PredefinedType="VOID" if void else "SOLID",
+        )
+        self._parts.append(stratum)
+        figures = {"volume (m3)": mesh.volume, "area (m2)": mesh.area, "epsilon (m)": body.settings.epsilon}
+        if body.accuracy is not None:
+            figures["sigma (m)"] = body.accuracy.sigma
+        values = [
+            add.createIfcPropertySingleValue(key, None, add.createIfcReal(float(value)), None)
+            for key, value in figures.items()
+        ]
+        properties = add.createIfcPropertySet(self._id("properties", name), None, "geofit", None, values)
+        add.createIfcRelDefinesByProperties(self._id("has", name), None, None, None, [stratum], properties)
 
     def _patch(self, patch: Patch) -> Any:
         points = [[self.file.createIfcCartesianPoint(p) for p in row] for row in patch.control.tolist()]

@@ -1,4 +1,4 @@
-"""OMF 0.9 (Open Mining Format): triangles of horizons and data points with their deviations.
+"""OMF 0.9 (Open Mining Format): triangles of horizons, data points with their deviations, block models of bodies.
 
 Layout: Global Mining Guidelines Group, "Open Mining Format", as its reference implementation documents it: a head
 of 60 bytes, compressed arrays, and a JSON object of all elements by identifier. Written without that package:
@@ -13,7 +13,7 @@ import uuid
 import zlib
 from collections.abc import Mapping
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +24,10 @@ from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.geometry.mesh import Mesh
 
-__all__ = ["write_omf"]
+if TYPE_CHECKING:
+    from geofit.bodies.blocks import BlockModel
+
+__all__ = ["write_omf", "write_omf_blocks"]
 
 Floats = NDArray[np.float64]
 
@@ -83,21 +86,32 @@ def write_omf(
         shape = {"vertices": model.array(f"{title}/vertices", "Vector3Array", known.xyz - origin)}
         data = [model.values(title, "deviation", "vertices", np.asarray(deviation, float))]
         elements.append(model.element(title, "PointSet", "point", k, origin, shape, data))
-    project = model.add(
-        "project",
-        "Project",
-        name="horizons",
-        description="",
-        author="geofit",
-        revision="",
-        units="m",
-        elements=elements,
-        origin=[0.0, 0.0, 0.0],
-    )
-    start = HEAD.size + len(model.arrays)
-    head = HEAD.pack(MAGIC, VERSION, uuid.UUID(project).bytes, start)
-    with replacing(path) as part:
-        part.write_bytes(head + bytes(model.arrays) + json.dumps(model.parts, ensure_ascii=False).encode("utf-8"))
+    model.write(path, "horizons", elements)
+
+
+def write_omf_blocks(blocks: Mapping[str, BlockModel], path: str | PathLike[str]) -> None:
+    """Write a volume element a block model (data at cells: ``field``, negative inside, and ``probability``).
+
+    Parameters
+    ----------
+    blocks : mapping of str to BlockModel
+        Block models by body.
+    path : path
+        The file, usually ``*.omf``.
+    """
+    model = _Model()
+    elements = []
+    for k, (name, body) in enumerate(blocks.items()):
+        corner = body.centres[0] - body.spacing / 2
+        # The last axis runs fastest in the cells, as in the block model.
+        tensors = {f"tensor_{axis}": [body.spacing] * count for axis, count in zip("uvw", body.shape, strict=True)}
+        axes = {f"axis_{axis}": row for axis, row in zip("uvw", np.eye(3).tolist(), strict=True)}
+        data = [
+            model.values(name, "field", "cells", body.value),
+            model.values(name, "probability", "cells", body.probability),
+        ]
+        elements.append(model.element(name, "VolumeGrid", "volume", k, corner, {**tensors, **axes}, data))
+    model.write(path, "bodies", elements)
 
 
 class _Model:
@@ -127,19 +141,37 @@ class _Model:
         return self.add(f"{owner}/{name}", "ScalarData", name=name, description="", array=array, location=location)
 
     def element(
-        self, name: str, kind: str, subtype: str, number: int, origin: Floats, shape: dict[str, str], data: list[str]
+        self, name: str, kind: str, subtype: str, number: int, origin: Floats, shape: Mapping[str, Any], data: list[str]
     ) -> str:
-        """Add a surface or point set with its geometry and data."""
+        """Add a surface, point set or volume with its geometry and data."""
         geometry = self.add(name, f"{kind}Geometry", origin=origin.tolist(), **shape)
         colour = COLOURS[number % len(COLOURS)]
+        textures: dict[str, Any] = {} if subtype == "volume" else {"textures": []}
         return self.add(
             name,
-            f"{kind}Element",
+            f"{kind.removesuffix('Grid')}Element",
             name=name,
             description="",
             data=data,
             color=colour,
-            textures=[],
             subtype=subtype,
             geometry=geometry,
+            **textures,
         )
+
+    def write(self, path: str | PathLike[str], name: str, elements: list[str]) -> None:
+        """Write the file: a project of these elements."""
+        project = self.add(
+            "project",
+            "Project",
+            name=name,
+            description="",
+            author="geofit",
+            revision="",
+            units="m",
+            elements=elements,
+            origin=[0.0, 0.0, 0.0],
+        )
+        head = HEAD.pack(MAGIC, VERSION, uuid.UUID(project).bytes, HEAD.size + len(self.arrays))
+        with replacing(path) as part:
+            part.write_bytes(head + bytes(self.arrays) + json.dumps(self.parts, ensure_ascii=False).encode("utf-8"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -12,8 +14,9 @@ from geofit.bodies.blocks import block_model
 from geofit.bodies.body import ImplicitBody
 from geofit.bodies.fit import fit_body
 from geofit.bodies.posterior import Posterior
-from geofit.data.errors import SettingsError
+from geofit.data.errors import InputError, SettingsError
 from geofit.io.export.block_model import write_block_model
+from geofit.io.export.ifc import write_ifc
 from geofit.io.export.vti import write_vti
 
 
@@ -70,3 +73,66 @@ def test_probability_is_calibrated() -> None:
 def test_blocks_that_are_too_small(ring: ImplicitBody) -> None:
     with pytest.raises(SettingsError, match="at most"):
         block_model(ring, 0.01)
+
+
+def test_block_model_as_omf(ring: ImplicitBody, tmp_path: Path) -> None:
+    path = tmp_path / "blocks.omf"
+    write_block_model(ring, path, 5.0)
+    raw, model = path.read_bytes(), block_model(ring, 5.0)
+    start = int.from_bytes(raw[52:60], "little")
+    parts = json.loads(raw[start:])
+    (element,) = (part for part in parts.values() if part["__class__"] == "VolumeElement")
+    grid = parts[element["geometry"]]
+    assert grid["__class__"] == "VolumeGridGeometry"
+    assert tuple(len(grid[f"tensor_{axis}"]) for axis in "uvw") == model.shape
+    np.testing.assert_allclose(grid["origin"], model.centres[0] - 2.5)
+    for key, values in zip(element["data"], (model.value, model.probability), strict=True):
+        place = parts[parts[key]["array"]]["array"]
+        stored = np.frombuffer(zlib.decompress(raw[place["start"] : place["start"] + place["length"]]), "<f8")
+        np.testing.assert_array_equal(stored, values)
+
+
+def test_block_model_as_geoh5(ring: ImplicitBody, tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "blocks.geoh5"
+    write_block_model(ring, path, 5.0)
+    model = block_model(ring, 5.0)
+    with h5py.File(path) as file:
+        (item,) = file["GEOSCIENCE/Objects"].values()
+        edges = [item[f"{axis} cell delimiters"][:] for axis in "UVZ"]
+        start = np.array(item.attrs["Origin"].tolist())
+        # The order of geoh5py's centroids: np.meshgrid's own.
+        middles = [(e[1:] + e[:-1]) / 2 for e in edges]
+        centres = np.stack(np.meshgrid(*middles), axis=-1).reshape(-1, 3) + start
+        stored = {data.attrs["Name"]: data["Data"][:] for data in item["Data"].values()}
+    np.testing.assert_allclose(stored["field"], ring.value(centres), atol=1e-9)
+    assert sorted(stored) == ["field", "probability"]
+    assert len(centres) == len(model.centres)
+
+
+def test_block_model_of_another_ending(ring: ImplicitBody, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"\.csv, \.omf or \.geoh5"):
+        write_block_model(ring, tmp_path / "blocks.xyz", 5.0)
+
+
+def test_bodies_in_ifc(ring: ImplicitBody, two: ImplicitBody, tmp_path: Path) -> None:
+    ifcopenshell = pytest.importorskip("ifcopenshell")
+    path = tmp_path / "bodies.ifc"
+    write_ifc({}, path, bodies={"ring": ring, "caves": two}, voids=["caves"])
+    file = ifcopenshell.open(path)
+    strata = {stratum.Name: stratum for stratum in file.by_type("IfcGeotechnicalStratum")}
+    assert {name: stratum.PredefinedType for name, stratum in strata.items()} == {"ring": "SOLID", "caves": "VOID"}
+    for name, body in (("ring", ring), ("caves", two)):
+        (shape,) = strata[name].Representation.Representations
+        (faces,) = shape.Items
+        assert faces.Closed
+        place = strata[name].ObjectPlacement.RelativePlacement.Location.Coordinates
+        corners = np.array(faces.Coordinates.CoordList)[np.array(faces.CoordIndex) - 1]
+        volume = np.linalg.det(corners).sum() / 6
+        assert volume == pytest.approx(body.overview.volume, rel=1e-6)
+        np.testing.assert_allclose(place, body.origin)
+    again = tmp_path / "again.ifc"
+    write_ifc({}, again, bodies={"ring": ring, "caves": two}, voids=["caves"])
+    assert again.read_bytes() == path.read_bytes()
+    with pytest.raises(InputError, match="not among the bodies"):
+        write_ifc({}, path, bodies={"ring": ring}, voids=["cave"])

@@ -70,6 +70,18 @@ def test_same_input_same_bytes() -> None:
     assert fit_body(data).value(x).tobytes() == fit_body(data).value(x).tobytes()
 
 
+@pytest.mark.parametrize("threads", [2, 8])
+def test_the_number_of_threads_changes_nothing(threads: int) -> None:
+    pools = pytest.importorskip("threadpoolctl")
+    data = drilled(torus(0.55, 0.22)[0], 3, rows=9)
+    meshes = []
+    for limit in (1, threads):
+        with pools.threadpool_limits(limit):
+            meshes.append(fit_body(data).triangulate())
+    assert meshes[0].vertices.tobytes() == meshes[1].vertices.tobytes()
+    assert meshes[0].triangles.tobytes() == meshes[1].triangles.tobytes()
+
+
 def test_thousands_of_contacts_are_met_and_every_sample_keeps_its_side() -> None:
     rng = np.random.default_rng(2)
 
