@@ -26,6 +26,8 @@ from geofit.io.surface_files import read_surface as read_surface
 from geofit.io.volume_slices import open_volume as open_volume
 from geofit.io.volumes import read_volume as read_volume
 from geofit.medial.fit import metaballs as metaballs
+from geofit.morphing.between import between as between
+from geofit.morphing.morph import morph as morph
 from geofit.pores.balls import maximal_balls as maximal_balls
 from geofit.pores.extraction import pore_network as pore_network
 from geofit.pores.sliced import SlicedVolume as SlicedVolume
@@ -35,6 +37,7 @@ from geofit.prediction.bands import band as band
 from geofit.prediction.bands import prediction_sd as prediction_sd
 from geofit.prediction.examine import examine as examine
 from geofit.project.write_report import write_report as write_report
+from geofit.report.film import write_film as write_film
 from geofit.sampling.contours import contours as contours
 from geofit.sampling.cut import cut_section as cut_section
 from geofit.site.fault_blocks import fit_blocks as fit_blocks

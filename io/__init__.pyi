@@ -1,4 +1,5 @@
 # The names of `geofit.io`, one line each: types for editors, and the table of what is imported when first used.
+from geofit.io.bodies import read_body as read_body
 from geofit.io.boreholes import Boreholes as Boreholes
 from geofit.io.boreholes import read_boreholes as read_boreholes
 from geofit.io.boundary import read_boundary as read_boundary

@@ -24,7 +24,8 @@ ROOT = Path(__file__).resolve().parents[1]
 #: folder and those below; names imported inside functions count.
 FLOORS = (
     "data", "sample", "splines", "geometry", "implicit", "surfaces", "sampling", "cad", "checks", "fitting",
-    "streaming", "prediction", "site", "bodies", "pores", "medial", "caves", "io", "report", "project", "cli", "gui",
+    "streaming", "prediction", "site", "bodies", "morphing", "pores", "medial", "caves", "io", "report", "project",
+    "cli", "gui",
 )  # fmt: skip
 FLOOR = {folder: height for height, folder in enumerate(FLOORS)}
 #: Who alone may import these, at the named places.
@@ -33,7 +34,7 @@ RESERVED = {
     "cadquery": ("geofit/cad/",),
     "PySide6": ("gui/",),
     "pyvistaqt": ("gui/",),
-    "pyvista": ("geofit/report/scene.py", "gui/"),
+    "pyvista": ("geofit/report/scene.py", "geofit/report/film.py", "gui/"),
     "vtkmodules": ("geofit/report/scene.py", "geofit/implicit/", "gui/"),
     "matplotlib": ("geofit/report/", "gui/"),
     "fpdf": ("geofit/report/pdf.py", "geofit/report/pdf_table.py", "geofit/report/pdf_text.py"),

@@ -81,6 +81,16 @@ class ImplicitBody:
         return self.field.frame.origin
 
     @property
+    def epsilon(self) -> float:
+        """Control error for sigma, metres."""
+        return self.settings.epsilon
+
+    @property
+    def contacts(self) -> Floats:
+        """Measured places (n, 3) of the surface, map coordinates."""
+        return self.data.contacts
+
+    @property
     def issues(self) -> tuple[BodyIssue, ...]:
         """What was merged, contradicted itself, or was left out."""
         return self.fitted.prepared.issues

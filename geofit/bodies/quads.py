@@ -19,7 +19,7 @@ from geofit.splines import bspline
 from geofit.splines.patch import Patch
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.closed import ClosedBody
 
 __all__ = ["PatchedSurface", "patched_surface"]
 
@@ -77,7 +77,7 @@ class _Fit:
         return np.asarray(cross / np.maximum(np.linalg.norm(cross, axis=-1, keepdims=True), 1e-300))
 
 
-def patched_surface(body: ImplicitBody, tolerance: float | None = None) -> PatchedSurface:
+def patched_surface(body: ClosedBody, tolerance: float | None = None) -> PatchedSurface:
     """Return NURBS patches that meet the surface of a body within a tolerance.
 
     Parameters
@@ -93,19 +93,20 @@ def patched_surface(body: ImplicitBody, tolerance: float | None = None) -> Patch
     FitError
         If 500 patches do not suffice, or the body is cut at its box, where it has edges.
     """
-    if body.field.cut:
+    cut: tuple[str, ...] = getattr(body.field, "cut", ())
+    if cut:
         raise FitError(
             message(
                 "bodies.body-cut-box",
                 "The body is cut at its box ({sides}): it has sharp edges, which smooth patches cannot follow. "
                 "Enlarge the box, or write triangles.",
-                sides=", ".join(body.field.cut),
+                sides=", ".join(cut),
             )
         )
     mesh = body.overview
     lower, upper = body.extent
     if tolerance is None:
-        tolerance = min(body.settings.epsilon / 2, 1e-3 * float((upper - lower).max()))
+        tolerance = min(body.epsilon / 2, 1e-3 * float((upper - lower).max()))
     parts = mesh.split()
     components, left = [], MOST
     deviation = angle = 0.0

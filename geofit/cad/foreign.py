@@ -30,6 +30,7 @@ from geofit.cad.imported import existing
 from geofit.data.errors import GeofitError, InputError, MissingDependencyError
 from geofit.data.legible import legible
 from geofit.data.messages import Message, Verbatim, message
+from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.trimmed import TrimmedSurface
@@ -41,6 +42,7 @@ READERS = {
     "step": ("geofit.cad.step", "step_surfaces"),
     "iges": ("geofit.cad.iges_brep", "iges_surfaces"),
     "brep": ("geofit.cad.iges_brep", "brep_surfaces"),
+    "solid": ("geofit.cad.solid_mesh", "solid_meshes"),
 }
 #: Seconds of the processor that a child has, and more of them a megabyte of the file; by the clock it is three times.
 SECONDS, SECONDS_MB, WAITING = 20.0, 20.0, 3.0
@@ -50,14 +52,14 @@ MEMORY, MEMORY_BYTE = 6_000_000_000, 200
 _TOO_LONG = -int(getattr(signal, "SIGXCPU", 24))
 
 
-def read_apart(path: str | PathLike[str], reader: str) -> dict[str, PatchSurface]:
-    """Read the surfaces of a CAD file in a child process.
+def read_apart(path: str | PathLike[str], reader: str) -> dict[str, Any]:
+    """Read the surfaces, or the triangles of the solids, of a CAD file in a child process.
 
     Parameters
     ----------
     path : path
         The file.
-    reader : {"step", "iges", "brep"}
+    reader : {"step", "iges", "brep", "solid"}
         As what it is read.
 
     Raises
@@ -155,7 +157,7 @@ def _limit(seconds: int, memory: int) -> None:
         resource.setrlimit(kind, (limits[0], limits[1]))
 
 
-def _save(target: Path, surfaces: Mapping[str, PatchSurface]) -> None:
+def _save(target: Path, surfaces: Mapping[str, PatchSurface | TriangleMesh]) -> None:
     arrays: list[NDArray[Any]] = []
 
     def kept(array: Any) -> int | None:
@@ -165,8 +167,11 @@ def _save(target: Path, surfaces: Mapping[str, PatchSurface]) -> None:
         arrays.append(np.asarray(array, dtype=np.float64))
         return len(arrays) - 1
 
-    found = []
+    found: list[dict[str, Any]] = []
     for name, surface in surfaces.items():
+        if isinstance(surface, TriangleMesh):
+            found.append({"name": name, "vertices": kept(surface.vertices), "triangles": kept(surface.triangles)})
+            continue
         patches = [
             {
                 "name": patch.name,
@@ -217,7 +222,7 @@ def _write(target: Path, meta: Mapping[str, Any], arrays: Sequence[NDArray[Any]]
         np.savez(stream, allow_pickle=False, meta=text, **{f"a{k}": array for k, array in enumerate(arrays)})
 
 
-def _load(result: Path, source: Path) -> dict[str, PatchSurface]:
+def _load(result: Path, source: Path) -> dict[str, Any]:
     with np.load(result, allow_pickle=False) as file:
         meta = json.loads(file["meta"].tobytes())
         arrays = {name: file[name] for name in file.files if name != "meta"}
@@ -231,8 +236,11 @@ def _load(result: Path, source: Path) -> dict[str, PatchSurface]:
     def array(number: int | None) -> Any:
         return None if number is None else arrays[f"a{number}"]
 
-    surfaces = {}
+    surfaces: dict[str, Any] = {}
     for one in meta["surfaces"]:
+        if "vertices" in one:
+            surfaces[one["name"]] = TriangleMesh(array(one["vertices"]), array(one["triangles"]).astype(np.int64))
+            continue
         patches = tuple(
             Patch(
                 patch["name"],

@@ -27,7 +27,7 @@ from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.closed import ClosedBody
 
 __all__ = ["SolidReadBack", "patch_solid", "triangle_solid", "write_body"]
 
@@ -71,7 +71,7 @@ class SolidReadBack:
 
 
 def write_body(
-    body: ImplicitBody, path: str | PathLike[str], patches: Sequence[Sequence[Patch]] = (), reason: str = ""
+    body: ClosedBody, path: str | PathLike[str], patches: Sequence[Sequence[Patch]] = (), reason: str = ""
 ) -> SolidReadBack:
     """Write a body as a STEP AP242 solid, read it back and check it.
 
@@ -332,7 +332,7 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
         Path(temporary).unlink(missing_ok=True)
 
 
-def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBack:
+def _read_back(body: ClosedBody, target: Path, *, nurbs: bool) -> SolidReadBack:
     from OCP.BRep import BRep_Tool
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
@@ -352,13 +352,16 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBac
             [p.evaluate((p.domain[0] + t * (p.domain[1] - p.domain[0]))[:, None],
                         (p.domain[2] + t * (p.domain[3] - p.domain[2]))[None]).reshape(-1, 3) for p in patches]
         )  # fmt: skip
-        residuals = np.abs(project(patches, body.data.contacts - body.origin).distance)
+        measured = len(body.contacts) > 0
+        residuals = np.full(1, np.nan)
+        if measured:
+            residuals = np.abs(project(patches, body.contacts - body.origin).distance)
         volume = sum(_volume(solid) for solid in solids)
         free = len(free_edges(shape))
     else:
         meshes = [_triangles_of(face) for face in faces]
         places = np.concatenate([mesh.vertices for mesh in meshes])
-        residuals = np.full(1, np.nan)
+        measured, residuals = False, np.full(1, np.nan)
         volume = sum(mesh.volume for mesh in meshes)
         free = sum(len(mesh.boundary_edges) for mesh in meshes)
     slope = np.linalg.norm(body.field.gradient(places), axis=1)
@@ -369,7 +372,7 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBac
     sigma = float(np.sqrt((residuals**2).sum() / max(len(residuals) - 1, 1)))
     grade = "nurbs" if nurbs else "triangles"
     best = _reference_volume(body) if nurbs else body.overview.volume
-    epsilon = body.settings.epsilon
+    epsilon = body.epsilon
     checks = (
         Check(
             "solids",
@@ -412,7 +415,7 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBac
         ),
         Check(
             "sigma",
-            sigma < epsilon if nurbs else None,
+            sigma < epsilon if measured else None,
             sigma,
             epsilon,
             "m",
@@ -453,7 +456,7 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBac
     )
 
 
-def _reference_volume(body: ImplicitBody) -> float:
+def _reference_volume(body: ClosedBody) -> float:
     """Return the body's volume from two meshes, by Richardson's extrapolation: triangles err with the square."""
     lower, upper = body.extent
     spacing = float((upper - lower).max()) / 40

@@ -58,6 +58,7 @@ _LAZY = {
     "foot_points": "foot",
     "hole_crossings": "trace",
     "intersection": "csg",
+    "isosurface_of_blocks": "isosurface",
     "isosurface_of_samples": "isosurface",
     "metaballs": "blobs",
     "moved": "field",

@@ -21,7 +21,7 @@ from geofit.implicit.lattice import BATCH, Lattice
 from geofit.implicit.mesh import TriangleMesh
 from geofit.implicit.roots import roots_between
 
-__all__ = ["isosurface", "isosurface_of_samples", "open_sides"]
+__all__ = ["isosurface", "isosurface_of_blocks", "isosurface_of_samples", "open_sides"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -109,14 +109,44 @@ def isosurface_of_samples(values: NDArray[np.floating], lattice: Lattice, *, cap
     if capped:
         samples = np.pad(samples, 1, constant_values=np.inf)
     crossed = _crossings(samples[None].transpose(0, 3, 2, 1), np.full((1, 3), -int(capped)), None)
+    mesh = _linear(crossed, lattice)
+    return collapse_slivers(mesh, SLIVER * lattice.spacing**2, lattice.spacing) if capped else mesh
+
+
+def isosurface_of_blocks(values: NDArray[np.floating], blocks: Ints, lattice: Lattice) -> TriangleMesh:
+    """Return the surface on which samples of some blocks are zero, linear along the edges of the lattice.
+
+    Parameters
+    ----------
+    values : (k, b, b, b) array
+        Samples of each block of b nodes an edge, x fastest (last), negative inside; neighbours share a layer of nodes.
+    blocks : (k, 3) array of int
+        First node (x, y, z) of each block.
+    lattice : Lattice
+        The nodes.
+
+    Returns
+    -------
+    TriangleMesh
+        The mesh of :func:`isosurface_of_samples` if every block with both signs is given.
+
+    Raises
+    ------
+    FitError
+        If a sample is NaN.
+    """
+    return _linear(_crossings(values, blocks, np.array(lattice.shape) - 1), lattice)
+
+
+def _linear(crossed: _Crossed, lattice: Lattice) -> TriangleMesh:
+    """Return triangles with vertices where samples are zero on straight lines between nodes."""
     start = lattice.origin + lattice.spacing * crossed.node
     low, high = np.abs(crossed.low), np.abs(crossed.high)
     with np.errstate(invalid="ignore"):
         share = np.clip(low / (low + high), NODE_GAP, 1 - NODE_GAP)
     share[np.isinf(high)], share[np.isinf(low)] = 0.0, 1.0
     start[np.arange(len(start)), crossed.axis] += lattice.spacing * share
-    mesh = TriangleMesh(start, crossed.triangles)
-    return collapse_slivers(mesh, SLIVER * lattice.spacing**2, lattice.spacing) if capped else mesh
+    return TriangleMesh(start, crossed.triangles)
 
 
 def open_sides(mesh: TriangleMesh, lattice: Lattice) -> tuple[str, ...]:

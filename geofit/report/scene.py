@@ -23,7 +23,7 @@ from geofit.report.view import rims, trimmed
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["NO_OPENGL", "Scene", "elevation_colours", "horizon_scene", "site_scene"]
+__all__ = ["NO_OPENGL", "Scene", "elevation_colours", "horizon_scene", "require_opengl", "site_scene"]
 
 Floats = NDArray[np.float64]
 
@@ -154,11 +154,7 @@ def _raised(surfaces: Sequence[HorizonFit]) -> int:
 
 
 def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
-    if not _opengl():
-        raise MissingDependencyError(NO_OPENGL)
-    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-        # VTK would try the X server first, and complain.
-        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    require_opengl()
     import pyvista
 
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
@@ -167,6 +163,15 @@ def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
     plotter.add_light(pyvista.Light(position=(-1, 0.9, 1.1), intensity=0.7, light_type="scene light"))
     plotter.add_light(pyvista.Light(position=EYE, intensity=0.5, light_type="scene light"))
     return plotter
+
+
+def require_opengl() -> None:
+    """Raise a :class:`MissingDependencyError` if there is no OpenGL library; choose EGL where there is no screen."""
+    if not _opengl():
+        raise MissingDependencyError(NO_OPENGL)
+    if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
+        # VTK would try the X server first, and complain.
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 
 def _opengl() -> bool:

@@ -1,0 +1,230 @@
+"""Compiled: when the front that starts from A reaches each place on its way to B.
+
+With the speed |d_B|, u = exp(-T) of the arrival time T satisfies |grad u| = u / |d_B|: it falls from 1 on the surface
+of A to 0 on that of B, linearly between concentric spheres. The nodes are accepted in the order of falling u.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+__all__ = ["march", "start_values", "widen"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+#: Buckets that sort u: nodes of one bucket are accepted in the order in which they came.
+BUCKETS = 1 << 16
+#: Nodes within this many spacings of A's surface start with their value along its normal.
+START = 2.0
+
+
+@njit(cache=True)
+def _cubic(t: float, w: Floats) -> None:
+    """Weights of the cubic through four neighbours (Catmull & Rom)."""
+    w[0] = ((-0.5 * t + 1.0) * t - 0.5) * t
+    w[1] = (1.5 * t - 2.5) * t * t + 1.0
+    w[2] = ((-1.5 * t + 2.0) * t + 0.5) * t
+    w[3] = (0.5 * t - 0.5) * t * t
+
+
+@njit(cache=True)
+def start_values(d_a: Floats, d_b: Floats, h: float, floor: float) -> Floats:
+    """Return u where A's surface is near, nan elsewhere; greater than 1 on the side that the front comes from.
+
+    Along the normal the speed is taken as linear: T = a ln(v0 / v1) / (v0 - v1) over the distance a.
+    """
+    nx, ny, nz = d_a.shape
+    u = np.full((nx, ny, nz), np.nan)
+    w = np.empty((3, 4))
+    foot, cell = np.empty(3), np.empty(3, np.int64)
+    for i in range(3, nx - 3):
+        for j in range(3, ny - 3):
+            for k in range(3, nz - 3):
+                a = d_a[i, j, k]
+                if abs(a) > START * h or d_b[i, j, k] == 0:
+                    continue
+                gx = (d_a[i + 1, j, k] - d_a[i - 1, j, k]) / 2
+                gy = (d_a[i, j + 1, k] - d_a[i, j - 1, k]) / 2
+                gz = (d_a[i, j, k + 1] - d_a[i, j, k - 1]) / 2
+                length = math.sqrt(gx * gx + gy * gy + gz * gz)
+                if length < 0.1 * h:
+                    continue
+                foot[0], foot[1], foot[2] = i - a * gx / length / h, j - a * gy / length / h, k - a * gz / length / h
+                for m in range(3):
+                    cell[m] = min(max(math.floor(foot[m]), 1), d_a.shape[m] - 3)
+                    _cubic(foot[m] - cell[m], w[m])
+                there = 0.0
+                for x in range(4):
+                    for y in range(4):
+                        for z in range(4):
+                            there += (
+                                w[0, x] * w[1, y] * w[2, z] * d_b[cell[0] + x - 1, cell[1] + y - 1, cell[2] + z - 1]
+                            )
+                sign = 1.0 if d_b[i, j, k] > 0 else -1.0
+                if sign * there <= 0 and (a < 0) == (d_b[i, j, k] < 0):
+                    # Beyond B's surface, seen from A's: continued from the way between them.
+                    continue
+                v0, v1 = max(sign * there, floor), max(sign * d_b[i, j, k], floor)
+                # The signed way from A's surface, positive where the front goes.
+                way = a if sign < 0 else -a
+                mean = (v0 - v1) / math.log(v0 / v1) if abs(v0 - v1) > 1e-6 * v0 else (v0 + v1) / 2
+                u[i, j, k] = math.exp(min(-way / mean, 20.0))
+    return u
+
+
+@njit(cache=True)
+def _update(u: Floats, done: NDArray[np.bool_], at: int, strides: Ints, q: float) -> float:
+    """Return u at a node from its accepted neighbours: sum of (s (v - u))^2 = (q u)^2, of second order where it can."""
+    value, scale = np.zeros(3), np.zeros(3)
+    count = 0
+    for m in range(3):
+        step = strides[m]
+        best, to = -1.0, 0
+        for way in (-step, step):
+            other = at + way
+            if done[other] and u[other] > best:
+                best, to = u[other], way
+        if best <= 0:
+            continue
+        s = 1.0
+        far = at + 2 * to
+        if done[far] and u[far] >= best:
+            s = 1.5
+            best = (4 * best - u[far]) / 3
+        # Kept in falling order.
+        n = count
+        while n > 0 and value[n - 1] < best:
+            value[n], scale[n] = value[n - 1], scale[n - 1]
+            n -= 1
+        value[n], scale[n] = best, s
+        count += 1
+    found = -1.0
+    a = b = c = 0.0
+    for n in range(count):
+        if n > 0 and found >= value[n]:
+            break
+        s2 = scale[n] ** 2
+        a += s2
+        b += s2 * value[n]
+        c += s2 * value[n] ** 2
+        if n == 0:
+            found = scale[0] * value[0] / (scale[0] + q)
+            continue
+        # (a - q^2) u^2 - 2 b u + c = 0, the root below every value.
+        lead = a - q * q
+        inner = b * b - lead * c
+        if inner < 0:
+            break
+        found = c / (b + math.sqrt(inner))
+    return found
+
+
+@njit(cache=True)
+def march(u: Floats, d_b: Floats, region: NDArray[np.bool_], h: float, floor: float) -> None:
+    """Complete u in a region from its start values (not nan); nodes that no front reaches stay nan.
+
+    Only neighbours on the same side of B's surface count. All arrays are flat views of (nx, ny, nz).
+    """
+    _nx, ny, nz = d_b.shape
+    strides = np.array([ny * nz, nz, 1])
+    flat, speed, wanted = u.ravel(), d_b.ravel(), region.ravel()
+    known = ~np.isnan(flat)
+    head = np.full(BUCKETS + 1, -1, np.int64)
+    size = max(1024, 2 * known.sum())
+    following, node = np.empty(size, np.int64), np.empty(size, np.int64)
+    key = np.empty(size)
+    count = 0
+    # Start values on both sides of A's surface are known to the differences, never changed.
+    same = np.zeros(flat.size, np.bool_)
+    trial = np.full(flat.size, -1.0)
+    for side in range(2):
+        head[:] = -1
+        count = 0
+        for at in range(flat.size):
+            same[at] = known[at] and ((speed[at] > 0) == (side == 1))
+        for at in range(flat.size):
+            if same[at]:
+                for m in range(3):
+                    for way in (-strides[m], strides[m]):
+                        to = at + way
+                        if not wanted[to] or known[to] or (speed[to] > 0) != (side == 1):
+                            continue
+                        value = _update(flat, same, to, strides, h / max(abs(speed[to]), floor))
+                        if value > trial[to]:
+                            trial[to] = value
+                            if count == size:
+                                size *= 2
+                                f2, n2, k2 = np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size)
+                                f2[:count], n2[:count], k2[:count] = following, node, key
+                                following, node, key = f2, n2, k2
+                            bucket = min(max(int((1 - value) * BUCKETS), 0), BUCKETS)
+                            node[count], key[count], following[count] = to, value, head[bucket]
+                            head[bucket] = count
+                            count += 1
+        for bucket in range(BUCKETS + 1):
+            while head[bucket] >= 0:
+                entry = head[bucket]
+                head[bucket] = following[entry]
+                at = node[entry]
+                if known[at] or key[entry] < trial[at]:
+                    continue
+                known[at] = same[at] = True
+                flat[at] = trial[at]
+                for m in range(3):
+                    for way in (-strides[m], strides[m]):
+                        to = at + way
+                        if not wanted[to] or known[to] or (speed[to] > 0) != (side == 1):
+                            continue
+                        value = _update(flat, same, to, strides, h / max(abs(speed[to]), floor))
+                        if value > trial[to]:
+                            trial[to] = value
+                            if count == size:
+                                size *= 2
+                                f2, n2, k2 = np.empty(size, np.int64), np.empty(size, np.int64), np.empty(size)
+                                f2[:count], n2[:count], k2[:count] = following, node, key
+                                following, node, key = f2, n2, k2
+                            lower = max(min(max(int((1 - value) * BUCKETS), 0), BUCKETS), bucket)
+                            node[count], key[count], following[count] = to, value, head[lower]
+                            head[lower] = count
+                            count += 1
+
+
+@njit(cache=True)
+def widen(field: Floats, layers: int) -> None:
+    """Fill nan next to known nodes with the mean of those, layer by layer, in place."""
+    _nx, ny, nz = field.shape
+    flat = field.ravel()
+    strides = np.array([ny * nz, nz, 1])
+    edge = np.empty(0, np.int64)
+    for layer in range(layers):
+        found = 0
+        places = np.empty(1024, np.int64)
+        means = np.empty(1024)
+        total = flat.size if layer == 0 else len(edge) * 6
+        for n in range(total):
+            at = n if layer == 0 else edge[n // 6] + (strides[n % 3] if n % 6 < 3 else -strides[n % 3])
+            if at < strides[0] or at >= flat.size - strides[0] or not np.isnan(flat[at]):
+                continue
+            amount, sum_ = 0, 0.0
+            for m in range(3):
+                for way in (-strides[m], strides[m]):
+                    value = flat[at + way]
+                    if not np.isnan(value):
+                        amount += 1
+                        sum_ += value
+            if amount == 0:
+                continue
+            if found == len(places):
+                p2, m2 = np.empty(2 * found, np.int64), np.empty(2 * found)
+                p2[:found], m2[:found] = places, means
+                places, means = p2, m2
+            places[found], means[found] = at, sum_ / amount
+            found += 1
+        for n in range(found):
+            flat[places[n]] = means[n]
+        edge = places[:found]

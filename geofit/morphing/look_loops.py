@@ -1,0 +1,143 @@
+"""Compiled: a frame between two stored fields: its blocks with surface, its volume, and when nodes change sides."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+__all__ = ["cell_fractions", "crossing_shares", "gather_blocks", "mixed_blocks", "tetrahedra_volume"]
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@njit(cache=True)
+def mixed_blocks(first: NDArray[np.float32], last: NDArray[np.float32], s: float, block: int) -> Ints:
+    """Return the first nodes (k, 3) of the blocks of (1 - s) first + s last that have both signs, in order."""
+    nx, ny, nz = first.shape
+    p, q = np.float32(1 - s), np.float32(s)
+    bx, by, bz = -(-(nx - 1) // block), -(-(ny - 1) // block), -(-(nz - 1) // block)
+    found = np.empty((bx * by * bz, 3), np.int64)
+    count = 0
+    for a in range(bx):
+        for b in range(by):
+            for c in range(bz):
+                negative = positive = False
+                for i in range(a * block, min(a * block + block + 1, nx)):
+                    for j in range(b * block, min(b * block + block + 1, ny)):
+                        for k in range(c * block, min(c * block + block + 1, nz)):
+                            inside = p * first[i, j, k] + q * last[i, j, k] < 0
+                            negative |= inside
+                            positive |= not inside
+                    if negative and positive:
+                        break
+                if negative and positive:
+                    found[count, 0], found[count, 1], found[count, 2] = a * block, b * block, c * block
+                    count += 1
+    return found[:count]
+
+
+@njit(cache=True)
+def gather_blocks(
+    first: NDArray[np.float32], last: NDArray[np.float32], s: float, blocks: Ints, block: int
+) -> NDArray[np.float32]:
+    """Return the samples (k, b + 1, b + 1, b + 1) of blocks, x fastest; infinite beyond the lattice."""
+    nx, ny, nz = first.shape
+    p, q = np.float32(1 - s), np.float32(s)
+    values = np.full((len(blocks), block + 1, block + 1, block + 1), np.float32(np.inf))
+    for n in range(len(blocks)):
+        for i in range(min(block + 1, nx - blocks[n, 0])):
+            for j in range(min(block + 1, ny - blocks[n, 1])):
+                for k in range(min(block + 1, nz - blocks[n, 2])):
+                    x, y, z = blocks[n, 0] + i, blocks[n, 1] + j, blocks[n, 2] + k
+                    values[n, k, j, i] = p * first[x, y, z] + q * last[x, y, z]
+    return values
+
+
+@njit(cache=True)
+def crossing_shares(first: NDArray[np.float32], last: NDArray[np.float32]) -> tuple[Floats, Floats]:
+    """Return the shares s at which nodes join the body (n,) and leave it (m,), not sorted."""
+    a, b = first.ravel(), last.ravel()
+    joins = leaves = 0
+    for n in range(a.size):
+        joins += a[n] >= 0 and b[n] < 0
+        leaves += a[n] < 0 and b[n] >= 0
+    join, leave = np.empty(joins), np.empty(leaves)
+    joins = leaves = 0
+    for n in range(a.size):
+        if a[n] >= 0 and b[n] < 0:
+            join[joins] = a[n] / (a[n] - b[n])
+            joins += 1
+        elif a[n] < 0 and b[n] >= 0:
+            leave[leaves] = a[n] / (a[n] - b[n])
+            leaves += 1
+    return join, leave
+
+
+@njit(cache=True)
+def cell_fractions(f: NDArray[np.floating], h: float) -> NDArray[np.float32]:
+    """Return the part of the cube about each node that a plane at the node's distance leaves inside.
+
+    The distance is the sample over its slope: layers thinner than a spacing keep their volume.
+    """
+    nx, ny, nz = f.shape
+    part = np.zeros((nx, ny, nz), np.float32)
+    for i in range(nx):
+        for j in range(ny):
+            for k in range(nz):
+                value = f[i, j, k]
+                gx = (f[min(i + 1, nx - 1), j, k] - f[max(i - 1, 0), j, k]) / 2
+                gy = (f[i, min(j + 1, ny - 1), k] - f[i, max(j - 1, 0), k]) / 2
+                gz = (f[i, j, min(k + 1, nz - 1)] - f[i, j, max(k - 1, 0)]) / 2
+                slope = np.sqrt(gx * gx + gy * gy + gz * gz)
+                part[i, j, k] = min(max(0.5 - value / max(slope, 0.1 * h), 0.0), 1.0)
+    return part
+
+
+@njit(cache=True)
+def _tetrahedron(f0: float, f1: float, f2: float, f3: float) -> float:
+    """Part of a tetrahedron on which a linear function with these values at its corners is negative."""
+    f = np.sort(np.array([f0, f1, f2, f3]))
+    if f[0] >= 0:
+        return 0.0
+    if f[3] < 0:
+        return 1.0
+    if f[1] >= 0:
+        return float(f[0] ** 3 / ((f[0] - f[1]) * (f[0] - f[2]) * (f[0] - f[3])))
+    if f[2] >= 0:
+        p, q = f[0] / (f[0] - f[2]), f[0] / (f[0] - f[3])
+        r, s = f[1] / (f[1] - f[2]), f[1] / (f[1] - f[3])
+        return float(p * q + q * r * (1 - p) + r * s * (1 - q))
+    return float(1 - f[3] ** 3 / ((f[3] - f[0]) * (f[3] - f[1]) * (f[3] - f[2])))
+
+
+@njit(cache=True)
+def tetrahedra_volume(f: NDArray[np.floating]) -> float:
+    """Return the volume, in cells, on which samples linear in six tetrahedra a cell are negative."""
+    nx, ny, nz = f.shape
+    orders = np.array([[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]])
+    place = np.empty(3, np.int64)
+    corner = np.empty(4)
+    total = 0.0
+    for i in range(nx - 1):
+        for j in range(ny - 1):
+            for k in range(nz - 1):
+                count = 0
+                for a in range(2):
+                    for b in range(2):
+                        for c in range(2):
+                            count += f[i + a, j + b, k + c] < 0
+                if count == 0:
+                    continue
+                if count == 8:
+                    total += 1.0
+                    continue
+                for m in range(6):
+                    place[0], place[1], place[2] = i, j, k
+                    corner[0] = f[i, j, k]
+                    for n in range(3):
+                        place[orders[m, n]] += 1
+                        corner[n + 1] = f[place[0], place[1], place[2]]
+                    total += _tetrahedron(corner[0], corner[1], corner[2], corner[3]) / 6
+    return total
