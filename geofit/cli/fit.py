@@ -78,6 +78,12 @@ def fit(
         bool | None,
         typer.Option("--robust", help=f"Peripheral points that their neighbours deny take no part. {FROM_SITE} not."),
     ] = None,
+    strict: Annotated[
+        bool | None,
+        typer.Option(
+            "--strict", help=f"Meet each peripheral point within the tolerance where knots allow. {FROM_SITE} not."
+        ),
+    ] = None,
     max_iterations: Annotated[int | None, typer.Option(help=f"Cap of the refinement steps. {FROM_SITE} 20.")] = None,
     max_control_points: Annotated[
         int | None, typer.Option(help=f"Cap of the control points. {FROM_SITE} 40 a data point, 15 with a core.")
@@ -108,6 +114,7 @@ def fit(
         "frame": frame and frame.value,
         "smoothing": _smoothing(smoothing),
         "robust": robust,
+        "strict": strict,
         "max_iterations": max_iterations,
         "max_control_points": max_control_points,
         "conflict_distance": conflict_distance,

@@ -50,6 +50,7 @@ _SETTINGS = {
     "frame": message("report.frame", "Frame"),
     "smoothing": message("report.smoothing", "Smoothing"),
     "robust": message("report.outliers-take-no-part", "Outliers take no part"),
+    "strict": message("report.strict", "Every point is met where knots allow"),
     "max_iterations": message("report.max-iterations", "Most iterations"),
     "max_control_points": message("report.max-control-points", "Most control points"),
     "conflict_distance": message("report.conflict-distance", "Conflict distance, m"),

@@ -196,6 +196,14 @@ class FitPanel(QWidget):
             ),
         )  # fmt: skip
         self._add(
+            "strict", self.tr("Beyond tolerance"),
+            ChoiceField({False: self.tr("Listed where noise explains them"), True: self.tr("Met where knots allow")}),
+            self.tr(
+                "Peripheral points farther from the surface than the interior tolerance: listed where noise explains "
+                "them or neighbours contradict them, or met in any case, at the price of swings between them."
+            ),
+        )  # fmt: skip
+        self._add(
             "max_iterations", self.tr("Rounds, at most"), NumberField(whole=True),
             self.tr("How often the fit may refine and adjust before it stops and says what is not met."),
         )  # fmt: skip
