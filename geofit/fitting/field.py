@@ -206,8 +206,11 @@ def choose(
     log_rho = None if smoothing is None else math.log(smoothing)
     if known:
         free = 2 if log_rho is None else 0
-        starts = [(one.alpha, (math.log(one.kappa), math.log(one.rho), *one.stretch)) for one in known]
-        found = [likelihood(alpha).best([start], free, _AGAIN, _NEARBY) for alpha, start in starts]
+        found, rival = [], math.inf
+        for one in known:
+            start = (math.log(one.kappa), math.log(one.rho), *one.stretch)
+            found.append(likelihood(one.alpha).best([start], free, _AGAIN, _NEARBY, rival))
+            rival = min(rival, found[-1].value)
     else:
         found = _search(likelihood, space.degree, len(plane), log_rho)
     found = sorted(found, key=lambda one: one.value)

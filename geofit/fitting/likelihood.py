@@ -49,8 +49,9 @@ UNSOLVABLE = 1e12
 RISE = 0.25
 #: How many times that the variance of the slope is tried.
 _WIDER = np.exp(np.arange(0.0, 14.5))
-#: First steps along each parameter, and the least gain that another round of steps is worth.
-STEPS, SETTLED = (0.7, 1.5, 0.12, 0.12), 0.05
+#: First steps along each parameter, the least gain that another round of steps is worth, and how far behind a rival,
+#: after a round, a search is given up.
+STEPS, SETTLED, BEHIND = (0.7, 1.5, 0.12, 0.12), 0.2, 60.0
 
 
 @dataclass(frozen=True)
@@ -217,11 +218,13 @@ class Likelihood:
         free: int,
         rounds: int,
         steps: tuple[float, ...] = STEPS,
+        rival: float = math.inf,
     ) -> Optimum:
         """Search from the best of several starts, along one of the first ``free`` parameters after the other.
 
         Range and noise relative to the field hardly depend on each other, nor the stretch on both: a parabola along
-        each leads near the optimum, where the gradient by differences would ask for as many values a step.
+        each leads near the optimum, where the gradient by differences would ask for as many values a step. ``rival`` is
+        the value of another smoothness.
         """
         low, high = np.array(self.bounds()).T
         at: Floats = min((np.clip(np.array(one), low, high) for one in starts), key=self)
@@ -231,7 +234,7 @@ class Likelihood:
             # The noise first: it needs no new E.
             for k in sorted(range(free), key=lambda k: k != 1):
                 at, size[k] = self._along(at, k, size[k])
-            if before - self(at) < SETTLED:
+            if before - self(at) < SETTLED or self(at) > rival + BEHIND:
                 break
         value, (kappa, rho) = self(at), np.exp(at[:2]).tolist()
         _, variance, hold = self._known[tuple(float(x) for x in at)]
@@ -255,7 +258,7 @@ class Likelihood:
         if before is not None and after is not None and after > before:
             curvature = 2 * (after - before) / (x[2] - x[0])
             slope = (before * (x[2] - x[1]) + after * (x[1] - x[0])) / (x[2] - x[0])
-            if slope**2 / (2 * curvature) > SETTLED / 4:
+            if slope**2 / (2 * curvature) > SETTLED / 8:
                 places.append(moved(float(np.clip(-slope / curvature, -2 * step, 2 * step))))
         else:
             places.append(moved(2 * step if right < left else -2 * step))
