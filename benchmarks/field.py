@@ -238,9 +238,6 @@ def _folds(points: PointSet) -> tuple[float, list[float], int, float] | None:
     """Return the error of geofit, those of the others, how many points geofit leaves out, and seconds a fit."""
     fold, area, z = folds(points), rectangle(points.xyz), points.xyz[:, 2]
     plane = points.xyz[:, :2] - points.xyz[:, :2].mean(axis=0)
-    processes = [
-        min((fit_process(plane, z, kernel, drift) for kernel in KERNELS), key=lambda one: one.value) for drift in (0, 1)
-    ]
     groups = [np.flatnonzero(fold == k) for k in np.unique(fold)]
     ours, plate = (np.full(len(z), np.nan) for _ in range(2))
     dense = np.full((2, len(z)), np.nan)
@@ -255,7 +252,10 @@ def _folds(points: PointSet) -> tuple[float, list[float], int, float] | None:
             print("   ", error)
         seconds += time.process_time() - start
         plate[group] = thin_plate(points.xyz[rest], points.xyz[group, :2])
-        for row, process in zip(dense, processes, strict=True):
+        # Every method chooses its parameters without the points that it is to predict, as geofit does.
+        for drift, row in enumerate(dense):
+            found = (fit_process(plane[rest], z[rest], kernel, drift) for kernel in KERNELS)
+            process = min(found, key=lambda one: one.value)
             row[group] = process.predict(plane[rest], z[rest], plane[group])[0]
     known = np.isfinite(ours)
     if not known.any():

@@ -83,6 +83,9 @@ def fit(
         bool | None,
         typer.Option("--robust", help=f"Leave outliers out of the fit. {_help('robust', 'not')}"),
     ] = None,
+    strict: Annotated[
+        bool | None, typer.Option("--strict", help=f"Meet every point where knots allow. {_help('strict', 'not')}")
+    ] = None,
     max_iterations: Annotated[int | None, typer.Option(help=_help("max_iterations", "20"))] = None,
     max_control_points: Annotated[int | None, typer.Option(help=_help("max_control_points", "automatic"))] = None,
     conflict_distance: Annotated[float | None, typer.Option(help=_help("conflict_distance", "0.01"))] = None,
@@ -115,6 +118,7 @@ def fit(
         "frame": frame and frame.value,
         "smoothing": _smoothing(smoothing),
         "robust": robust,
+        "strict": strict,
         "max_iterations": max_iterations,
         "max_control_points": max_control_points,
         "conflict_distance": conflict_distance,

@@ -141,6 +141,18 @@ SETTINGS: Mapping[str, SettingText] = {
             True: message("settings.robust-true", "Not fitted"),
         },
     ),
+    "strict": SettingText(
+        message("settings.strict", "Beyond tolerance"),
+        message(
+            "settings.strict-about",
+            "Peripheral points farther from the surface than the interior tolerance: listed where noise explains them "
+            "or neighbours contradict them, or met in any case, at the price of swings between them.",
+        ),
+        choices={
+            False: message("settings.strict-false", "Listed where noise explains them"),
+            True: message("settings.strict-true", "Met where knots allow"),
+        },
+    ),
     "max_iterations": SettingText(
         message("settings.max-iterations", "Rounds, at most"),
         message(

@@ -49,6 +49,9 @@ class FitSettings:
     robust : bool
         Whether peripheral points that their neighbours do not bear out (left-out error beyond 3.5 times its
         standard deviation) take no part in the fit. They are named in the notes, and count in sigma.
+    strict : bool
+        Whether every peripheral point is brought within the interior tolerance where knots allow it, also those that
+        noise explains or that contradict their neighbours. The surface may swing between them.
     max_iterations : int
         Cap of the refinement and adjustment steps.
     max_control_points : int or None
@@ -78,6 +81,7 @@ class FitSettings:
     frame: Literal["auto", "map", "best-plane", "sections"] = "auto"
     smoothing: Literal["auto"] | float = "auto"
     robust: bool = False
+    strict: bool = False
     max_iterations: int = 20
     max_control_points: int | None = None
     conflict_distance: float = 0.01
@@ -102,15 +106,17 @@ class FitSettings:
                 self.smoothing,
                 message("settings.auto-value-unit-word", "the auto value's unit, or the word 'auto'"),
             )
-        if not isinstance(self.robust, bool):
-            raise SettingsError(
-                message(
-                    "settings.true-false-needed",
-                    "{setting} is {value}; true or false is needed.",
-                    **_given("robust", self.robust),
+        for name in ("robust", "strict"):
+            if not isinstance(getattr(self, name), bool):
+                raise SettingsError(
+                    message(
+                        "settings.true-false-needed",
+                        "{setting} is {value}; true or false is needed.",
+                        **_given(name, getattr(self, name)),
+                    )
                 )
-            )
-        if not isinstance(self.max_iterations, int) or not is_finite(self.max_iterations) or self.max_iterations < 0:
+        whole = isinstance(self.max_iterations, int) and not isinstance(self.max_iterations, bool)
+        if not whole or not is_finite(self.max_iterations) or self.max_iterations < 0:
             raise SettingsError(
                 message(
                     "settings.whole-number-needed",

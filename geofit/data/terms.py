@@ -215,6 +215,7 @@ TERMS: frozenset[str] = frozenset(
         "site file's [[horizon]] list",
         "smooth",
         "south",
+        "strict",
         "south-east",
         "south-west",
         "start",

@@ -25,15 +25,21 @@ Floats = NDArray[np.float64]
 
 #: Where a pulled point comes to lie, as a share of the tolerance.
 RIM = 0.9
+#: How many times the largest misfit around a point the control points there may move to meet it.
+SWING = 3.0
 
 
 @dataclass(frozen=True, eq=False)
 class Approximation:
-    """Coefficients, the misfit (m,) at the peripheral points in metres, and the rounds it took."""
+    """Coefficients, the misfit (m,) at the peripheral points in metres, and the rounds it took.
+
+    ``released`` (m,) marks the points that were let go, because they contradict their neighbours.
+    """
 
     coefficients: Floats
     misfit: Floats
     rounds: int
+    released: NDArray[np.bool_]
 
 
 def borrowed(space: TensorSpace, core: tuple[float, float, float, float]) -> NDArray[np.bool_]:
@@ -56,15 +62,19 @@ def approximate(
     tolerance: float,
     limit: float,
     rounds: int,
+    strict: bool = False,
 ) -> Approximation:
     """Bring every point that lies beyond a limit within the tolerance; no frozen control point moves.
+
+    Neighbours that contradict each other are let go: control points that both share would have to move by several
+    times their misfits, and the surface with them where no point sees it.
 
     Parameters
     ----------
     space : TensorSpace
         The space of the whole surface.
     start : (size,) or (size, k) array
-        Coefficients to start from; those that are frozen stay.
+        Coefficients of the field; those that are frozen stay.
     frozen : (size,) array of bool
         Control points borrowed from the core.
     plane : (m, 2) array
@@ -77,24 +87,48 @@ def approximate(
         How far beyond it must lie to be pulled at all: the tolerance, or more where the points' noise explains it.
     rounds : int
         Cap of the number of rounds; with none, points outside the tolerance stay there.
+    strict : bool
+        Whether no point is let go.
     """
     matrix = space.matrix(plane)
     best = start
     misfit = height - matrix @ best
-    held = np.zeros(len(plane), bool)
+    first = _size(misfit)
+    held, released = (np.zeros(len(plane), bool) for _ in range(2))
     done = 0
-    while done < rounds and (_size(misfit) > limit).any():
+    while done < rounds and (_size(misfit)[~released] > limit).any():
         done += 1
-        held |= _size(misfit) > limit
+        held |= (_size(misfit) > limit) & ~released
         # Points that are pulled once stay at the rim of their tolerance while their neighbours are pulled.
         length = _size(misfit[held])
         share = (1 - RIM * tolerance / np.maximum(length, RIM * tolerance)).reshape(-1, *[1] * (misfit.ndim - 1))
         pulled = best + damped_change(csr_array(matrix[held]), share * misfit[held], ~frozen)
+        swinging = np.zeros(len(plane), bool) if strict else _swinging(matrix, pulled - start, first, held)
+        if swinging.any():
+            released |= swinging
+            best, misfit, held = start, height - matrix @ start, np.zeros(len(plane), bool)
+            continue
         after = height - matrix @ pulled
-        if np.maximum(_size(after) - limit, 0).sum() >= 0.98 * np.maximum(_size(misfit) - limit, 0).sum():
+        before, left = (np.maximum(_size(one)[~released] - limit, 0).sum() for one in (misfit, after))
+        if left >= 0.98 * before:
             break
         best, misfit = pulled, after
-    return Approximation(best, _size(misfit), done)
+    return Approximation(best, _size(misfit), done, released)
+
+
+def _swinging(matrix: csr_array, change: Floats, misfit: Floats, held: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return (m,) which of the points that are held make the surface swing around them."""
+    acting = csr_array(matrix[held])
+    moved = _size(change)[acting.indices] * (acting.data > 0)
+    moved = np.maximum.reduceat(moved, acting.indptr[:-1]) if acting.nnz else np.zeros(0)
+    # The largest misfit of those that share a control point.
+    rows = np.repeat(np.arange(acting.shape[0]), np.diff(acting.indptr))
+    around = np.zeros(matrix.shape[1])
+    np.maximum.at(around, acting.indices, misfit[held][rows])
+    largest = np.maximum.reduceat(around[acting.indices], acting.indptr[:-1]) if acting.nnz else np.zeros(0)
+    result = np.zeros(len(held), bool)
+    result[np.flatnonzero(held)[moved > SWING * largest]] = True
+    return result
 
 
 def solved_beside(

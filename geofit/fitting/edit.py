@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csr_array, vstack
+from scipy.sparse import csr_array, diags_array, vstack
 
 from geofit.data.columns import LARGEST
 from geofit.data.errors import ExactnessError, FitError
@@ -139,7 +139,10 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     if isinstance(point, (int, np.integer)):
         exact = exact[exact != point]
     fixed = csr_array(net.space.matrix(given.chart.plane[exact] / net.unit))
-    fixed = csr_array(fixed[(fixed * acting.astype(float)).sum(axis=1) > 0]) if len(exact) else fixed
+    if len(exact):
+        # Points that the acting control points hardly reach must stay all the same: their rows count alike.
+        reached = np.sqrt(np.asarray((fixed * acting.astype(float)).power(2).sum(axis=1)).ravel())
+        fixed = csr_array(diags_array(1 / reached[reached > 0]) @ fixed[reached > 0])
     system = csr_array(vstack([csr_array(row), fixed])) if fixed.shape[0] else csr_array(row)
     wanted = np.concatenate([misfit, np.zeros((fixed.shape[0], *misfit.shape[1:]))])
     try:

@@ -11,7 +11,7 @@ The field is solved on a space that reaches beyond the study area, where no data
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 from geofit.data.errors import FitError
 from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, inverse_squares, spread, sum_squares
 from geofit.data.messages import message
-from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Optimum, plane_coefficients
+from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Optimum, Slope, plane_coefficients
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
-from geofit.splines.tensor import Factor, TensorSpace, band_times
+from geofit.splines.tensor import Factor, TensorSpace
 
 __all__ = [
     "ENOUGH",
@@ -32,9 +32,11 @@ __all__ = [
     "choose",
     "drift_of",
     "plane_trend",
+    "planes_of",
     "precision_band",
     "relative_noise",
     "restricted",
+    "slope_of",
     "smooth",
     "widened",
 ]
@@ -53,8 +55,8 @@ _BEYOND, _GROWTH = 1.5, 1.5
 _KAPPAS, _LOG_RHOS = (0.1, 0.7), (-10.0, -6.0, -2.0)
 #: Stretches that the search for a direction starts from.
 _STRETCHES = ((0.0, 0.0), (0.2, 0.0), (-0.2, 0.0), (0.0, 0.2), (0.0, -0.2))
-#: Rounds of the search over kappa and rho, and over all parameters.
-_FIRST, _LAST = 6, 4
+#: Rounds of the search over kappa and rho, over all parameters, and on a finer space; first steps there.
+_FIRST, _LAST, _AGAIN, _NEARBY = 4, 3, 5, (0.4, 1.5, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,8 @@ class Field:
     ``alpha`` is the exponent of the operator (smoothness nu = alpha - 1), ``kappa`` its inverse range per unit,
     ``rho`` the noise's variance relative to the field's, ``stretch`` its direction (see
     :func:`geofit.splines.matern.metric`). ``contradictory`` says that the data are little else than noise;
-    ``spread`` is the standard deviation of the data about their trend, metres.
+    ``spread`` is the standard deviation of the data about their trend, metres. ``hold`` is the precision with which the
+    plane's slope is held to zero, in units of the noise's (:class:`geofit.fitting.likelihood.Slope`).
     """
 
     alpha: int
@@ -74,6 +77,7 @@ class Field:
     noise: float
     contradictory: bool = False
     spread: float = math.inf
+    hold: float = 0.0
 
     @property
     def energy(self) -> str:
@@ -148,14 +152,27 @@ def drift_of(plane: Rows) -> Floats:
     return np.column_stack([[1.0, 0.0, 0.0], *([-(centre @ axis), *axis] for axis in known)])
 
 
+def slope_of(plane: Rows, trend: Floats | None) -> Slope:
+    """Return what the slope of (n,) heights at (n, 2) places, given about a trend (3,), is held to: none in all.
+
+    Without a trend nothing holds it, nor that of coordinates, of which a trend is (3, k).
+    """
+    directions = drift_of(plane)
+    if trend is None or trend.ndim > 1:
+        return Slope(directions, np.zeros(directions.shape[1]), 0.0)
+    extent = float(np.trace(covariance(plane)[1])) / len(plane)
+    return Slope(directions, np.append(0.0, -(directions[1:, 1:].T @ trend[1:])), extent)
+
+
 def choose(
     space: TensorSpace,
     plane: Rows,
     z: Rows,
     noise: Floats,
     smoothing: float | None = None,
-    known: Field | None = None,
-) -> tuple[Field, float]:
+    known: Sequence[Field] = (),
+    trend: Floats | None = None,
+) -> list[tuple[Field, float]]:
     """Choose the covariance and the noise for data about their trend.
 
     Parameters
@@ -170,15 +187,16 @@ def choose(
         Noise of each point relative to the others (:func:`relative_noise`).
     smoothing : float, optional
         Take this rho; the covariance alone is chosen.
-    known : Field, optional
+    known : sequence of Field
         What a coarser space gave: the search starts there.
+    trend : (3,) or (3, k) array, optional
+        The trend that was removed, coefficients of 1, u, v; without it nothing holds the plane's slope.
 
     Returns
     -------
-    field : Field
-        What was chosen.
-    value : float
-        -2 log of its restricted likelihood, but for a constant of the data.
+    list of (Field, float)
+        The best of each smoothness with -2 log of its restricted likelihood, but for a constant of the data; the best
+        first. On a coarse space the others may gain more from finer spans.
 
     Raises
     ------
@@ -188,22 +206,28 @@ def choose(
     wide = widened(space)
     turned = wide.shape[1] > wide.shape[0]
     if turned:
-        wide, plane, known = wide.turned, plane[:, ::-1], known and known.turned
+        wide, plane, trend, known = wide.turned, plane[:, ::-1], _exchanged(trend), [one.turned for one in known]
     weight = inverse_squares(noise)
     band, right = wide.normal_equations(plane, z, weight)
     square = sum_squares(z, weight)
-    drift = plane_coefficients(wide) @ drift_of(plane)
+    slope = slope_of(plane, trend)
 
     def likelihood(alpha: int) -> Likelihood:
-        return Likelihood(wide, alpha, band, right, square, drift, len(plane))
+        return Likelihood(wide, alpha, band, right, square, slope, len(plane))
 
     few = len(plane) < ENOUGH
-    if known is not None:
-        start = (math.log(known.kappa), math.log(known.rho), *known.stretch)
-        best = likelihood(known.alpha).best([start], 0 if smoothing is not None else 2, _FIRST // 2)
+    log_rho = None if smoothing is None else math.log(smoothing)
+    if known:
+        free = 2 if log_rho is None else 0
+        found, rival = [], math.inf
+        for one in known:
+            start = (math.log(one.kappa), math.log(one.rho), *one.stretch)
+            found.append(likelihood(one.alpha).best([start], free, _AGAIN, _NEARBY, rival))
+            rival = min(rival, found[-1].value)
     else:
-        best = _search(likelihood, space.degree, len(plane), None if smoothing is None else math.log(smoothing))
-    if best.value >= UNSOLVABLE:
+        found = _search(likelihood, space.degree, len(plane), log_rho)
+    found = sorted(found, key=lambda one: one.value)
+    if found[0].value >= UNSOLVABLE:
         text = message(
             "fit.no-smoothing-system-points",
             "No smoothing makes the system of {points} points and {size} control points solvable: the points lie on "
@@ -212,13 +236,17 @@ def choose(
             size=space.size,
         )
         raise FitError(text)
-    scatter, own = spread(z), math.sqrt(best.variance)
-    contradictory = not few and own > CONTRADICTION * max(scatter, FINEST)
-    field = Field(best.alpha, best.kappa, best.rho, best.stretch, own, contradictory, scatter)
-    return (field.turned if turned else field), best.value
+    scatter = spread(z)
+    fields = []
+    for one in found:
+        own = math.sqrt(one.variance) if one.value < UNSOLVABLE else math.nan
+        contradictory = not few and own > CONTRADICTION * max(scatter, FINEST)
+        field = Field(one.alpha, one.kappa, one.rho, one.stretch, own, contradictory, scatter, one.hold)
+        fields.append((field.turned if turned else field, one.value))
+    return [one for one in fields if one[1] < UNSOLVABLE]
 
 
-def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rho: float | None) -> Optimum:
+def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rho: float | None) -> list[Optimum]:
     """Compare the smoothnesses without a direction, then give the better one its direction."""
     few = n < ENOUGH
     alphas = {3: (2,) if few else (2, 3), 2: (2,)}.get(degree, (1,))
@@ -229,13 +257,13 @@ def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rh
         kappas = _KAPPAS if alpha == alphas[0] else _KAPPAS[-1:]
         starts = [(math.log(kappa), log, 0.0, 0.0) for kappa in kappas for log in logs]
         found.append((judge.best(starts, free, _FIRST), judge))
-    best, judge = min(found, key=lambda one: one[0].value)
+    found.sort(key=lambda one: one[0].value)
+    best, judge = found[0]
     if few or best.value >= UNSOLVABLE:
-        return best
+        return [best]
     starts = [(math.log(best.kappa), math.log(best.rho), *stretch) for stretch in _STRETCHES]
-    turned = judge.best(starts, 0 if log_rho is not None else 4, _LAST)
-    # Two parameters more must pay for themselves (G. Schwarz, Ann. Stat. 6, 1978, 461-464).
-    return turned if turned.value < best.value - 2 * math.log(n) else best
+    best = min(best, judge.best(starts, 0 if log_rho is not None else 4, _LAST), key=lambda one: one.value)
+    return [best, *(replace(other, stretch=best.stretch) for other, _ in found[1:])]
 
 
 def widened(space: TensorSpace) -> TensorSpace:
@@ -269,24 +297,42 @@ def restricted(space: TensorSpace, coefficients: Floats) -> Floats:
     return np.ascontiguousarray(net).reshape(space.size, *coefficients.shape[1:])
 
 
-def smooth(space: TensorSpace, field: Field, plane: Rows, z: Rows, weight: Floats) -> Smoothed:
+def smooth(
+    space: TensorSpace, field: Field, plane: Rows, z: Rows, weight: Floats, trend: Floats | None = None
+) -> Smoothed:
     """Return a chosen field on any space: heights about the trend, metres, with the plane of the likelihood."""
     wide = widened(space)
     turned = wide.shape[1] > wide.shape[0]
     if turned:
-        wide, plane, field = wide.turned, plane[:, ::-1], field.turned
+        wide, plane, trend, field = wide.turned, plane[:, ::-1], _exchanged(trend), field.turned
     band, right = wide.normal_equations(plane, z, weight)
-    prior = precision_band(wide, field)
-    directions = drift_of(plane)
-    drift = plane_coefficients(wide) @ directions
-    held = band_times(prior, drift)
+    precision, slope = MaternPrecision(wide, field.alpha), slope_of(plane, trend)
+    prior = field.rho * precision.band(field.kappa, field.stretch)
+    held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
     columns = right.reshape(len(right), -1)
     solved = Factor(band + prior).solve(np.column_stack([columns, held]))
     free, drifted = solved[:, : columns.shape[1]], solved[:, columns.shape[1] :]
-    slopes = np.linalg.lstsq(drift.T @ held - held.T @ drifted, held.T @ free, rcond=None)[0]
+    moment, cross = planes_of(wide, slope, field.hold, held, free, drifted)
+    slopes = np.linalg.lstsq(moment, cross, rcond=None)[0]
     net = (free + drifted @ slopes).reshape(*wide.shape, -1)
-    found = directions @ slopes
+    found = slope.directions @ slopes
     if turned:
         net, found = np.swapaxes(net, 0, 1), found[[0, 2, 1]]
     coefficients = restricted(space, net.reshape(wide.size, *z.shape[1:]))
     return Smoothed(coefficients, found.reshape(3, *z.shape[1:]))
+
+
+def _exchanged(trend: Floats | None) -> Floats | None:
+    return None if trend is None else trend[[0, 2, 1]]
+
+
+def planes_of(
+    space: TensorSpace, slope: Slope, hold: float, held: Floats, free: Floats, drifted: Floats
+) -> tuple[Floats, Floats]:
+    """Return the (r, r) normal matrix of the planes and their (r, k) right-hand side, the slope's prior included.
+
+    ``held`` is rho E times the planes, ``free`` and ``drifted`` what the system gives for the heights and for it.
+    """
+    drift, prior = plane_coefficients(space) @ slope.directions, slope.precision(hold)
+    moment = drift.T @ held - held.T @ drifted + prior
+    return (moment + moment.T) / 2, held.T @ free + (prior @ slope.aim)[:, None]

@@ -45,8 +45,8 @@ Rectangle = tuple[float, float, float, float]
 Stage = Callable[[str, float], None]
 
 #: Shortest spans of the space on which the field is chosen, in units of the spacing: what is shorter no points of that
-#: spacing resolve. Control points of its first level, and at most.
-EVEN, FIRST_LEVEL, LAST_LEVEL = 0.5, 1_500, 25_000
+#: spacing resolve. Control points of the level that the search begins on, of the first that is kept, and at most.
+EVEN, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 500, 1_500, 25_000
 #: A finer level must raise the restricted likelihood by this much, -2 log of it.
 GAIN = 10.0
 #: Span around a point that is met within its tolerance, in units: what lies between stays the field's.
@@ -157,20 +157,25 @@ def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpac
 def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, TensorSpace]:
     """Choose the regional field, and the even space that resolves it (see :func:`geofit.fitting.field.choose`).
 
-    Spans are halved in area while the likelihood gains by it, down to those that the points resolve.
+    Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and
+    noise on the first level. Its spans are halved in area while the likelihood gains by it, down to those that the
+    points resolve.
     """
     degree, noise = degree_for(len(data.plane)), relative_noise(data.accuracy)
     given = None if settings.smoothing == "auto" else float(settings.smoothing)
     limit = min(most, LAST_LEVEL)
     count = min(FIRST_LEVEL, limit)
-    space = even_space(data.area, EVEN, degree, count)
-    field, value = choose(space, data.plane, data.value, noise, given)
+    space, sketch = (even_space(data.area, EVEN, degree, most) for most in (count, SKETCH))
+    known: list[Field] = []
+    if sketch.size < space.size:
+        known = [one for one, _ in choose(sketch, data.plane, data.value, noise, given, (), data.trend)]
+    field, value = choose(space, data.plane, data.value, noise, given, known, data.trend)[0]
     while 2 * count <= limit:
         count *= 2
         finer = even_space(data.area, EVEN, degree, count)
         if finer.size < 1.3 * space.size:
             break
-        better, reached = choose(finer, data.plane, data.value, noise, given, field)
+        better, reached = choose(finer, data.plane, data.value, noise, given, [field], data.trend)[0]
         if reached > value - GAIN:
             break
         space, field, value = finer, better, reached
@@ -179,7 +184,7 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, T
 
 def smoothed(data: Data, space: TensorSpace, field: Field) -> Smoothed:
     """Return a chosen field on a space."""
-    return smooth(space, field, data.plane, data.value, inverse_squares(relative_noise(data.accuracy)))
+    return smooth(space, field, data.plane, data.value, inverse_squares(relative_noise(data.accuracy)), data.trend)
 
 
 def approximate_all(
@@ -236,26 +241,36 @@ class Periphery:
         coefficients = self._refitted(space, start) if self.refit else start.coefficients
         misfit = _misfit(space, coefficients, plane, value)
         limit = self._limit(misfit)
-        # A tolerance finer than the data's own contradiction is reported, not chased; nor is a given smoothing.
-        chased = not self.field.contradictory and self.settings.smoothing == "auto" and len(self.data.plane) <= CLOUD
+        chased = self._chased
         rounds = self.settings.max_iterations if chased else 0
         if chased and (misfit > limit).any():
             space, coefficients = self._narrowed(space, coefficients, plane[misfit > limit])
-        total = 0
+        total, field = 0, coefficients
         if not (misfit > limit).any():
             beyond = np.where(misfit > tolerance, misfit, 0.0)
             return Beside(space, coefficients, self._frozen(space), 0, limit, self._notes(beyond, limit))
         while True:
             frozen = self._frozen(space)
-            result = approximate(space, coefficients, frozen, plane, value, tolerance, limit, rounds)
+            result = approximate(space, field, frozen, plane, value, tolerance, limit, rounds, self.settings.strict)
             total += result.rounds
             excess = np.where(result.misfit > limit, result.misfit, 0.0)
             at_u, at_v = self._new_knots(space, plane, excess) if chased else ({}, {})
             if not at_u and not at_v:
                 break
-            space, coefficients = multiply_knots(space, result.coefficients, at_u, at_v)
+            space, field = multiply_knots(space, field, at_u, at_v)
         beyond = np.where(result.misfit > tolerance, result.misfit, 0.0)
-        return Beside(space, result.coefficients, frozen, total, limit, self._notes(beyond, limit))
+        notes = self._notes(beyond, limit, bool((result.released & (beyond > 0)).any()))
+        return Beside(space, result.coefficients, frozen, total, limit, notes)
+
+    @property
+    def _chased(self) -> bool:
+        """Whether points beyond the tolerance are met: not if the data contradict each other, nor by a given smoothing.
+
+        Nor are those of a cloud (CLOUD). A tolerance finer than the data's own contradiction is reported, unless every
+        point is to be met all the same.
+        """
+        sound = not self.field.contradictory and self.settings.smoothing == "auto"
+        return self.settings.strict or (sound and len(self.data.plane) <= CLOUD)
 
     def _frozen(self, space: TensorSpace) -> NDArray[np.bool_]:
         return np.zeros(space.size, bool) if self.core is None else borrowed(space, self.core).ravel()
@@ -278,7 +293,7 @@ class Periphery:
         """
         noise, tolerance = self.field.noise, self.settings.interior_tolerance
         shown = float(np.sqrt(np.mean(misfit**2))) > SHOWN * noise
-        if not shown or noise > BENT * tolerance or len(misfit) < ENOUGH:
+        if self.settings.strict or not shown or noise > BENT * tolerance or len(misfit) < ENOUGH:
             return tolerance
         return max(tolerance, noise * float(ndtri(1 - UNLIKELY / (2 * len(misfit)))))
 
@@ -327,10 +342,10 @@ class Periphery:
                 new[axis][middle] = 1
         return new
 
-    def _notes(self, beyond: Floats, limit: float) -> tuple[Message, ...]:
+    def _notes(self, beyond: Floats, limit: float, released: bool = False) -> tuple[Message, ...]:
         if limit > self.settings.interior_tolerance and not (beyond > limit).any():
             return self._noise_notes(beyond)
-        return (*self._bent_notes(), *self._excess_notes(beyond))
+        return (*self._bent_notes(), *self._excess_notes(beyond, released))
 
     def _noise_notes(self, beyond: Floats) -> tuple[Message, ...]:
         """Count the points that lie beyond the tolerance because their own noise puts them there."""
@@ -349,8 +364,7 @@ class Periphery:
     def _bent_notes(self) -> tuple[Message, ...]:
         """Say where meeting the points costs more between them than it gains at them."""
         noise, tolerance = self.field.noise, self.settings.interior_tolerance
-        chased = not self.field.contradictory and self.settings.smoothing == "auto" and len(self.data.plane) <= CLOUD
-        if not chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
+        if not self._chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
             return ()
         note = message(
             "fit.points-scatter-smoothest-surface",
@@ -363,11 +377,17 @@ class Periphery:
         )
         return (note.with_severity("warning"),)
 
-    def _excess_notes(self, excess: Floats) -> tuple[Message, ...]:
+    def _excess_notes(self, excess: Floats, released: bool) -> tuple[Message, ...]:
         count = int((excess > 0).sum())
         if not count:
             return ()
         reason = message("fit.no-control-points-allowed", "no more control points are allowed there")
+        if released:
+            reason = message(
+                "fitting.neighbours-contradict",
+                "neighbours nearer to each other than the knots contradict each other there (strict meets them where "
+                "knots allow, and the surface swings between them)",
+            )
         if self.field.contradictory:
             noise = self.field.noise
             reason = message(

@@ -29,8 +29,8 @@ Rectangle = tuple[float, float, float, float]
 STEEP = 55.0
 #: Points within this distance of each other are at one place, metres.
 SAME = 1e-6
-#: Thickness of the points across their best plane, relative to their extent, that still counts as a plane.
-PLANAR = 0.2
+#: Thickness of the points across their best plane, relative to either extent in it, that still counts as a plane.
+PLANAR = 0.3
 #: Share of a section's length that may run backwards before the section counts as overturned.
 OVERTURNED = 0.02
 
@@ -126,7 +126,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
             "fit.height-field-map-mean", "height field over the map (mean dip {dip:.0f} degrees)", dip=dip
         )
     extent = np.ptp(plane.to_local(points.xyz), axis=0)
-    thin = extent[2] <= PLANAR * max(extent[0], extent[1])
+    thin = extent[2] <= PLANAR * min(extent[0], extent[1])
     over_plane = backtracking(points, plane)
     steep = message(
         "fit.height-field-best-plane", "height field over its best plane: it dips {dip:.0f} degrees", dip=dip
@@ -142,6 +142,16 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
                 "(overturned), so it is no height field",
                 share=100 * over_map,
             ),
+        )
+    if over_map <= OVERTURNED:
+        return "map", message(
+            "fit.cloud-not-plane",
+            "height field over the map: as a whole the points dip {dip:.0f} degrees, but they scatter across that "
+            "plane by {thickness:.0f} m over {length:.0f} x {width:.0f} m",
+            dip=dip,
+            thickness=float(extent[2]),
+            length=float(max(extent[:2])),
+            width=float(min(extent[:2])),
         )
     if dip >= STEEP:
         return "best-plane", steep

@@ -18,12 +18,12 @@ from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
 from geofit.data.messages import message
-from geofit.fitting.field import Field, drift_of, precision_band, relative_noise, widened
-from geofit.fitting.likelihood import plane_coefficients
+from geofit.fitting.field import Field, planes_of, relative_noise, slope_of, widened
 from geofit.fitting.model import Model
 from geofit.fitting.net import even_space, gather
 from geofit.splines.blocks import BlockFactor, InverseBlocks
-from geofit.splines.tensor import TensorSpace, band_times
+from geofit.splines.matern import MaternPrecision
+from geofit.splines.tensor import TensorSpace
 
 __all__ = ["Posterior", "posterior"]
 
@@ -58,7 +58,7 @@ class Posterior:
     model : Field
         The field's covariance and noise.
     square : float
-        The penalised sum of squares, z' W (z - f): what noise^2 is estimated from.
+        The penalised sum of squares, z' W (z - f) and the slope's: what noise^2 is estimated from.
     trend : (3,) array
         Plane 1, u, v under the field, metres.
     """
@@ -165,19 +165,20 @@ def posterior(model: Model) -> Posterior:
     turned = space.shape[1] > space.shape[0]
     if turned:
         space, field = space.turned, field.turned
-    plane = data.plane[:, ::-1] if turned else data.plane
+    plane, trend = (data.plane[:, ::-1], data.trend[[0, 2, 1]]) if turned else (data.plane, data.trend)
     weight = 1 / relative_noise(data.accuracy) ** 2
     band, right = space.normal_equations(plane, data.value, weight)
-    prior = precision_band(space, field)
-    planes = plane_coefficients(space) @ drift_of(plane)
-    held = band_times(prior, planes)
+    precision, slope = MaternPrecision(space, field.alpha), slope_of(plane, trend)
+    prior = field.rho * precision.band(field.kappa, field.stretch)
+    held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
     factor = BlockFactor(band + prior)
     solved = factor.solve(np.column_stack([right, held]))
-    free, drift = solved[:, 0], solved[:, 1:]
-    moment = planes.T @ held - held.T @ drift
-    moment = (moment + moment.T) / 2
-    coefficients = free + drift @ np.linalg.solve(moment, held.T @ free)
-    square = float(weight @ data.value**2 - right @ coefficients)
+    free, drift = solved[:, :1], solved[:, 1:]
+    moment, cross = planes_of(space, slope, field.hold, held, free, drift)
+    slopes = np.linalg.solve(moment, cross)
+    coefficients = (free + drift @ slopes)[:, 0]
+    off = slopes[:, 0] - slope.aim
+    square = float(weight @ data.value**2 - right @ coefficients - slope.aim @ slope.precision(field.hold) @ off)
     return Posterior(
         np.flatnonzero(kept), data.plane, data.value, weight, space, turned, factor, drift, moment, coefficients,
         field, square, data.trend,

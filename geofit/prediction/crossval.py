@@ -17,6 +17,7 @@ from geofit.fitting.model import Model
 from geofit.fitting.posterior import Posterior
 from geofit.prediction.folds import beyond_hull, block_labels, groups_of, hole_labels
 from geofit.prediction.kriging import krige_left_out
+from geofit.prediction.small_sets import Refits
 from geofit.prediction.thinplate import thin_plate_left_out
 
 __all__ = ["BLOCK", "Fold", "about_the_hull", "calibrated", "folds_of", "left_out", "one_by_one"]
@@ -38,7 +39,7 @@ class Fold:
     predicted: Prediction
 
 
-def folds_of(model: Model, fit: LinearFit) -> list[Fold]:
+def folds_of(model: Model, fit: LinearFit | Refits) -> list[Fold]:
     """Leave out every hole, every section and every block of a height field in turn."""
     given = fit.posterior
     points = model.problem.points[given.kept]
@@ -66,7 +67,7 @@ def one_by_one(model: Model, given: Posterior) -> list[Fold]:
     return [Fold("hole", label, groups_of(label), Prediction(error, error, variance))]
 
 
-def calibrated(fit: LinearFit, folds: list[Fold], places: Floats, variance: Floats) -> Calibration:
+def calibrated(fit: LinearFit | Refits, folds: list[Fold], places: Floats, variance: Floats) -> Calibration:
     """Hold the standard deviation to the errors of all schemes (:func:`geofit.fitting.calibration.calibrate`).
 
     ``places`` (k, 2) lie all over the surface, ``variance`` (k,) is what the fit expects there, m^2.

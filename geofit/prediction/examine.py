@@ -23,6 +23,7 @@ from geofit.prediction.bands import Grid, Spread, grid_over, uncertainty_on
 from geofit.prediction.crossval import Fold, about_the_hull, calibrated, folds_of, left_out, one_by_one
 from geofit.prediction.drilling import suggest_holes
 from geofit.prediction.refits import sections_by_refit
+from geofit.prediction.small_sets import SMALL, Refits
 from geofit.prediction.thinplate import thin_plate_inverse
 
 __all__ = ["MOST", "examine"]
@@ -48,7 +49,8 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
     Returns
     -------
     OffData
-        Errors at holes, sections and blocks left out (no refit: :mod:`geofit.fitting.deletion`) beside the
+        Errors at holes, sections and blocks left out (no refit: :mod:`geofit.fitting.deletion`; of fewer than
+        30 points by true refits: :mod:`geofit.prediction.small_sets`) beside the
         thin-plate spline and kriging on the same folds; standard deviation on a grid, held to those errors; the next
         holes; outliers.
 
@@ -169,9 +171,10 @@ def _left_out(
         )
     else:
         fit = linear_fit(model, given)
-        folds = folds_of(model, fit)
+        judged = Refits(model, given) if len(given.value) < SMALL else fit
+        folds = folds_of(model, judged)
         tell(progress, "calibration", 0.5)
-        calibration = calibrated(fit, folds, grid.plane, Spread(model, given, uncalibrated()).variance(grid.plane))
+        calibration = calibrated(judged, folds, grid.plane, Spread(model, given, uncalibrated()).variance(grid.plane))
         outliers = _outliers(model, fit, calibration.at(given.plane))
     return folds, calibration, outliers
 

@@ -28,6 +28,11 @@ CLASSES = 15
 _RANGES = np.geomspace(0.1, 4.0, 24)
 #: Points whose distances the variogram is estimated from.
 _MOST = 2_000
+#: Distances that may be looked at to fit a variogram without each group; where it takes more, one group out of so many
+#: points hardly changes it, and all points give one variogram.
+_AFFORDED = 20_000_000
+#: Fewer points than these have no variogram of their own once one is left out.
+_FEW = 10
 
 
 @dataclass(frozen=True)
@@ -80,8 +85,12 @@ def fit_variogram(plane: Floats, z: Floats) -> Variogram:
 
 
 def krige_left_out(plane: Floats, z: Floats, groups: Sequence[Ints]) -> Floats:
-    """Return (n,) estimates at the points of each group from the nearest points of the other groups; else nan."""
-    model = fit_variogram(plane, z)
+    """Return (n,) estimates at the points of each group from the nearest points of the other groups; else nan.
+
+    The variogram too is that of the other groups, where their number allows it.
+    """
+    refitted = len(z) >= _FEW and len(groups) * min(len(z), _MOST) ** 2 <= _AFFORDED
+    common = None if refitted else fit_variogram(plane, z)
     estimate = np.full(len(z), np.nan)
     every = np.arange(len(z))
     for group in groups:
@@ -89,6 +98,7 @@ def krige_left_out(plane: Floats, z: Floats, groups: Sequence[Ints]) -> Floats:
         if not len(rest):
             continue
         h = cdist(plane[group], plane[rest])
+        model = common or fit_variogram(plane[rest], z[rest])
         near = np.argsort(h, axis=1, kind="stable")[:, :NEIGHBOURS]
         estimate[group] = _ordinary(model, plane[rest][near], z[rest][near], np.take_along_axis(h, near, axis=1))
     return estimate

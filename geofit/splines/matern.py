@@ -55,13 +55,30 @@ class MaternPrecision:
         return [(m, k, n) for m in range(self.alpha + 1) for k in range(m + 1) for n in range(m + 1)]
 
     @cached_property
-    def _factors(self) -> tuple[Floats, Floats]:
-        """Diagonals of the factors of each term: (terms, p + 1, nu) at and below, and (terms, 2 p + 1, nv) of all."""
+    def _grams(self) -> tuple[list[list[Floats]], list[list[Floats]]]:
         p = self.space.degree
-        gu, gv = (_grams(knots, p, self.alpha) for knots in (self.space.knots_u, self.space.knots_v))
+        return _grams(self.space.knots_u, p, self.alpha), _grams(self.space.knots_v, p, self.alpha)
+
+    @cached_property
+    def _factors(self) -> tuple[Floats, Floats]:
+        """Diagonals of the factors of each term: (terms, (p + 1) nu) at and below, (terms, (2 p + 1) nv) of all."""
+        p, (gu, gv) = self.space.degree, self._grams
         along = [[_diagonal(gu[m - k][m - n], a) for a in range(p + 1)] for m, k, n in self._terms]
         across = [[_diagonal(gv[k][n], b) for b in range(-p, p + 1)] for _, k, n in self._terms]
-        return np.array(along), np.array(across)
+        return np.array(along).reshape(len(along), -1), np.array(across).reshape(len(across), -1)
+
+    @cached_property
+    def _of_planes(self) -> Floats:
+        """Return (terms, size, 3) each term times the coefficients of 1, u and v; those of order 2 and more vanish."""
+        p, (gu, gv) = self.space.degree, self._grams
+        u, v = (bspline.greville(knots, p) for knots in (self.space.knots_u, self.space.knots_v))
+        planes = ((np.ones_like(u), np.ones_like(v)), (u, np.ones_like(v)), (np.ones_like(u), v))
+        terms = [(m, k, n) for m, k, n in self._terms if m < 2]
+        products = [
+            [np.outer(gu[m - k][m - n] @ along, gv[k][n] @ across).ravel() for along, across in planes]
+            for m, k, n in terms
+        ]
+        return np.swapaxes(np.array(products), 1, 2)
 
     def weights(self, kappa: float, stretch: tuple[float, float]) -> Floats:
         """Return the weight of each term."""
@@ -83,14 +100,18 @@ class MaternPrecision:
         """Return the band of E, (bandwidth + 1, size), for a kappa per unit of length and a stretch (see `metric`)."""
         p, (nu, nv) = self.space.degree, self.space.shape
         along, across = self._factors
-        weighted = along * self.weights(kappa, stretch)[:, None, None]
-        blocks = np.einsum("tai,tbj->abij", weighted, across, optimize=True)
+        blocks = ((along * self.weights(kappa, stretch)[:, None]).T @ across).reshape(p + 1, nu, 2 * p + 1, nv)
         band = np.zeros((self.space.bandwidth + 1, nu, nv))
         for a in range(p + 1):
             for b in range(-p, p + 1):
                 if a * nv + b >= 0:
-                    band[a * nv + b] += blocks[a, b + p]
+                    band[a * nv + b] += blocks[a, :, b + p]
         return band.reshape(self.space.bandwidth + 1, self.space.size)
+
+    def times_planes(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
+        """Return E times the coefficients of 1, u and v, (size, 3)."""
+        terms = self._of_planes
+        return np.asarray(np.tensordot(self.weights(kappa, stretch)[: len(terms)], terms, axes=1))
 
 
 def _grams(knots: Floats, degree: int, order: int) -> list[list[Floats]]:

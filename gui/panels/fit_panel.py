@@ -162,7 +162,8 @@ class FitPanel(QWidget):
         for name in ("across", "seam", "frame"):
             self._add(name, ChoiceField(_choices(name)))
         self._head(self.tr("Fit"))
-        self._add("robust", ChoiceField(_choices("robust")))
+        for name in ("robust", "strict"):
+            self._add(name, ChoiceField(_choices(name)))
         self._add("max_iterations", NumberField(whole=True))
         self._add("max_control_points", AutoField(None, at_most, whole=True, start=2000))
         self._add("conflict_distance", NumberField(unit))

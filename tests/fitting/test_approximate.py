@@ -117,3 +117,19 @@ def test_the_interpolated_truth_is_near_between_the_points():
     at = np.random.default_rng(8).uniform(0.5, 7.5, (500, 2))
     at = at[~((at >= (2.5, 1.5)) & (at <= (5.5, 6.5))).all(axis=1)]
     assert np.abs(space.matrix(at) @ result.coefficients - wave(at)).max() < 0.2
+
+
+def test_neighbours_that_contradict_each_other_are_let_go_unless_every_point_is_to_be_met():
+    space = space_of()
+    plane = np.array([[1.5, 1.5], [1.6, 1.55], [6.5, 6.5]])
+    height, frozen = np.array([4.0, -4.0, 2.0]), np.zeros(space.size, bool)
+    found = {
+        strict: approximate(space, np.zeros(space.size), frozen, plane, height, 0.05, 0.05, 200, strict)
+        for strict in (False, True)
+    }
+    assert found[False].released.tolist() == [True, True, False]
+    assert found[False].misfit == pytest.approx([4, 4, 0.0], abs=0.05)
+    assert np.abs(found[False].coefficients).max() < 10
+    assert not found[True].released.any()
+    assert found[True].misfit.max() < 3
+    assert np.abs(found[True].coefficients).max() > 20

@@ -63,7 +63,7 @@ def space_over(n, degree=3):
 
 
 def chosen(space, plane, z, smoothing=None):
-    return choose(space, plane, z, np.ones(len(z)), smoothing)[0]
+    return choose(space, plane, z, np.ones(len(z)), smoothing)[0][0]
 
 
 def smoothed(space, field, plane, z):
@@ -132,8 +132,8 @@ def test_turning_the_axes_turns_the_field():
     plane, z, _ = cloud(200, 1, 0.3, rugged(1))
     knots_u = bspline.clamped_knots(np.linspace(0, 14.2, 30), 3)
     knots_v = bspline.clamped_knots(np.linspace(0, 14.2, 26), 3)
-    one, value = choose(TensorSpace(knots_u, knots_v), plane, z, np.ones(200))
-    other, same = choose(TensorSpace(knots_v, knots_u), plane[:, ::-1], z, np.ones(200))
+    one, value = choose(TensorSpace(knots_u, knots_v), plane, z, np.ones(200))[0]
+    other, same = choose(TensorSpace(knots_v, knots_u), plane[:, ::-1], z, np.ones(200))[0]
     assert same == pytest.approx(value, abs=1e-6)
     assert other.turned.stretch == pytest.approx(one.stretch, abs=1e-9)
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from geofit.fitting.likelihood import CURVED, DOUBT, Likelihood, plane_coefficients
+from geofit.fitting.likelihood import CURVED, DOUBT, RISE, Likelihood, Slope
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import TensorSpace
@@ -26,7 +26,7 @@ def setting(seed=0, columns=1):
 def judge(space, plane, z, weight, alpha):
     band, right = space.normal_equations(plane, z, weight)
     square = float((weight @ z.reshape(N, -1) ** 2).sum())
-    return Likelihood(space, alpha, band, right, square, plane_coefficients(space), N)
+    return Likelihood(space, alpha, band, right, square, Slope(np.eye(3), np.zeros(3), 0.0), N)
 
 
 def dense_value(space, plane, z, weight, alpha, log_kappa, log_rho, stretch):
@@ -86,3 +86,31 @@ def test_an_exact_plane_has_a_finite_likelihood():
     space, plane, _, weight = setting()
     likelihood = judge(space, plane, 3 + plane @ (0.5, -0.2), weight, 2)
     assert np.isfinite(likelihood(np.array([0.0, -3.0, 0.0, 0.0])))
+
+
+def test_the_slope_s_prior_agrees_with_dense_algebra():
+    space, plane, z, weight = setting()
+    aim, places = np.array([0.0, -0.4, 0.7]), [(0.0, -3.0, 0.0, 0.0), (-1.5, -5.0, 0.2, 0.1)]
+    extent = float(((plane - plane.mean(axis=0)) ** 2).sum(axis=1).mean())
+    band, right = space.normal_equations(plane, z, weight)
+    likelihood = Likelihood(space, 2, band, right, float(weight @ z**2), Slope(np.eye(3), aim, extent), N)
+    full = np.zeros((space.size, space.size))
+    a, f = space.matrix(plane).toarray(), np.column_stack([np.ones(N), plane])
+    expected = []
+    for log_kappa, log_rho, *stretch in places:
+        band = MaternPrecision(space, 2).band(math.exp(log_kappa), stretch)
+        for k in range(len(band)):
+            index = np.arange(space.size - k)
+            full[index + k, index] = full[index, index + k] = band[k, : space.size - k]
+        values = []
+        for wider in np.exp(np.arange(15.0)):
+            hold = math.exp(log_rho + 2 * log_kappa) * 4 * math.pi * extent / RISE / wider
+            v = np.diag(1 / weight) + a @ np.linalg.solve(full, a.T) / math.exp(log_rho) + f[:, 1:] @ f[:, 1:].T / hold
+            inverse, rest, one = np.linalg.inv(v), z - f @ aim, f[:, :1]
+            moment = (one.T @ inverse @ one).item()
+            misfit = rest @ inverse @ rest - (one.T @ inverse @ rest).item() ** 2 / moment
+            value = (N - 1) * math.log(misfit / (N - 1)) + np.linalg.slogdet(v)[1] + math.log(moment)
+            values.append(value + 3 * math.log(wider) + 1 / wider)
+        expected.append(min(values) + (np.hypot(*stretch) / DOUBT) ** 2)
+    ours = [likelihood(np.array(place)) for place in places]
+    np.testing.assert_allclose(np.diff(ours), np.diff(expected), atol=1e-5)

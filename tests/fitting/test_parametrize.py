@@ -177,3 +177,14 @@ def test_a_symmetric_fold_is_right_between_its_sections():
     rng = np.random.default_rng(3)
     between = fold_at(rng.uniform(0.05, 0.95, 400), rng.uniform(10, 290, 400)) + np.array((EASTING, NORTHING, 500))
     assert rms(fit_horizon(folded()).distance(between)) < 2.0
+
+
+def test_a_cloud_that_is_no_plane_is_laid_over_the_map():
+    """Steep as a whole, but as thick across its best plane as that is wide: every place must keep an elevation."""
+    rng = np.random.default_rng(4)
+    a, d, w = rng.uniform(0, 300, 60), rng.uniform(0, 800, 60), rng.uniform(-80, 80, 60)
+    points = PointSet(np.column_stack([a + EASTING, w + 0.2 * d + NORTHING, d]))
+    chart = choose_chart(points, SETTINGS, None)
+    assert chart.frame.kind == "map"
+    assert "fit.cloud-not-plane" in {note.code for note in chart.notes}
+    assert np.isfinite(fit_horizon(points).elevation(*points.xyz[:, :2].T)).all()

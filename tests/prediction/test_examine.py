@@ -26,3 +26,15 @@ def test_one_vertical_hole_has_no_area_and_says_so():
     assert found.uncertainty is None
     assert found.suggestions == ()
     assert "prediction.no-area" in {note.code for note in found.notes}
+
+
+def test_holes_of_a_small_set_are_left_out_by_true_refits():
+    rng = np.random.default_rng(8)
+    plan = rng.uniform(0, 900, (20, 2))
+    z = 30 * np.sin(plan[:, 0] / 150) * np.cos(plan[:, 1] / 200) + rng.normal(0, 2, 20)
+    boundary = np.array([[0, 0], [900, 0], [900, 900], [0, 900.0]])
+    points = PointSet(np.column_stack([plan, z]), hole=[f"B{k}" for k in range(20)])
+    holes = next(one for one in examine(fit_horizon(points, None, boundary)).left_out if one.scheme == "hole")
+    for k in (0, 7, 13):
+        rest = fit_horizon(points[np.arange(20) != k], None, boundary)
+        assert holes.error[k] == pytest.approx(z[k] - float(rest.elevation(*plan[k])), abs=1e-6)

@@ -89,11 +89,12 @@ def field_without(given: Posterior, keep: np.ndarray) -> tuple[np.ndarray, np.nd
     # The ridge of the factor that the fit is solved with: K of all points has it.
     k = k + RIDGES[0] * diags_array((a.T @ diags_array(given.weight) @ a + energy).diagonal())
     solved = splu(csc_array(k)).solve(a.T.toarray())
-    # Covariance of the field a priori conditioned on the points; the plane is free.
+    # Covariance of the field a priori conditioned on the points; the plane's slope is held to none, trend included.
     among = a @ solved
     v = np.diag(w) - w[:, None] * among[np.ix_(keep, keep)] * w
-    moment = f[keep].T @ v @ f[keep]
-    b = np.linalg.solve(moment, f[keep].T @ v @ given.value[keep])
+    prior = np.diag([0.0, given.model.hold, given.model.hold])
+    moment = f[keep].T @ v @ f[keep] + prior
+    b = np.linalg.solve(moment, f[keep].T @ v @ given.value[keep] - prior @ given.trend)
     height = among[:, keep] @ (w * (given.value[keep] - f[keep] @ b)) + f @ b
     rest = f - among[:, keep] @ (w[:, None] * f[keep])
     return height, among + rest @ np.linalg.solve(moment, rest.T)
