@@ -17,8 +17,10 @@ from geofit.bodies.field import BodyField
 from geofit.bodies.fitted import Fitted
 from geofit.bodies.region import Region
 from geofit.bodies.settings import BodySettings
+from geofit.data.columns import measurable_places
 from geofit.data.errors import FitError, SettingsError
 from geofit.data.messages import message
+from geofit.data.numbers import is_finite
 from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
@@ -129,7 +131,7 @@ class ImplicitBody:
         """Return the same mesh about the local origin, where coordinates keep all their digits."""
         lower, upper = self.extent
         longest = float((upper - lower).max())
-        if not np.isfinite(spacing) or spacing <= 0 or longest / spacing > MOST:
+        if not is_finite(spacing) or spacing <= 0 or longest / spacing > MOST:
             raise SettingsError(
                 message(
                     "bodies.spacing-cannot-used",
@@ -190,4 +192,4 @@ class ImplicitBody:
         return write_body(self, path, patches)
 
     def _local(self, xyz: ArrayLike) -> Floats:
-        return np.asarray(np.atleast_2d(np.asarray(xyz, float)).reshape(-1, 3) - self.origin)
+        return np.asarray(measurable_places(xyz) - self.origin)

@@ -8,7 +8,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.data.columns import column, places
+from geofit.data.columns import column, places, refuse_far
 from geofit.data.errors import FitError, PointsError
 from geofit.data.messages import Message, Verbatim, message
 
@@ -151,6 +151,7 @@ def _finite_places(name: str, given: ArrayLike) -> Floats:
                 index=bad[0],
             )
         )
+    refuse_far(xyz)
     return xyz
 
 

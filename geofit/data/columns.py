@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import PointsError
 from geofit.data.messages import Message, Verbatim, message, plural_message
 
-__all__ = ["LARGEST", "column", "finite_places", "measurable_places", "places", "wrong_shape"]
+__all__ = ["LARGEST", "column", "finite_places", "measurable_places", "places", "refuse_far", "wrong_shape"]
 
 #: Largest coordinate, metres: beyond it a double has not the digits that a surface is measured by.
 LARGEST = 1e9
@@ -87,8 +88,22 @@ def measurable_places(given: ArrayLike) -> NDArray[np.float64]:
     PointsError
         If a coordinate is larger: distances to it have no digits left.
     """
-    rows: Any = [given] if np.ndim(given) == 1 and np.size(given) else given
+    rows: Any = given
+    with suppress(ValueError):  # ragged, which is told below
+        rows = [given] if np.ndim(given) == 1 and np.size(given) else given
     xyz = finite_places(rows)
+    refuse_far(xyz)
+    return xyz
+
+
+def refuse_far(xyz: NDArray[np.float64]) -> None:
+    """Refuse coordinates larger than :data:`LARGEST`.
+
+    Raises
+    ------
+    PointsError
+        If there is one.
+    """
     farthest = float(np.abs(xyz).max(initial=0.0))
     if farthest > LARGEST:
         raise PointsError(
@@ -100,7 +115,6 @@ def measurable_places(given: ArrayLike) -> NDArray[np.float64]:
                 largest=LARGEST,
             )
         )
-    return xyz
 
 
 def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
 from geofit.checks.check import CORE_LIMIT
-from geofit.data.columns import measurable_places
+from geofit.data.columns import refuse_far
 from geofit.data.errors import ExactnessError, FitError, PointsError
 from geofit.data.messages import Message, message, plural_message
 from geofit.data.points import PointSet, look_like_degrees
@@ -239,7 +239,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
                 count=len(points),
             )
         )
-    measurable_places(points.xyz)
+    refuse_far(points.xyz)
     if look_like_degrees(points.xyz):
         raise PointsError(
             message(
@@ -269,7 +269,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
             shape=corners.shape,
         )
         raise PointsError(text)
-    measurable_places(np.insert(corners, 2, 0.0, axis=1))
+    refuse_far(corners)
     fault = fault_of_area(corners)
     if fault is not None:
         raise PointsError(

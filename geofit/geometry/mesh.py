@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
+from geofit.data.numbers import is_finite, shown
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.splines.patch import Patch
@@ -24,6 +24,8 @@ Ints = NDArray[np.int64]
 WELD = 1e-6
 #: No span is cut into more pieces than this.
 FINEST = 400
+#: Triangles of one surface.
+MOST = 20_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +86,7 @@ def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.0
     Raises
     ------
     SettingsError
-        If the tolerance is not above 0.
+        If the tolerance is not above 0, or so small that the triangles do not fit into memory.
 
     Notes
     -----
@@ -92,15 +94,27 @@ def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.0
     (h_u^2 |S_uu.n| + 2 h_u h_v |S_uv.n| + h_v^2 |S_vv.n|) / 8 (Filip, Magedson, Markot 1986, "Surface
     algorithms using bounds on derivatives"). Second derivatives of a cubic are largest at the ends of spans.
     """
-    if not (tolerance > 0 and math.isfinite(tolerance)):
+    if not is_finite(tolerance) or tolerance <= 0:
         raise SettingsError(
             message(
                 "geometry.chordal-tolerance-give-metres",
                 "The chordal tolerance is {tolerance}; give metres above 0.",
-                tolerance=tolerance,
+                tolerance=shown(tolerance),
             )
         )
     lines = [_lines(patch, tolerance) for patch in patches]
+    count = sum(2 * (len(u) - 1) * (len(v) - 1) for u, v in lines)
+    if count > MOST:
+        raise SettingsError(
+            message(
+                "geometry.too-many-triangles",
+                "A chordal tolerance of {tolerance:.3g} m makes {count:.2g} triangles; at most {most:.0e} are made. "
+                "Give a larger tolerance.",
+                tolerance=tolerance,
+                count=count,
+                most=MOST,
+            )
+        )
     table = _Vertices()
     edges = _shared_edges(tuple(patches), lines)
     parts = [_patch_triangles(patch, lines[k], edges[k], table) for k, patch in enumerate(patches)]

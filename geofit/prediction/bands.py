@@ -14,6 +14,7 @@ from threadpoolctl import threadpool_limits
 from geofit.data.columns import measurable_places
 from geofit.data.errors import FitError, SettingsError
 from geofit.data.messages import message
+from geofit.data.numbers import is_finite, shown
 from geofit.data.prediction import OffData, Uncertainty
 from geofit.fitting.calibration import Calibration, uncalibrated
 from geofit.fitting.horizon_fit import HorizonFit
@@ -202,12 +203,12 @@ def band(
     The deviation is taken as normal, with the calibrated standard deviation of :func:`prediction_sd`. Control points
     at Greville abscissae: Farin, Curves and Surfaces for CAGD, 5th ed., sec. 8.3.
     """
-    if not 0 < share < 1:
+    if not is_finite(share) or not 0 < share < 1:
         raise SettingsError(
             message(
                 "prediction.share-probability-above-below",
-                "share is {share!r}; a probability above 0 and below 1 is needed, for instance 0.9.",
-                share=share,
+                "share is {share}; a probability above 0 and below 1 is needed, for instance 0.9.",
+                share=shown(share),
             )
         )
     uncertainty = found.uncertainty if isinstance(found, OffData) else found

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
+from geofit.data.numbers import is_finite, shown
 from geofit.geometry.mesh import Mesh
 from geofit.sampling.isolines import plane_lines
 from geofit.surfaces.protocol import Surface
@@ -76,12 +77,12 @@ def contours(
     z = mesh.points[:, 2] + surface.origin[2]
     low, high = float(z.min()), float(z.max())
     step = interval_for(low, high) if interval is None else interval
-    if not (step > 0 and math.isfinite(step)):
+    if not is_finite(step) or step <= 0:
         raise SettingsError(
             message(
                 "geometry.contour-interval-give-metres",
                 "The contour interval is {step}; give metres above 0.",
-                step=step,
+                step=shown(step),
             )
         )
     first, last = math.ceil(low / step), math.floor(high / step)

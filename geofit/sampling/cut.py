@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.data.columns import LARGEST
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.geometry.mesh import Mesh
@@ -41,8 +42,11 @@ def section_line(line: ArrayLike) -> Floats:
     SettingsError
         If there are fewer than two different corners.
     """
-    corners = np.asarray(line, float)
-    if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
+    try:
+        corners = np.asarray(line, float)
+    except (TypeError, ValueError, OverflowError):
+        corners = np.empty(0)
+    if corners.ndim != 2 or corners.shape[1] != 2 or not (np.abs(corners) <= LARGEST).all():
         raise SettingsError(
             message(
                 "geometry.section-line-shape-finite",

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 
 import numpy as np
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
+from geofit.data.numbers import is_finite
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.sampling.contours import interval_for
@@ -79,7 +79,7 @@ def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Float
             )
         )
     step = interval_for(0.0, float((high - low).max()) * 20 / CELLS) if cell is None else cell
-    if not (step > 0 and math.isfinite(step)):
+    if not is_finite(step) or step <= 0:
         raise SettingsError(
             message("geometry.cell-size-give-metres", "The cell size is {step}; give metres above 0.", step=step)
         )

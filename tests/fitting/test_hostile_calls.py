@@ -8,9 +8,20 @@ import numpy as np
 import pytest
 from refusals import refused
 
-from geofit import FitSettings, PointSet, examine, fit_horizon, prediction_sd
+from geofit import (
+    BodyData,
+    FitSettings,
+    PointSet,
+    band,
+    contours,
+    cut_section,
+    examine,
+    fit_body,
+    fit_horizon,
+    prediction_sd,
+)
 from geofit.data.columns import LARGEST
-from geofit.data.errors import FitError, PointsError
+from geofit.data.errors import FitError, PointsError, SettingsError
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.surfaces.mesh_surface import MeshSurface
 
@@ -136,3 +147,44 @@ def test_sigma_below_epsilon_is_never_shown_as_above_it():
     assert failed.accuracy.sigma < failed.accuracy.epsilon
     assert ">=" not in repr(failed)
     assert ">=" not in repr(failed.accuracy)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, 0, -1, LONG, "a", True])
+def test_lengths_and_shares_are_numbers_above_zero(value):
+    surface, known = fitted(), examine(fitted())
+    with refused(SettingsError, "geometry.chordal-tolerance-give-metres"):
+        surface.triangulate(value)
+    with refused(SettingsError, "geometry.contour-interval-give-metres"):
+        contours(surface, value)
+    with refused(SettingsError, "prediction.share-probability-above-below"):
+        band(surface, known, share=value)
+
+
+def test_a_tolerance_too_fine_for_memory_is_refused_at_once():
+    with refused(SettingsError, "geometry.too-many-triangles"):
+        fitted().triangulate(1e-300)
+
+
+@pytest.mark.parametrize(
+    "line", ["ab", [[0, 0], [LONG, 0]], [[1], [2, 3]], [[0, 0], [1e300, 0]], [[0, 0], [np.nan, 0]]]
+)
+def test_a_section_line_is_one(line):
+    with refused(SettingsError, "geometry.section-line-shape-finite"):
+        cut_section(fitted(), line)
+
+
+def test_bodies_refuse_what_horizons_refuse():
+    rng = np.random.default_rng(0)
+    ball = rng.normal(size=(60, 3))
+    ball *= 50 / np.linalg.norm(ball, axis=1)[:, None]
+    body = fit_body(BodyData(contacts=ball, inside=0.5 * ball, outside=1.5 * ball))
+    for places in ([[np.nan, 0, 0]], [[1e300, 0, 0]], [[LONG, 0, 0]], "a", [[1, 2]], [[1], [2, 3]]):
+        for measure in (body.distance, body.value, body.gradient):
+            with pytest.raises(PointsError):
+                measure(places)
+    assert body.distance([0, 0, 100.0]) == pytest.approx(50, abs=5)
+    with refused(PointsError, "points.coordinate-too-large"):
+        BodyData(contacts=1e300 * ball)
+    for spacing in (np.nan, 0, -1, LONG, "a", 1e-12):
+        with refused(SettingsError, "bodies.spacing-cannot-used"):
+            body.triangulate(spacing)
