@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from geofit.cli.app import app
 from geofit.cli.console import guarded, listening, print_json, print_table, say
-from geofit.cli.options import Json, Out
+from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
 from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, open_volume, stem_of
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ def pores(
     pore: PoreLabel,
     voxel: VoxelEdge = None,
     shape: Shape = None,
+    report: Report = False,
+    lang: Lang = LanguageCode.EN,
     as_json: Json = False,
 ) -> int:
     """Extract pores, throats and the pore surface; compare the rock before and after."""
@@ -32,6 +35,12 @@ def pores(
     volume = open_volume(source, pore, voxel, shape)
     with listening() as progress:
         run = run_pores(volume, out, stem_of(source), progress)
+        if report:
+            from geofit.data.languages import language
+            from geofit.project.single_reports import write_pores_report
+
+            pages = write_pores_report(run, stem_of(source), out, language(lang.value))
+            run = replace(run, files=(*run.files, *pages))
     if as_json:
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:

@@ -27,6 +27,7 @@ def run_site(
     pdf: bool = False,
     apart: bool = False,
     bands: bool = False,
+    bodies: tuple[str, ...] = (),
 ) -> int:
     """Fit, write and report the horizons of a site; print what was found; return the exit code."""
     from geofit.data.languages import EN
@@ -38,7 +39,7 @@ def run_site(
     print_counts(site.counts)
     delivery = deliver(
         site, out, horizons, changes, progress, language=language or EN, pdf=pdf, apart=apart, bands=bands,
-        workers=available(),
+        bodies=bodies, workers=available(),
     )  # fmt: skip
     if as_json:
         found = report_document(delivery.report) if delivery.report else failed_document(delivery.failures)
