@@ -22,6 +22,7 @@ from geofit.gui.workspace import Workspace
 from geofit.io.export.write import FORMATS
 from geofit.project.document import Document
 from geofit.project.export_task import export_surfaces
+from geofit.project.interventions import interventions_of
 from geofit.project.step_files import StepFile
 from geofit.report.result import HorizonResult
 
@@ -130,10 +131,14 @@ class Delivering(QObject):
     def _result(self, name: str, surface: HorizonFit) -> HorizonResult:
         """Return what a report says of a surface; of a STEP file only if one was written of this very surface."""
         site, offdata = self._document.site_in_use(), self._document.offdata(name)
+        recipe = self._document.state.recipes.get(name)
+        excluded, edits = (None, ()) if recipe is None else interventions_of(self._document.site, recipe)
         exported, file = self._exported.get(name, (None, None))
         if file is None or exported is not surface:
-            return HorizonResult(surface, site, offdata=offdata)
-        return HorizonResult(surface, site, file.read_back[name], step_bytes=file.size, offdata=offdata)
+            return HorizonResult(surface, site, offdata=offdata, excluded=excluded, edits=edits)
+        return HorizonResult(
+            surface, site, file.read_back[name], step_bytes=file.size, offdata=offdata, excluded=excluded, edits=edits
+        )
 
     def list_report(self, path: object) -> None:
         """List a report in the project tree."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,7 +10,7 @@ import typer
 
 from geofit.cli.app import app
 from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
-from geofit.cli.options import Json, Out
+from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
 from geofit.data.errors import InputError
 from geofit.data.messages import Message, message
 
@@ -34,6 +35,8 @@ def body(
         list[Path] | None, typer.Option(help="With a collar table: logged intervals; may be repeated.")
     ] = None,
     epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
+    report: Report = False,
+    lang: Lang = LanguageCode.EN,
     as_json: Json = False,
 ) -> int:
     """Fit a closed body to logged intervals: STEP, triangles, volumes, residuals."""
@@ -46,6 +49,13 @@ def body(
     print_counts(holes.counts)
     with listening() as progress:
         run = run_body(holes, out, codes=code, settings=settings, progress=progress)
+        if report:
+            from geofit.data.languages import language
+            from geofit.project.single_reports import write_body_report
+
+            title = getattr(holes, "title", None)
+            pages = write_body_report(run, out, language(lang.value), title=title, progress=progress)
+            run = replace(run, files=(*run.files, *pages))
     if as_json:
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:

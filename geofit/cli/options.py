@@ -41,6 +41,8 @@ class Frame(StrEnum):
 
 Out = Annotated[Path, typer.Option(help="Folder for the results; made if it is not there.")]
 Json = Annotated[bool, typer.Option("--json", help="Print the results as JSON on stdout instead of a table.")]
+Report = Annotated[bool, typer.Option("--report", help="Write NAME_report.html and NAME_report.pdf, too.")]
+Lang = Annotated[LanguageCode, typer.Option(help="Language of the report: English or Chinese.")]
 X = Annotated[str | None, typer.Option("--x", help="CSV: column of the easting, m. Default: found by its header.")]
 Y = Annotated[str | None, typer.Option("--y", help="CSV: column of the northing, m.")]
 Z = Annotated[str | None, typer.Option("--z", help="CSV: column of the elevation, m.")]

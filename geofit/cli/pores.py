@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from geofit.cli.app import app
 from geofit.cli.console import guarded, listening, print_json, print_table, say
-from geofit.cli.options import Json, Out
+from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
 from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
 
 if TYPE_CHECKING:
@@ -31,6 +32,8 @@ def pores(
     slabs: Annotated[
         bool, typer.Option("--slabs", help="Leave the volume on the disk: balls and network, but no surface.")
     ] = False,
+    report: Report = False,
+    lang: Lang = LanguageCode.EN,
     as_json: Json = False,
 ) -> int:
     """Extract pores, throats and the pore surface; compare the rock before and after."""
@@ -42,6 +45,12 @@ def pores(
     volume = open_volume(**options) if slabs else read_volume(**options)
     with listening() as progress:
         run = run_pores(volume, out, stem_of(source), progress)
+        if report:
+            from geofit.data.languages import language
+            from geofit.project.single_reports import write_pores_report
+
+            pages = write_pores_report(run, stem_of(source), out, language(lang.value))
+            run = replace(run, files=(*run.files, *pages))
     if as_json:
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:

@@ -26,6 +26,10 @@ def report(
     out: Out,
     lang: Annotated[LanguageCode, typer.Option(help="Language of the report: English or Chinese.")] = LanguageCode.EN,
     horizon: Annotated[list[str] | None, typer.Option(help="Report on this horizon only; may be repeated.")] = None,
+    body: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CODE", help="Code of logged intervals: fit a body to it, too; may be repeated."),
+    ] = None,
     project: Annotated[str | None, typer.Option(help=f"Project number on the cover. {_SITE}")] = None,
     client: Annotated[str | None, typer.Option(help=f"Client. {_SITE}")] = None,
     organisation: Annotated[str | None, typer.Option(help=f"Who issues the report. {_SITE}")] = None,
@@ -68,4 +72,5 @@ def report(
             )
         read = replace(read, title=title)
         names = tuple(horizon or ())
-        return run_site(read, out, names, {}, as_json, progress, language(lang.value), pdf=True)
+        bodies = tuple(body or ())
+        return run_site(read, out, names, {}, as_json, progress, language(lang.value), pdf=True, bodies=bodies)

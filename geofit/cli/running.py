@@ -29,6 +29,7 @@ def run_site(
     bands: bool = False,
     scheduler: str | None = None,
     workers: int | None = None,
+    bodies: tuple[str, ...] = (),
 ) -> int:
     """Fit, write and report the horizons of a site; print what was found; return the exit code."""
     from geofit.data.languages import EN
@@ -40,7 +41,7 @@ def run_site(
     print_counts(site.counts)
     delivery = deliver(
         site, out, horizons, changes, progress, language=language or EN, pdf=pdf, apart=apart, bands=bands,
-        scheduler=scheduler, workers=workers or available(),
+        bodies=bodies, scheduler=scheduler, workers=workers or available(),
     )  # fmt: skip
     if as_json:
         found = report_document(delivery.report) if delivery.report else failed_document(delivery.failures)

@@ -17,10 +17,12 @@ from geofit.data.progress import Progress, tell
 from geofit.data.site import Section, Site
 from geofit.project.horizon_files import Made, compared, section_profiles, write_horizon
 from geofit.project.side_by_side import Crew, crew
+from geofit.project.single_reports import BodyPart, write_body_part
 from geofit.report.result import HorizonResult
 
 if TYPE_CHECKING:
     from geofit.report.accuracy_report import AccuracyReport
+    from geofit.report.document import Chapter
     from geofit.report.pictures import Pictures
     from geofit.site.fit_site import SiteFit
     from geofit.site.order import Order
@@ -50,13 +52,15 @@ class Delivery:
     cuts: tuple[FaultCut, ...] = ()
     contradictions: tuple[Contradiction, ...] = ()
     report: AccuracyReport | None = None
+    bodies: tuple[BodyPart, ...] = ()
 
     @property
     def exit_code(self) -> int:
         """0: every sigma < epsilon; 1: some verdict FAIL; 2: a horizon could not be fitted."""
         if self.failures or not self.results:
             return 2
-        return 0 if all(result.accuracy.passed for result in self.results) else 1
+        passed = (*(result.accuracy.passed for result in self.results), *(body.passed for body in self.bodies))
+        return 0 if all(passed) else 1
 
 
 def deliver(
@@ -72,6 +76,7 @@ def deliver(
     apart: bool = False,
     bands: bool = False,
     scheduler: str | None = None,
+    bodies: Sequence[str] = (),
     workers: int = 1,
 ) -> Delivery:
     """Fit horizons of a site, examine them, and write everything that belongs to them.
@@ -103,6 +108,8 @@ def deliver(
         Whether ``_upper90.step`` and ``_lower90.step`` are written: the rock lies between them with 90 %.
     scheduler : str, optional
         Where the horizons are fitted side by side; see :func:`geofit.fit_site`. None: one after another.
+    bodies : sequence of str
+        Codes of logged intervals, a body each: it is fitted, its files are written, and it has a chapter of the report.
     workers : int
         Processes that fit (with a scheduler), examine and draw horizons side by side; 1: none, all is done here. A
         script that asks for more needs the guard ``if __name__ == "__main__"``.
@@ -129,12 +136,12 @@ def deliver(
     with crew(min(workers, len(names))) as hands:
         listen = _within(progress, 0.0, FITS)
         fits = fit_site(site, names, changes, listen, apart=apart, scheduler=scheduler, workers=workers)
-        return _deliver(site, fits, out, hands, progress, language, date, pdf, bands)
+        return _deliver(site, fits, out, hands, progress, language, date, pdf, bands, bodies)
 
 
 def _deliver(
     site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, date: str,
-    pdf: bool, bands: bool,
+    pdf: bool, bands: bool, bodies: Sequence[str],
 ) -> Delivery:  # fmt: skip
     """Examine, draw and write what was fitted."""
     from geofit.report.gather import accuracy_report
@@ -148,6 +155,8 @@ def _deliver(
     results = [one.result for one in made]
     images = {name: picture for one in made for name, picture in one.images.items()}
     warnings += [text for one in made for text in one.warnings]
+    parts = _bodies(site, bodies, fits, out, hands, progress, language, failures)
+    images |= {name: picture for part in parts for name, picture in part.images.items()}
     orders: tuple[Order, ...] = ()
     report: AccuracyReport | None = None
     if results:
@@ -169,9 +178,28 @@ def _deliver(
             with replacing(out / "site.png") as picture:
                 picture.write_bytes(data)
         forms: tuple[Form, ...] = ("html", "json", "pdf") if pdf else ("html", "json")
-        _write_report(report, whole, images, out, language, font, forms)
+        chapters = [part.chapter for part in parts]
+        _write_report(report, whole, images, out, language, font, forms, chapters)
         warnings = [text for text in (font, *warnings, unordered, whole.missing) if text]
-    return Delivery(out, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions, report)
+    return Delivery(
+        out, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions, report, tuple(parts)
+    )
+
+
+def _bodies(
+    site: Site, codes: Sequence[str], fits: SiteFit, out: Path, hands: Crew, progress: Progress | None,
+    language: Language, failures: dict[str, Message],
+) -> list[BodyPart]:  # fmt: skip
+    """Fit the bodies of a report and write their files; note those that failed."""
+    surfaces = {name: surface.with_(model=None) for name, surface in fits.surfaces.items()}
+    tasks = [partial(write_body_part, site, code, surfaces, out, language.code) for code in codes]
+    found: dict[int, BodyPart] = {}
+    for i, made in hands.do(tasks, _within(progress, 0.9, 0.9), "bodies"):
+        if isinstance(made, Message):
+            failures[codes[i]] = made
+        else:
+            found[i] = made
+    return [found[i] for i in sorted(found)]
 
 
 def _examined(
@@ -368,6 +396,7 @@ def _write_report(
     language: Language,
     warning: Message,
     forms: Sequence[Form],
+    bodies: Sequence[Chapter] = (),
 ) -> None:
     """Write the report in its forms; ``whole`` shows the site, ``images`` its horizons."""
     from geofit.report.chapters import document
@@ -375,7 +404,7 @@ def _write_report(
     from geofit.report.pdf import write_pdf
     from geofit.report.schema import report_document, write_json
 
-    pages = document(report, language, missing_picture=whole.missing, warning=warning)
+    pages = document(report, language, missing_picture=whole.missing, warning=warning, bodies=bodies)
     pictures = {**images, **whole.images}
     if "json" in forms:
         write_json(report_document(report), out / "report.json")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from geofit.data.languages import Language, translate
 from geofit.data.messages import Message
 from geofit.data.verdict import Lamp
@@ -31,7 +33,12 @@ __all__ = ["document"]
 
 
 def document(
-    report: AccuracyReport, t: Language, *, missing_picture: Message | None = None, warning: Message | None = None
+    report: AccuracyReport,
+    t: Language,
+    *,
+    missing_picture: Message | None = None,
+    warning: Message | None = None,
+    bodies: Sequence[Chapter] = (),
 ) -> Document:
     """Lay an accuracy report out as chapters.
 
@@ -45,6 +52,8 @@ def document(
         Why there are no pictures in space; empty if there are.
     warning : str
         Something the reader must know about the report itself, a missing font for one.
+    bodies : sequence of Chapter
+        Chapters of bodies, which follow those of the horizons.
     """
     site = report.site or t("Site")
     title = report.title
@@ -58,6 +67,7 @@ def document(
         _summary(report, t),
         *([drawings] if drawings else []),
         *(horizon_chapter(horizon, t, missing_picture) for horizon in report.horizons),
+        *bodies,
         Chapter(t("The site as a whole"), structure_blocks(report, t), follows=True),
         interventions(report, t),
         *annexes,

@@ -4,7 +4,20 @@ from __future__ import annotations
 
 import math
 
-__all__ = ["count", "degrees", "equals", "given", "length", "measured", "metres", "place", "share", "size"]
+__all__ = [
+    "area",
+    "count",
+    "degrees",
+    "equals",
+    "given",
+    "length",
+    "measured",
+    "metres",
+    "place",
+    "share",
+    "size",
+    "volume",
+]
 
 #: A figure that is not there.
 NOTHING = "–"
@@ -14,7 +27,7 @@ NOISE = 1e-9
 SMALL = 1e-4
 #: Keeps the groups of thousands on one line.
 _GAP = "\N{NO-BREAK SPACE}"
-_UNITS = {"m": "m", "deg": "°", "degrees": "°", "m2": "m²", "m3": "m³", "": ""}
+_UNITS = {"m": "m", "deg": "°", "degrees": "°", "m2": "m²", "m3": "m³", "1": "", "": ""}
 
 
 def metres(value: float | None) -> str:
@@ -107,6 +120,29 @@ def count(value: float | None) -> str:
     (['1', '234', '567'], '–')
     """
     return NOTHING if value is None or not math.isfinite(value) else _grouped(f"{value:.0f}".replace("-", "−"))
+
+
+def volume(value: float | None) -> str:
+    """Write cubic metres with four significant digits or all before the point.
+
+    Examples
+    --------
+    >>> volume(1234567.8).split(), volume(12.3456).split()
+    (['1', '234', '568', 'm³'], ['12.35', 'm³'])
+    """
+    return _measure(value, "m³")
+
+
+def area(value: float | None) -> str:
+    """Write square metres as :func:`volume` writes cubic ones."""
+    return _measure(value, "m²")
+
+
+def _measure(value: float | None, unit: str) -> str:
+    if value is None or not math.isfinite(value):
+        return NOTHING
+    text = count(value) if abs(value) >= 1000 else f"{value:.4g}".replace("-", "−")
+    return f"{text}{_GAP}{unit}"
 
 
 def share(value: float | None) -> str:

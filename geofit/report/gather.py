@@ -57,6 +57,7 @@ if TYPE_CHECKING:
 __all__ = [
     "PICTURES",
     "accuracy_report",
+    "check_lines",
     "cut_of",
     "horizon_report",
     "inputs_of",
@@ -192,7 +193,7 @@ def horizon_report(result: HorizonResult) -> HorizonReport:
         ),
         worst=tuple(_point(result, i) for i in a.worst[:WORST]),
         seams=_seams(a.seams),
-        checks=_checks(a.checks),
+        checks=check_lines(a.checks),
         read_back=_file(result),
         off_data=None if result.offdata is None else _off_data(result, result.offdata),
         conflicts=tuple(
@@ -254,7 +255,8 @@ def _seams(seams: Sequence[Seam]) -> tuple[SeamLine, ...]:
     return tuple(SeamLine(s.first, s.second, float(s.gap), float(s.angle)) for s in seams)
 
 
-def _checks(checks: Sequence[Check]) -> tuple[CheckLine, ...]:
+def check_lines(checks: Sequence[Check]) -> tuple[CheckLine, ...]:
+    """Return checks as a report lists them."""
     return tuple(
         CheckLine(
             c.name,
@@ -280,7 +282,7 @@ def _file(result: HorizonResult) -> FileCheck | None:
     return FileCheck(
         back.file, back.sha256, result.step_bytes, back.faces, back.brep_valid, back.self_intersects, back.sigma,
         back.max_abs, _finite(back.core_max_abs), back.free_edges, back.outline_edges, back.edge_tolerance,
-        _checks(back.checks), _seams(back.seams),
+        check_lines(back.checks), _seams(back.seams),
     )  # fmt: skip
 
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from geofit.report.scene import Scene
 
-__all__ = ["Pictures", "draw", "draw_sections", "draw_site", "write_picture"]
+__all__ = ["Pictures", "draw", "draw_sections", "draw_site", "png", "write_picture"]
 
 #: Width of the report's pictures, inches: what an A4 page has between its margins; their dots an inch; height of the
 #: picture of the cover, inches.
@@ -60,7 +60,7 @@ def draw(result: HorizonResult, t: Language = EN) -> Pictures:
     flat = {
         "plan": _map(plots.site_plan, result, t, plots.map_shape(result, plan=True))
         if sheet is None
-        else _png(draw_contour_plan(sheet, result, t)),
+        else png(draw_contour_plan(sheet, result, t)),
         "deviation": _map(plots.deviation_map, result, t, plots.map_shape(result, plan=False)),
         "residuals": _residuals(result, t),
     }
@@ -93,7 +93,7 @@ def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
         figure.text(
             0, 0.004, together([t("All horizons and holes."), translate(view.caption, t)], t), size=7.5, color=MUTED
         )
-        return Pictures({SITE_PICTURE: _png(figure)}, view, None)
+        return Pictures({SITE_PICTURE: png(figure)}, view, None)
 
 
 def draw_sections(results: Sequence[HorizonResult], sections: Sequence[Section], t: Language = EN) -> dict[str, bytes]:
@@ -103,7 +103,7 @@ def draw_sections(results: Sequence[HorizonResult], sections: Sequence[Section],
     for section in sections:
         cut, name = cut_of(results, section), section_picture(section)
         sheet = section_sheet(section, site, cut, name)
-        drawn[name] = _png(draw_section(sheet, section, site, cut, points, t))
+        drawn[name] = png(draw_section(sheet, section, site, cut, points, t))
     return drawn
 
 
@@ -143,7 +143,7 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
         figure.text(0.555, top, word, size=17, weight="bold", color=colour)
         lamps = " · ".join(translate(lamp.text, t) for lamp in verdict.lamps)
         figure.text(0.555, second, lamps, color=MUTED, size=10 if len(lamps) < 70 else 7.5)
-        data = _png(figure, margin=40)
+        data = png(figure, margin=40)
     with replacing(path) as part:
         part.write_bytes(data)
 
@@ -158,7 +158,7 @@ def _map(
     with drawing(TYPE):
         figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
         plot(figure.add_axes((0.115, 0.45 / height, 0.63, 1 - 0.7 / height)), result, t)
-        return _png(figure)
+        return png(figure)
 
 
 def _residuals(result: HorizonResult, t: Language) -> bytes:
@@ -170,7 +170,7 @@ def _residuals(result: HorizonResult, t: Language) -> bytes:
         bottom, tall = 1.0 / height, 1 - 1.25 / height
         histogram(figure.add_axes((0.075, bottom, 0.39, tall)), result, t)
         normal_plot(figure.add_axes((0.575, bottom, 0.415, tall)), result, t)
-        return _png(figure)
+        return png(figure)
 
 
 def _space(view: Scene, t: Language) -> bytes:
@@ -182,10 +182,10 @@ def _space(view: Scene, t: Language) -> bytes:
         height = tall * (1 + plots.BELOW) + 0.32
         figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
         plots.space(figure.add_axes((0.0, 1 - tall / height, 1.0, tall / height), anchor="NW"), view, t)
-        return _png(figure)
+        return png(figure)
 
 
-def _png(figure: Figure, margin: int = 0) -> bytes:
+def png(figure: Figure, margin: int = 0) -> bytes:
     """Return a figure as PNG: no transparency, no version of matplotlib, no white rows above and below."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from PIL import Image

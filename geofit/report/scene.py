@@ -23,7 +23,16 @@ from geofit.report.view import rims, trimmed
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["NO_OPENGL", "Scene", "elevation_colours", "horizon_scene", "require_opengl", "site_scene"]
+__all__ = [
+    "NO_OPENGL",
+    "Scene",
+    "elevation_colours",
+    "horizon_scene",
+    "mesh_scene",
+    "network_scene",
+    "require_opengl",
+    "site_scene",
+]
 
 Floats = NDArray[np.float64]
 
@@ -39,6 +48,8 @@ STEPS = 90
 SHEER = 0.55
 #: Relief is raised by a whole number, at most MOST_RAISED, until it is this share of the width.
 RELIEF, MOST_RAISED = 0.14, 5
+#: Pores of a network are drawn so much smaller, so that the throats are seen.
+BALL = 0.6
 #: Where the eye is: from the south-west, above.
 EYE = (-0.5, -0.8, 0.62)
 
@@ -121,6 +132,76 @@ def site_scene(
     for hole in holes:
         plotter.add_mesh(_line(place(hole.xyz)), color=kind_style(hole.kind)[1], line_width=4)
     return _shoot(plotter, place, raised, (0.0, 0.0), boxed=True)
+
+
+def mesh_scene(
+    vertices: Floats, triangles: NDArray[np.integer], points: Floats, colour: str, size: tuple[int, int] = (1600, 1200)
+) -> Scene:
+    """Draw a closed triangle mesh with points on it, in its box.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        Map coordinates, metres.
+    triangles : (m, 3) array of int
+        Corners of the triangles.
+    points : (k, 3) array
+        Map coordinates, metres.
+    colour : str
+        #rrggbb.
+    size : tuple of int
+        Pixels.
+
+    Raises
+    ------
+    MissingDependencyError
+        If there is no OpenGL library.
+    """
+    plotter = _plotter(size)
+    import pyvista
+
+    place = _Place((vertices.min(axis=0) + vertices.max(axis=0)) / 2, 1)
+    faces = np.column_stack([np.full(len(triangles), 3), triangles])
+    _add_surface(plotter, pyvista.PolyData(place(vertices), faces.ravel()), color=colour)
+    _add_points(plotter, place(points))
+    return _shoot(plotter, place, 1, (0.0, 0.0), boxed=True)
+
+
+def network_scene(
+    centre: Floats, radius: Floats, links: NDArray[np.integer], size: Floats, pixels: tuple[int, int] = (1600, 1200)
+) -> Scene:
+    """Draw a pore network: a ball for each pore, coloured by its radius, a line for each throat, the sample's box.
+
+    Parameters
+    ----------
+    centre, radius : (n, 3) and (n,) arrays
+        Of the pores, in one unit.
+    links : (m, 2) array of int
+        Pores that throats join.
+    size : (3,) array
+        Edges of the sample.
+    pixels : tuple of int
+        Size of the picture.
+
+    Raises
+    ------
+    MissingDependencyError
+        If there is no OpenGL library.
+    """
+    plotter = _plotter(pixels)
+    import pyvista
+
+    place = _Place(size / 2, 1)
+    cloud = pyvista.PolyData(place(centre))
+    cloud["radius"] = radius.astype(np.float32)
+    ball = pyvista.Sphere(radius=1.0, theta_resolution=14, phi_resolution=14)
+    balls = cloud.glyph(geom=ball, scale="radius", factor=BALL, orient=False)
+    plotter.add_mesh(balls, scalars="radius", cmap=elevation_colours(), show_scalar_bar=False, smooth_shading=True)
+    if len(links):
+        lines = np.column_stack([np.full(len(links), 2), links])
+        plotter.add_mesh(pyvista.PolyData(place(centre), lines=lines.ravel()), color="#3a4652", line_width=5)
+    plotter.add_mesh(pyvista.Box(np.column_stack([-size / 2, size / 2]).ravel()), style="wireframe", color="#9aa7b4")
+    return _shoot(plotter, place, 1, (float(radius.min()), float(radius.max())))
 
 
 def elevation_colours() -> Any:

@@ -18,6 +18,7 @@ from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any, TypeVar
 
+from geofit.data.distribution import install_line
 from geofit.data.errors import GeofitError, MissingDependencyError, SettingsError
 from geofit.data.messages import message
 
@@ -148,10 +149,11 @@ def _client(scheduler: str) -> tuple[Any, Any]:
         raise MissingDependencyError(
             message(
                 "streaming.needs-dask",
-                "The scheduler {scheduler} needs Dask, which cannot be imported ({error}). Install it: pip install "
-                "'geofit[scale]', or use --scheduler local.",
+                "The scheduler {scheduler} needs Dask, which cannot be imported ({error}). Install it: {install}, or "
+                "use --scheduler local.",
                 scheduler=scheduler,
                 error=error,
+                install=install_line("scale"),
             )
         ) from None
     if "://" not in scheduler and not Path(scheduler).is_file():

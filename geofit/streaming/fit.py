@@ -18,10 +18,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from threadpoolctl import threadpool_limits
 
+from geofit.data.columns import LARGEST
 from geofit.data.errors import FitError, PointsError
 from geofit.data.long_arrays import LongArray, Rows, blocks, covariance, everywhere
 from geofit.data.messages import message
-from geofit.data.points import LARGEST, PointSet
+from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.fitting.assemble import patches_of
