@@ -33,9 +33,7 @@ def cave(
     ] = None,
     excavation: Annotated[
         Path | None,
-        typer.Option(
-            help="Planned excavation, a table of its axis with its section: gives the distance to it."
-        ),
+        typer.Option(help="Planned excavation, a table of its axis with its section: gives the distance to it."),
     ] = None,
     horizon: Annotated[
         list[Path] | None,
