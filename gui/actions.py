@@ -74,6 +74,8 @@ _PLAIN: dict[str, _Spec] = {
     "worst": (QT_TRANSLATE_NOOP("Actions", "Go to the &worst point"), "F8", "", ""),
     "exclude": (QT_TRANSLATE_NOOP("Actions", "E&xclude or include the chosen row"), "Ctrl+D", "", ""),
     "stop": (QT_TRANSLATE_NOOP("Actions", "&Stop the task"), "Esc", "", "cancel"),
+    "rock_volume": (QT_TRANSLATE_NOOP("Actions", "&Rock volume…"), None,
+                    QT_TRANSLATE_NOOP("Actions", "Pores, throats and permeability of a scanned rock core"), ""),
     "tutorial": (QT_TRANSLATE_NOOP("Actions", "&Tutorial"), "F1", "", ""),
     "shortcuts": (QT_TRANSLATE_NOOP("Actions", "&Keyboard shortcuts"), "Ctrl+/", "", ""),
     "system_report": (QT_TRANSLATE_NOOP("Actions", "&System report"), None, "", ""),

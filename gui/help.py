@@ -51,6 +51,12 @@ class Help(QObject):
         """List all keys."""
         ShortcutsDialog(bar).exec()
 
+    def rock_volume(self) -> None:
+        """Open a rock volume in a window of its own."""
+        from geofit.gui.dialogs.rock_volume import RockVolumeDialog
+
+        RockVolumeDialog(self._window).exec()
+
     def system_report(self) -> None:
         """Show what the application runs on."""
         SystemReport(self._window).exec()

@@ -34,7 +34,7 @@ __all__ = ["MainWindow"]
 
 #: Actions that need no open site.
 _ALWAYS = {
-    "new", "open", "sample", "quit", "preferences", "tutorial", "shortcuts", "system_report", "about",
+    "new", "open", "sample", "quit", "preferences", "tutorial", "shortcuts", "rock_volume", "system_report", "about",
 }  # fmt: skip
 
 
@@ -171,6 +171,7 @@ class MainWindow(QMainWindow):
             "stop": self.activity.cancel,
             "tutorial": self.help.tutorial,
             "shortcuts": lambda: self.help.shortcuts(self.menuBar()),
+            "rock_volume": self.help.rock_volume,
             "system_report": self.help.system_report,
             "about": self.help.about,
         }.items():

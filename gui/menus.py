@@ -49,7 +49,7 @@ class Menus(QObject):
         view.addMenu(_group_menu(self.tr("T&heme"), actions.themes.actions(), window))
         view.addMenu(_group_menu(self.tr("&Language"), actions.languages.actions(), window))
         self._menu(bar.addMenu(self.tr("Hori&zon")), "fit fit_all | examine worst | order check_order repair | stop")
-        self._menu(bar.addMenu(self.tr("&Tools")), "measure section")
+        self._menu(bar.addMenu(self.tr("&Tools")), "measure section | rock_volume")
         self._menu(bar.addMenu(self.tr("&Help")), "tutorial shortcuts | system_report about")
         self.tools = self._tool_bar()
 

@@ -98,7 +98,7 @@ def _mixed(value: int) -> np.uint64:
 
 
 @njit(cache=True)
-def _surroundings(space: PackedSpace, levels: NDArray[np.int32], here: int, reach: int) -> np.uint64:
+def _surroundings(space: PackedSpace, levels: NDArray[np.int32], here: Any, reach: int) -> np.uint64:
     """Return a number made from the levels round a voxel and its place, the same after a rotation of the volume."""
     n0, n1, n2 = space.shape
     i, j, k = here // (n1 * n2), here // n2 % n1, here % n2

@@ -48,7 +48,7 @@ def _bit_count(word: np.uint64) -> np.int64:
 
 
 @njit(cache=True)
-def slot(space: PackedSpace, here: int) -> int:
+def slot(space: PackedSpace, here: Any) -> Any:
     """Return where the value of the voxel with this flat index is stored; -1 for rock."""
     word = space.bits[here >> 6]
     bit = np.uint64(1) << np.uint64(here & 63)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import GeofitError
 from geofit.data.messages import message
 
-__all__ = ["RockVolume", "VolumeError", "label_shares", "pore_mask", "voxel_edges"]
+__all__ = ["RockVolume", "VolumeError", "check_array", "label_shares", "pore_mask", "voxel_edges"]
 
 _SHOWN = 8
 
@@ -67,7 +67,7 @@ class RockVolume:
         voxel: float | Collection[float] | None = None,
     ) -> None:
         values = np.asarray(array)
-        _check_array(values)
+        check_array(values)
         mask = pore_mask(values, pore)
         mask.flags.writeable = False
         object.__setattr__(self, "pore", mask)
@@ -132,7 +132,8 @@ def label_shares(array: NDArray[Any]) -> dict[Any, float]:
     return {values[i].item(): float(counts[i] / array.size) for i in order}
 
 
-def _check_array(values: NDArray[Any]) -> None:
+def check_array(values: NDArray[Any]) -> None:
+    """Raise if an array is not one of voxels: three axes, numbers, none of them NaN."""
     if values.ndim != 3:
         raise VolumeError(
             message(

@@ -1,0 +1,169 @@
+"""A rock volume for looking at: its voxels, the network and surface for a choice of pore values, and their figures."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.data.progress import Progress, tell, within
+
+if TYPE_CHECKING:
+    from geofit.pores.components import Connectivity
+    from geofit.pores.network import PoreNetwork
+    from geofit.pores.permeability import Permeability
+
+__all__ = ["GreyVolume", "PoreView", "pore_view", "read_grey"]
+
+
+@dataclass(frozen=True, eq=False)
+class GreyVolume:
+    """Values of voxels as they were read, their histogram, and a threshold where there are more than two values.
+
+    Parameters
+    ----------
+    name : str
+        Name of the file.
+    values : (n0, n1, n2) array
+        Labels or grey values.
+    voxel : tuple of float or None
+        Edges of a voxel in metres, where the file states them.
+    counts, edges : arrays
+        Histogram: voxels in each class, and the n + 1 limits of the classes.
+    threshold : float or None
+        Otsu's threshold.
+    """
+
+    name: str
+    values: NDArray[Any]
+    voxel: tuple[float, float, float] | None
+    counts: NDArray[np.int64]
+    edges: NDArray[np.float64]
+    threshold: float | None
+
+
+@dataclass(frozen=True, eq=False)
+class PoreView:
+    """Network and surface of a volume, ready to be drawn; lengths in voxels.
+
+    Parameters
+    ----------
+    network : PoreNetwork
+        Without the pore of each voxel.
+    permeability : Permeability
+        Of the network.
+    connectivity : Connectivity
+        Of the voxels.
+    axes : (n,) array of int
+        Along how many axes the pores connected to each pore percolate.
+    vertices, triangles : arrays
+        Surface of the pores, (m, 3) and (k, 3).
+    vertex_pore : (m,) array of int
+        The pore at each vertex, counted from 0.
+    """
+
+    network: PoreNetwork
+    permeability: Permeability
+    connectivity: Connectivity
+    axes: NDArray[np.int64]
+    vertices: NDArray[np.float32]
+    triangles: NDArray[np.int64]
+    vertex_pore: NDArray[np.int64]
+
+
+def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
+    """Read a volume to look at it, and propose a threshold.
+
+    Raises
+    ------
+    InputError, VolumeError
+        As for :func:`geofit.read_volume`, if the file cannot be read or is no volume.
+    """
+    from geofit.io.volumes import read_voxels
+    from geofit.pores.threshold import grey_histogram, otsu_threshold
+    from geofit.pores.volume import check_array
+
+    tell(progress, "reading", 0.0)
+    values, voxel = read_voxels(path)
+    check_array(values)
+    tell(progress, "histogram", 0.6)
+    if values.dtype == bool:
+        values = values.view(np.uint8)
+    counts, edges = grey_histogram(values)
+    threshold = otsu_threshold(values) if np.count_nonzero(counts) > 2 else None
+    return GreyVolume(path.name, values, voxel, counts, edges, threshold)
+
+
+def pore_view(
+    values: NDArray[Any],
+    low: float,
+    high: float,
+    voxel: tuple[float, ...],
+    progress: Progress | None = None,
+) -> PoreView:
+    """Return network and surface of the pores whose values are between ``low`` and ``high``, both included.
+
+    Raises
+    ------
+    VolumeError
+        If no voxel is pore, or the voxel is no length.
+    Cancelled
+        If the listener asks to stop; asked at every stage.
+    """
+    from geofit.pores.components import connectivity
+    from geofit.pores.extraction import pore_network
+    from geofit.pores.permeability import network_permeability
+    from geofit.pores.surface import pore_surface
+    from geofit.pores.volume import RockVolume
+
+    volume = RockVolume((values >= low) & (values <= high), pore=[True], voxel=voxel)
+    network = pore_network(volume, progress=within(progress, 0.0, 0.5))
+    tell(progress, "surface", 0.5)
+    surface = pore_surface(volume, network, progress=within(progress, 0.5, 0.6))
+    tell(progress, "triangles", 0.6)
+    mesh = surface.triangulate()
+    vertices = mesh.vertices / volume.unit
+    tell(progress, "permeability", 0.9)
+    flow = network_permeability(network)
+    tell(progress, "connectivity", 0.95)
+    assert network.pore_of is not None
+    pore = _pore_at(vertices / network.edges, network.pore_of)
+    return PoreView(
+        replace(network, pore_of=None),
+        flow,
+        connectivity(volume),
+        _axes(network),
+        vertices.astype(np.float32),
+        mesh.triangles,
+        pore,
+    )
+
+
+def _axes(network: PoreNetwork) -> NDArray[np.int64]:
+    """Return for each pore along how many axes its cluster connects the faces of the sample."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    first, second = network.throats.pores.T
+    count = len(network.pores)
+    links = coo_array((np.ones(len(first)), (first, second)), shape=(count, count))
+    clusters, cluster = connected_components(links, directed=False)
+    touched = np.zeros((clusters, 6), bool)
+    for face in range(6):
+        touched[cluster[network.pores.faces[:, face]], face] = True
+    return np.asarray((touched[:, ::2] & touched[:, 1::2]).sum(axis=1)[cluster], np.int64)
+
+
+def _pore_at(places: NDArray[np.float64], pore_of: NDArray[np.int32]) -> NDArray[np.int64]:
+    """Return the pore of the voxels round each place (m, 3) on a wall: the one with the smallest number, the widest."""
+    most = np.iinfo(np.int32).max
+    found = np.full(len(places), most, np.int64)
+    size = np.array(pore_of.shape) - 1
+    for corner in np.ndindex(2, 2, 2):
+        at = np.clip(np.floor(places - 0.5).astype(np.int64) + corner, 0, size)
+        number = pore_of[at[:, 0], at[:, 1], at[:, 2]].astype(np.int64)
+        found = np.minimum(found, np.where(number > 0, number, most))
+    return np.where(found == most, 1, found) - 1

@@ -1,0 +1,152 @@
+"""Pores, throats and surface of a rock sample in space, coloured by radius or by connection."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from geofit.gui.theme import is_dark
+from geofit.gui.view3d.camera import framed
+from geofit.gui.view3d.canvas import Canvas
+from geofit.gui.view3d.opengl import require_opengl
+from geofit.project.pore_view import PoreView
+
+__all__ = ["Colour", "PoreScene"]
+
+Colour = Literal["radius", "connection"]
+Floats = NDArray[np.float64]
+
+#: Colours of pores that percolate along no, one, two and three axes: from warm to cool.
+CONNECTED = ("#b5452c", "#d9a441", "#5aa6a6", "#0b5c8a")
+#: Sides of a throat's tube, and of a pore's ball.
+SIDES, RINGS = 8, 12
+
+
+class PoreScene(QWidget):
+    """A 3D view of a :class:`PoreView`; ``shown`` holds the names of what is drawn.
+
+    Raises
+    ------
+    NoOpenGLError
+        If no 3D view can be drawn on this machine.
+    """
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        require_opengl()
+        super().__init__(parent)
+        self.setAccessibleName(self.tr("Pores in space"))
+        self.canvas = Canvas(self)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.canvas)
+        self.setFocusProxy(self.canvas)
+        self._view: PoreView | None = None
+        self._actors: dict[str, Any] = {}
+        self._visible = {"network": True, "surface": True}
+        self.colour: Colour = "radius"
+        self.limits = (0.0, 1.0)
+        dark = is_dark(self.palette())
+        self.canvas.set_background_colour(QColor("#1a1f24" if dark else "#ffffff"))
+
+    @property
+    def shown(self) -> tuple[str, ...]:
+        """What is drawn and seen: "pores", "throats", "surface"."""
+        return tuple(name for name, actor in self._actors.items() if actor.GetVisibility())
+
+    def show_view(self, view: PoreView) -> None:
+        """Draw another network and surface, and move the camera so that all is seen."""
+        import pyvista as pv
+
+        for actor in self._actors.values():
+            self.canvas.renderer.RemoveActor(actor)
+        self._actors.clear()
+        self._view = view
+        network = view.network
+        centre = (network.pores.centre + 0.5) * network.edges
+        balls = pv.PolyData(centre)
+        balls["size"] = network.pores.radius
+        ball = pv.Sphere(radius=1.0, theta_resolution=RINGS, phi_resolution=RINGS)
+        balls["pore"] = np.arange(len(centre))
+        if len(centre):
+            self._add("pores", balls.glyph(scale="size", orient=False, geom=ball), 1.0)
+        if len(network.throats):
+            self._add("throats", _tubes(centre, network.throats.pores, network.throats.radius), 1.0)
+        if len(view.triangles):
+            surface = pv.PolyData.from_regular_faces(view.vertices, view.triangles)
+            surface["pore"] = view.vertex_pore
+            self._add("surface", surface, 0.25)
+        self._paint()
+        box = np.array([[0.0] * 3, np.array(network.shape) * network.edges])
+        self.canvas.look(framed(self.canvas.eye, box, self.width() / max(self.height(), 1)))
+
+    def set_colour(self, colour: Colour) -> None:
+        """Colour by the radius of pores in voxels, or by the axes along which they percolate."""
+        self.colour = colour
+        self._paint()
+
+    def set_visible(self, part: str, visible: bool) -> None:
+        """Show or hide the "network" or the "surface"."""
+        self._visible[part] = visible
+        for name, actor in self._actors.items():
+            actor.SetVisibility(self._visible["surface" if name == "surface" else "network"])
+        self.canvas.render()
+
+    def values(self) -> Floats:
+        """Return what pores are coloured by (n,): radii in voxels, or numbers of axes."""
+        assert self._view is not None
+        return self._view.network.pores.radius if self.colour == "radius" else self._view.axes.astype(np.float64)
+
+    def close(self) -> bool:
+        """Let go of the view's context."""
+        self.canvas.close()
+        return super().close()
+
+    def _add(self, name: str, mesh: Any, opacity: float) -> None:
+        import pyvista as pv
+
+        mapper = pv.DataSetMapper(mesh)
+        actor = pv.Actor(mapper=mapper)
+        actor.prop.opacity = opacity
+        actor.SetVisibility(self._visible["surface" if name == "surface" else "network"])
+        self.canvas.renderer.AddActor(actor)
+        self._actors[name] = actor
+
+    def _paint(self) -> None:
+        if self._view is None or not len(self._view.network.pores):
+            return
+        values = self.values()
+        self.limits = (0.0, 3.0) if self.colour == "connection" else (float(values.min()), float(values.max()))
+        low, high = self.limits
+        for actor in self._actors.values():
+            mesh = actor.mapper.dataset
+            of_pore = values[np.asarray(mesh["pore"]).astype(np.int64)]
+            if self.colour == "radius":
+                import matplotlib as mpl
+
+                share = (of_pore - low) / max(high - low, 1e-12)
+                colours = (255 * mpl.colormaps["viridis"](share)[:, :3]).astype(np.uint8)
+            else:
+                table = np.array([QColor(colour).getRgb()[:3] for colour in CONNECTED], np.uint8)
+                colours = table[of_pore.astype(np.int64)]
+            mesh["colour"] = colours
+            mesh.set_active_scalars("colour")
+            actor.mapper.SetScalarModeToUsePointData()
+            actor.mapper.SetColorModeToDirectScalars()
+            actor.mapper.ScalarVisibilityOn()
+        self.canvas.render()
+
+
+def _tubes(centre: Floats, pores: NDArray[np.int32], radius: Floats) -> Any:
+    """Return the tubes of throats from pore to pore, each with its radius."""
+    import pyvista as pv
+
+    ends = centre[pores].reshape(-1, 3)
+    cells = np.column_stack([np.full(len(pores), 2), np.arange(len(ends)).reshape(-1, 2)]).ravel()
+    lines = pv.PolyData(ends, lines=cells)
+    lines["size"] = np.repeat(np.maximum(radius, 0.25), 2)
+    lines["pore"] = pores.ravel()
+    return lines.tube(scalars="size", absolute=True, n_sides=SIDES)

@@ -1,0 +1,183 @@
+"""A rock volume from the file to its pores in space: slices, threshold, progress, stop, colours, figures."""
+
+from __future__ import annotations
+
+import threading
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+
+from geofit.data.errors import Cancelled
+from geofit.gui.dialogs.rock_volume import RockVolumeDialog
+from geofit.gui.view3d.pore_scene import CONNECTED
+from geofit.project.pore_view import pore_view, read_grey
+
+VOXEL = (2e-6,) * 3
+
+
+def chambers():
+    """Two chambers of 7 voxels and a channel of one, open at both ends of axis 2, and a closed chamber; 1 is rock."""
+    grains = np.ones((21, 9, 20), np.uint8)
+    grains[1:8, 1:8, :7] = grains[1:8, 1:8, 13:] = grains[4, 4] = 0
+    grains[12:17, 2:7, 5:11] = 0
+    return grains
+
+
+@pytest.fixture
+def dialog(qtbot):
+    dialog = RockVolumeDialog()
+    qtbot.addWidget(dialog)
+    dialog.show()
+    qtbot.waitExposed(dialog)
+    yield dialog
+    dialog.close()
+
+
+def read(qtbot, dialog, path):
+    dialog.read(path)
+    qtbot.waitUntil(lambda: not dialog.running and dialog.volume is not None, timeout=30_000)
+
+
+@pytest.fixture
+def here(monkeypatch):
+    """Run tasks in a thread: a process of its own takes seconds to start."""
+    from geofit.gui.dialogs import task_dialog
+
+    monkeypatch.setattr(task_dialog, "run_apart", task_dialog.run)
+
+
+def test_labels_are_never_guessed_and_the_voxel_is_asked_for(qtbot, dialog, tmp_path):
+    np.save(tmp_path / "rock.npy", chambers())
+    assert not dialog.go.isEnabled()
+    read(qtbot, dialog, tmp_path / "rock.npy")
+    assert not dialog.go.isEnabled()
+    dialog.edge.setValue(2.0)
+    assert not dialog.go.isEnabled()
+    dialog.low.setValue(0)
+    dialog.high.setValue(0)
+    assert dialog.go.isEnabled()
+    assert dialog.porosity.text() == f"{100 * (chambers() == 0).mean():.2f} %"
+    dialog.high.setValue(-1)
+    assert not dialog.go.isEnabled()
+
+
+def test_slices_go_through_all_axes_and_the_histogram_counts_all_voxels(qtbot, dialog, tmp_path):
+    values = np.arange(5 * 6 * 7, dtype=np.uint16).reshape(5, 6, 7)
+    np.save(tmp_path / "grey.npy", values)
+    read(qtbot, dialog, tmp_path / "grey.npy")
+    slices = dialog.slices
+    for axis in range(3):
+        slices.axis.setCurrentIndex(axis)
+        assert slices.slider.maximum() == values.shape[axis] - 1
+        for place in (0, values.shape[axis] - 1):
+            slices.slider.setValue(place)
+            np.testing.assert_array_equal(slices.slice(), values.take(place, axis=axis))
+    assert dialog.volume.counts.sum() == values.size
+    assert dialog.volume.threshold == pytest.approx(104.5, abs=1)
+    assert dialog.high.value() == pytest.approx(dialog.volume.threshold, abs=0.05)
+    assert dialog.porosity.text() == "50.00 %"
+
+
+def test_a_file_that_is_no_volume_is_an_error_in_words(qtbot, dialog, tmp_path):
+    np.save(tmp_path / "flat.npy", np.ones((4, 4)))
+    dialog.read(tmp_path / "flat.npy")
+    qtbot.waitUntil(lambda: bool(dialog.message.text()), timeout=30_000)
+    assert "three" in dialog.message.text()
+    assert dialog.volume is None
+
+
+def found(qtbot, dialog, path):
+    np.save(path, chambers())
+    read(qtbot, dialog, path)
+    dialog.edge.setValue(2.0)
+    dialog.low.setValue(0)
+    dialog.high.setValue(0)
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not dialog.running and dialog.view is not None, timeout=120_000)
+
+
+def test_network_and_surface_are_drawn_and_the_figures_are_those_of_the_library(qtbot, dialog, tmp_path, here):
+    found(qtbot, dialog, tmp_path / "rock.npy")
+    truth = pore_view(chambers(), 0, 0, VOXEL)
+    assert dialog.scene.shown == ("pores", "throats", "surface")
+    table = dialog.table.model()
+    rows = {table.index(r, 0).data(): table.index(r, 1).data() for r in range(table.rowCount())}
+    assert rows["pores, throats"] == "2, 1"
+    assert rows["pores without a path to a face, left out"] == "1"
+    assert rows["permeability along axis 2, mD"] == f"{truth.permeability.millidarcy[2]:.4g}"
+    assert rows["permeability along axis 0, mD"] == "0"
+    assert "axis 0" in dialog.message.text()
+    dialog.surface.setChecked(False)
+    assert dialog.scene.shown == ("pores", "throats")
+    dialog.network.setChecked(False)
+    assert dialog.scene.shown == ()
+
+
+def test_colours_are_those_of_radius_and_connection(qtbot, dialog, tmp_path, here):
+    found(qtbot, dialog, tmp_path / "rock.npy")
+    radius = dialog.view.network.pores.radius
+    np.testing.assert_array_equal(dialog.scene.values(), radius)
+    assert f"{radius.max() * 2:.2f}" in dialog.key.text()
+    dialog.colour.setCurrentIndex(1)
+    np.testing.assert_array_equal(dialog.scene.values(), [1, 1])
+    mesh = dialog.scene._actors["pores"].mapper.dataset
+    one = tuple(int(CONNECTED[1][i : i + 2], 16) for i in (1, 3, 5))
+    assert {tuple(colour) for colour in mesh["colour"].tolist()} == {one}
+    assert CONNECTED[3] in dialog.key.text()
+
+
+def test_stop_leaves_what_was_there(qtbot, dialog, tmp_path, monkeypatch, here):
+    np.save(tmp_path / "rock.npy", chambers())
+    read(qtbot, dialog, tmp_path / "rock.npy")
+    gate = threading.Event()
+
+    def slow(*_, progress):
+        gate.wait(20)
+        if progress("network", 0.5) is False:
+            raise Cancelled("stopped")
+
+    monkeypatch.setattr("geofit.gui.dialogs.rock_volume.pore_view", slow)
+    dialog.edge.setValue(2.0)
+    dialog.low.setValue(0)
+    dialog.high.setValue(0)
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(dialog.stop.isVisible, timeout=5_000)
+    assert not dialog.low.isEnabled()
+    qtbot.mouseClick(dialog.stop, Qt.MouseButton.LeftButton)
+    gate.set()
+    qtbot.waitUntil(lambda: not dialog.running, timeout=20_000)
+    assert dialog.view is None
+    assert "Stopped" in dialog.message.text()
+
+
+@pytest.mark.parametrize("stage", ["distance", "basins", "merging", "throats", "surface", "triangles", "permeability"])
+def test_every_stage_can_be_stopped(stage):
+    seen = []
+
+    def listen(name, fraction):
+        seen.append(fraction)
+        return name != stage
+
+    with pytest.raises(Cancelled):
+        pore_view(chambers(), 0, 0, VOXEL, progress=listen)
+    assert seen == sorted(seen)
+
+
+def test_the_surface_knows_the_pore_at_each_vertex():
+    view = pore_view(chambers(), 0, 0, VOXEL)
+    centre = view.network.pores.centre[view.vertex_pore] + 0.5
+    assert len(np.unique(view.vertex_pore)) == 2
+    low, high = view.vertices[:, 2] < 6, view.vertices[:, 2] > 14
+    assert (centre[low, 2] < 10).all()
+    assert (centre[high, 2] > 10).all()
+    assert view.axes.tolist() == [1, 1]
+
+
+def test_a_stated_voxel_is_taken_from_the_header(tmp_path):
+    header = "NDims = 3\nDimSize = 6 5 4\nElementType = MET_UCHAR\nElementSpacing = 0.001 0.001 0.002\n"
+    values = np.arange(120, dtype=np.uint8)
+    (tmp_path / "a.mha").write_bytes((header + "ElementDataFile = LOCAL\n").encode() + values.tobytes())
+    volume = read_grey(tmp_path / "a.mha")
+    assert volume.voxel == pytest.approx((2e-6, 1e-6, 1e-6))
+    assert volume.values.shape == (4, 5, 6)

@@ -1,0 +1,56 @@
+"""Otsu's threshold and the histogram of grey volumes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from geofit.pores.threshold import grey_histogram, otsu_threshold
+from geofit.pores.volume import VolumeError
+
+
+def literal(values):
+    """The threshold by trying every value: the largest variance between the two classes."""
+    best, found = -1.0, []
+    for limit in np.unique(values)[:-1]:
+        below, above = values[values <= limit].astype(float), values[values > limit].astype(float)
+        variance = len(below) * len(above) * (below.mean() - above.mean()) ** 2
+        if variance > best * (1 + 1e-12):
+            best, found = variance, [limit]
+    return found[0]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_it_parts_the_voxels_as_the_literal_search_does(seed):
+    rng = np.random.default_rng(seed)
+    share = rng.uniform(0.05, 0.6)
+    dark = rng.random((12, 11, 10)) < share
+    values = np.where(dark, rng.normal(60, rng.uniform(5, 20), dark.shape), rng.normal(160, 15, dark.shape))
+    values = np.clip(values, 0, 255).astype(np.uint8)
+    np.testing.assert_array_equal(values <= otsu_threshold(values), values <= literal(values))
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_rock_with_noise_is_parted_to_within_a_percent(seed):
+    rng = np.random.default_rng(seed)
+    dark = rng.random((30, 30, 30)) < 0.2
+    values = np.where(dark, 4000.0, 9000.0) + rng.normal(0, 700, dark.shape)
+    threshold = otsu_threshold(values)
+    assert ((values <= threshold) != dark).mean() < 0.01
+
+
+def test_a_volume_of_one_value_has_no_threshold():
+    with pytest.raises(VolumeError, match="no threshold"):
+        otsu_threshold(np.full((3, 3, 3), 7, np.uint8))
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.uint16, np.int16, np.float32, bool])
+def test_the_histogram_counts_every_voxel_once(kind):
+    values = (
+        np.random.default_rng(1).random((6, 7, 8)) * (1.9 if kind is bool else 5000 if kind != np.uint8 else 255)
+    ).astype(kind)
+    counts, edges = grey_histogram(values)
+    assert counts.sum() == values.size
+    assert len(edges) == len(counts) + 1
+    assert edges[0] <= values.min()
+    assert edges[-1] >= values.max()
