@@ -218,7 +218,7 @@ def test_errors_say_what_is_wrong(tmp_path):
 
 
 def test_a_steep_cloud_is_fitted_over_its_best_plane(small_blocks):
-    xyz = cloud(8_000, noise=0.02)
+    xyz = cloud(25_000, noise=0.02)
     turned = np.column_stack([xyz[:, 2] - 500, xyz[:, 1] - NORTHING, 2 * (xyz[:, 0] - EASTING)])
     fit, whole = fit_cloud(turned), fit_horizon(PointSet(turned))
     assert fit.surface.frame == whole.frame == "best-plane"
