@@ -53,6 +53,8 @@ _PLAIN: dict[str, _Spec] = {
     "east": (QT_TRANSLATE_NOOP("Actions", "Towards &east"), "3", "", ""),
     "west": (QT_TRANSLATE_NOOP("Actions", "Towards &west"), "Ctrl+3", "", ""),
     "iso": (QT_TRANSLATE_NOOP("Actions", "Fr&om a corner"), "0", "", ""),
+    "fold": (QT_TRANSLATE_NOOP("Actions", "Fold or unfold the panels &below"), "Ctrl+J",
+             QT_TRANSLATE_NOOP("Actions", "Give the 3D view the room of the panels below it, or bring them back"), ""),
     "next_panel": (QT_TRANSLATE_NOOP("Actions", "&Next panel"), "Ctrl+Tab",
                    QT_TRANSLATE_NOOP("Actions", "Give the keyboard to the next panel"), ""),
     "previous_panel": (QT_TRANSLATE_NOOP("Actions", "Pre&vious panel"), "Ctrl+Shift+Tab",

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 from PySide6.QtCore import QCoreApplication
+from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QLabel, QMainWindow, QProgressBar, QToolButton
 
 from geofit.gui.activity import Activity
 from geofit.gui.icons import icon
+from geofit.gui.panel_bar import PanelBar
 from geofit.gui.words import spoken
 
 __all__ = ["ActivityBar"]
@@ -36,7 +38,7 @@ class ActivityBar:
         )
         self._title = ""
         self._task = (self.stage, self.progress, self.stop)
-        bar = window.statusBar()
+        self._bar = bar = window.statusBar()
         bar.setSizeGripEnabled(False)
         bar.setContentsMargins(0, 0, 8, 0)
         for widget in (*self._task, self.place, self.crs):
@@ -45,6 +47,17 @@ class ActivityBar:
         activity.began.connect(self._begin)
         activity.progressed.connect(self._progress)
         activity.ended.connect(lambda: self._show_task(False))
+
+    def add_fold(self, action: QAction, panels: PanelBar) -> None:
+        """Put a button at the end that folds the panels below the view away."""
+        fold = QToolButton()
+        fold.setAutoRaise(True)
+        fold.setText(QCoreApplication.translate("ActivityBar", "Fold panels ▾"))
+        fold.setToolTip(action.toolTip())
+        fold.clicked.connect(action.trigger)
+        panels.folded.connect(lambda folded: fold.setVisible(not folded))
+        fold.hide()
+        self._bar.addPermanentWidget(fold)
 
     def show_place(self, x: float, y: float, z: float) -> None:
         """Show map coordinates, metres; nothing where they are nan."""

@@ -39,7 +39,13 @@ class DarkStyle(Style):
     ) -> None:
         """Draw a frame, an indicator or a button."""
         if element in _PRIMITIVES:
+            first = widget is not None and bool(widget.property("primary"))
+            accent = option.palette.button() if first and option.state & QStyle.StateFlag.State_Enabled else None
             option.palette = self._framed
+            if accent is not None:
+                filled = QPalette(self._framed)
+                filled.setBrush(QPalette.ColorRole.Button, accent)
+                option.palette = filled
         super().drawPrimitive(element, option, painter, widget)
 
     def drawControl(  # noqa: N802

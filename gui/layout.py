@@ -31,6 +31,8 @@ class Layout(QObject):
         self._window, self._docks = window, docks
         self._kept, self.hidden = QByteArray(), False
         self._unfolded = set(BOTTOM)
+        #: The panel below the view that was in front last.
+        self.last = BOTTOM[0]
         window.setDockOptions(
             QMainWindow.DockOption.AnimatedDocks
             | QMainWindow.DockOption.AllowTabbedDocks
@@ -79,6 +81,8 @@ class Layout(QObject):
 
     def fold(self) -> None:
         """Give the view the room of the docks below it."""
+        front = next((n for n in BOTTOM if not self._docks[n].visibleRegion().isEmpty()), self.last)
+        self.last = front
         self._unfolded = {name for name in BOTTOM if not self._docks[name].isHidden()} or set(BOTTOM)
         for name in BOTTOM:
             self._docks[name].hide()

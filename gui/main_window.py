@@ -57,6 +57,7 @@ class MainWindow(QMainWindow):
         self.menus = Menus(self, self.actions_, session.stack)
         self.panels = Workspace(self)
         self.bar = ActivityBar(self, self.activity)
+        self.bar.add_fold(self.actions_["fold"], self.panels.bar)
         document = session.document
         self.showing = Showing(document, self.panels, self, lambda: self.activity.busy)
         self.fitting = Fitting(session, self.activity, self)
@@ -157,6 +158,7 @@ class MainWindow(QMainWindow):
             "rename": self._rename,
             "preferences": lambda: self.help.preferences(self.preferences, self._set_theme, self.language_chosen.emit),
             "home": view.reset_camera,
+            "fold": self.panels.bar.toggle,
             "next_panel": lambda: self.panels.reach.step(1),
             "previous_panel": lambda: self.panels.reach.step(-1),
             "reset_layout": self.panels.layout.arrange,

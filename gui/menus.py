@@ -96,7 +96,7 @@ class Menus(QObject):
         """Fill the menu of panels."""
         self.panels.clear()
         self.panels.addActions(list(switches))
-        self._menu(self.panels, "| next_panel previous_panel | reset_layout")
+        self._menu(self.panels, "| fold next_panel previous_panel | reset_layout")
 
     def _menu(self, menu: QMenu, names: str) -> QMenu:
         for name in names.split():

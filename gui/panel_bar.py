@@ -1,10 +1,10 @@
-"""The strip at the window's foot: a button for each panel below the view, which unfolds it or folds it away."""
+"""The strip at the window's foot while the panels below the view are folded away: a button unfolds its panel."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QToolBar
 
@@ -14,7 +14,9 @@ __all__ = ["PanelBar"]
 
 
 class PanelBar(QToolBar):
-    """One button a panel; the one in front is pressed."""
+    """One button a panel; it is there only while they are folded away: else their tabs are."""
+
+    folded = Signal(bool)
 
     def __init__(self, window: QMainWindow, docks: Mapping[str, QDockWidget], layout: Layout) -> None:
         super().__init__(window)
@@ -24,19 +26,25 @@ class PanelBar(QToolBar):
         self.setContentsMargins(0, 0, 0, 0)
         self.setMaximumHeight(self.fontMetrics().height() + 10)
         self.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextOnly)
-        self._docks, self._layout = docks, layout
+        self._layout = layout
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(self.renew)
         self.buttons: dict[str, QAction] = {}
         for name in BOTTOM:
             action = self.addAction(docks[name].windowTitle())
-            action.setCheckable(True)
-            action.triggered.connect(lambda wanted, name=name: self._toggle(name, wanted))
-            docks[name].visibilityChanged.connect(action.setChecked)
+            action.triggered.connect(lambda _, name=name: layout.reveal(name))
+            docks[name].visibilityChanged.connect(lambda _: self._later.start())
             self.buttons[name] = action
         window.addToolBar(Qt.ToolBarArea.BottomToolBarArea, self)
 
-    def _toggle(self, name: str, wanted: bool) -> None:
-        """Unfold a panel, or fold them all where it was in front."""
-        if wanted:
-            self._layout.reveal(name)
+    def renew(self) -> None:
+        """Show the strip where the panels are folded away; not on the start page."""
+        self.setVisible(self._layout.folded and not self._layout.hidden)
+        self.folded.emit(self._layout.folded)
+
+    def toggle(self, *_: object) -> None:
+        """Fold all panels away, or bring the last ones back."""
+        if self._layout.folded:
+            self._layout.reveal(self._layout.last)
         else:
             self._layout.fold()

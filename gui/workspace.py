@@ -73,6 +73,7 @@ class Workspace(QObject):
             self.layout.show()
         else:
             self.layout.hide()
+        self.bar.renew()
 
     def close(self) -> None:
         """Let go of what outlives a widget: the 3D view's context, the log's handler."""

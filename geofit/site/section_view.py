@@ -15,6 +15,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground, Hole, Site
 from geofit.geometry.mesh import Mesh
 from geofit.sampling.cut import cut_section, section_line
+from geofit.site.hole_logs import hole_intervals
 from geofit.site.support import support_of
 from geofit.surfaces.protocol import Surface
 
@@ -259,20 +260,10 @@ def _hole(site: Site, hole: Hole, corners: Floats, bends: Floats, thickness: flo
     if near.sum() < 2:
         return None
     intervals: list[Interval] = []
-    for campaign in site.boreholes:
-        for log in campaign.logs:
-            for i in np.flatnonzero(log.hole == hole.name):
-                top, base = max(float(log.top[i]), 0.0), min(float(log.base[i]), float(hole.depth[-1]))
-                if base > top and (track := _piece(hole, top, base, corners, bends, thickness)) is not None:
-                    intervals.append(Interval(str(log.code[i]), track, log.file))
+    for one in hole_intervals(site, hole):
+        forward, aside = _onto(corners, bends, one.xyz[:, :2])
+        shown = aside <= thickness / 2
+        if shown.sum() >= 2:
+            intervals.append(Interval(one.code, np.column_stack([forward[shown], one.xyz[shown, 2]]), one.table))
     track = np.column_stack([along[near], hole.xyz[near, 2]])
     return HoleTrack(hole.name, track, float(beside[near].min()), tuple(intervals))
-
-
-def _piece(hole: Hole, top: float, base: float, corners: Floats, bends: Floats, thickness: float) -> Floats | None:
-    inner = hole.depth[(hole.depth > top) & (hole.depth < base)]
-    depth = np.concatenate([[top], inner, [base]])
-    xyz = np.column_stack([np.interp(depth, hole.depth, hole.xyz[:, k]) for k in range(3)])
-    along, beside = _onto(corners, bends, xyz[:, :2])
-    near = beside <= thickness / 2
-    return np.column_stack([along[near], xyz[near, 2]]) if near.sum() >= 2 else None

@@ -90,9 +90,7 @@ class SectionSheetDialog(TaskDialog):
         self.which.currentIndexChanged.connect(self.refresh)
         self.target.textChanged.connect(self.refresh)
         self.go.clicked.connect(self._write)
-        self.open_folder.clicked.connect(
-            lambda: QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.files[0].parent)))
-        )
+        self.open_folder.clicked.connect(self._open_folder)
         self.say(self.tr("Each section is drawn to scale: holes with lithology, horizons with their 90 % bands."))
         self.refresh()
 
@@ -178,6 +176,10 @@ class SectionSheetDialog(TaskDialog):
         path, _ = QFileDialog.getSaveFileName(self, self.windowTitle(), self.target.text())
         if path:
             self.target.setText(path)
+
+    def _open_folder(self) -> None:
+        for file in self.files[:1]:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(file.parent)))
 
     def _write(self) -> None:
         try:

@@ -18,7 +18,9 @@ from geofit.data.site import Ground, Site
 from geofit.gui.panels.canvas import DOT, Ink
 from geofit.gui.panels.curtain import Curtain, Traces
 from geofit.gui.panels.section_scale import Extent
+from geofit.report.section_sheet import lithology_style
 from geofit.report.style import horizon_colours, kind_style, quiet
+from geofit.site.hole_logs import hole_intervals, log_files
 from geofit.site.support import support_of
 
 __all__ = ["SectionData", "draw_section", "explain", "near_points", "seen_in", "thin_names"]
@@ -32,6 +34,8 @@ FREE, NOTE = 8.0, 20.0
 #: Half width of a 90 % band in standard deviations.
 NINETY = 1.6449
 GROUND = "#6b7d3a"
+#: Half width of a hole's column of lithology, as a share of the section's length.
+COLUMN = 0.004
 #: Where a surface is above the ground or beyond its data.
 DASHES = (0, (4.0, 2.5))
 
@@ -157,6 +161,7 @@ def _holes(axes: Axes, data: SectionData, ink: Ink) -> None:
             heads.append((hole.name, track[np.nanargmax(track[:, 1])]))
     if not heads:
         return
+    _logged(axes, data, ink)
     axes.plot(*np.concatenate(tracks).T, color=ink.muted, lw=1.1, zorder=3)
     axes.plot(*np.array([head for _, head in heads]).T, ls="none", marker="_", color=ink.muted, ms=6, zorder=3)
     for name, head in heads:
@@ -164,6 +169,31 @@ def _holes(axes: Axes, data: SectionData, ink: Ink) -> None:
             name, head, xytext=(0, 3), textcoords="offset points", ha="center", va="bottom", rotation=90,
             size=LETTERS, color=ink.text, annotation_clip=True, zorder=6,
         )  # fmt: skip
+
+
+def _logged(axes: Axes, data: SectionData, ink: Ink) -> None:
+    """Draw the first interval table of the holes within the thickness as columns, each code with its pattern."""
+    from matplotlib.patches import Polygon
+
+    tables = log_files(data.site)
+    if not tables:
+        return
+    every = {str(code) for campaign in data.site.boreholes for log in campaign.logs for code in np.unique(log.code)}
+    styles = lithology_style(sorted(every))
+    half, told = COLUMN * data.curtain.length, set[str]()
+    for hole in data.site.holes:
+        for one in hole_intervals(data.site, hole, tables[0]):
+            along, beside = data.curtain.project(one.xyz[:, :2])
+            near = beside <= data.thickness / 2
+            if near.sum() < 2:
+                continue
+            track = np.column_stack([along[near], one.xyz[near, 2]])
+            side = np.array([half, 0.0])
+            outline = np.concatenate([track - side, track[::-1] + side])
+            colour, hatch = styles[one.code]
+            label = None if one.code in told else one.code
+            told.add(one.code)
+            axes.add_patch(Polygon(outline, fc=colour, ec=ink.muted, lw=0.4, hatch=hatch, label=label, zorder=2.5))
 
 
 def seen_in(axes: Axes, curtain: Curtain) -> Extent:

@@ -21,6 +21,7 @@ from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, 
 from geofit.gui.view3d.stage import Stage
 from geofit.project.listing import Listing
 from geofit.report.style import horizon_colours
+from geofit.site.hole_logs import log_files
 
 __all__ = ["Contents"]
 
@@ -71,7 +72,9 @@ class Contents:
             self.stage.show(Layer("boundary", "boundary"), lambda a, b: boundary_item(rim, site.ground, level, a, b))
         for key, holes in (("holes", boreholes), ("adits", adits)):
             if holes:
-                self.stage.show(Layer(key, key, labels=True), partial(holes_item, holes))
+                logged = log_files(site) if key == "holes" else ()
+                layer = Layer(key, key, labels=True, choices=("plain", *logged), colour_by=(*logged, "plain")[0])
+                self.stage.show(layer, partial(holes_item, holes, site))
         if site.sections:
             self.stage.show(
                 Layer("sections", "sections", labels=True),

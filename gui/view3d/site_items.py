@@ -8,13 +8,15 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.site import Ground, Hole, Orientations, Section
+from geofit.data.site import Ground, Hole, Orientations, Section, Site
 from geofit.gui.view3d.actors import Part, dots, lines, poly, triangles
 from geofit.gui.view3d.colouring import legible
 from geofit.gui.view3d.item import Item, Look, extent
-from geofit.gui.view3d.layers import Layer
+from geofit.gui.view3d.layers import Layer, Legend, Swatch
 from geofit.gui.view3d.shape import Shape
+from geofit.report.section_sheet import lithology_style
 from geofit.report.style import FAIL, KIND_STYLE
+from geofit.site.hole_logs import hole_intervals, log_files
 
 __all__ = ["boundary_item", "dips_item", "ground_item", "holes_item", "sections_item"]
 
@@ -22,6 +24,8 @@ Floats = NDArray[np.float64]
 
 #: Colours of the ground and of boreholes by day and by night.
 EARTH, DRILLED = ("#b9b19c", "#8f8a7a"), ("#3d4852", "#8f9aa5")
+#: Width of a logged interval, logical pixels.
+LOGGED = 6.0
 #: Cells along a side of the ground while the picture moves.
 FEW = 60
 #: Lines on the ground are raised by this share of the site's width, so that they do not sink into it.
@@ -96,8 +100,8 @@ def _runs(runs: Sequence[Floats], look: Look) -> object:
     return poly(np.concatenate(list(runs)) - look.origin, runs=numbers)
 
 
-def holes_item(holes: Sequence[Hole], layer: Layer, look: Look) -> Item:
-    """Paths of boreholes or adits, their collars, and their names there."""
+def holes_item(holes: Sequence[Hole], site: Site, layer: Layer, look: Look) -> Item:
+    """Paths of boreholes or adits, their collars, and their names there; coloured by an interval table if wanted."""
     kind = holes[0].kind
     # Boreholes are grey: blue means "below" where points are coloured by their deviation.
     colour = DRILLED[look.dark] if kind == "borehole" else legible(KIND_STYLE[kind][1], look.dark)
@@ -107,13 +111,33 @@ def holes_item(holes: Sequence[Hole], layer: Layer, look: Look) -> Item:
         Part(tube, width=2.5),
         Part(dots(poly(collars - look.origin), colour, balls=True), size=6.0),
     ]
+    logged, legend = _logged(holes, site, layer, look)
     return Item(
-        parts,
+        [*parts, *logged],
         extent(np.concatenate([hole.xyz for hole in holes])),
         places=collars,
         names=tuple(hole.name for hole in holes) if layer.labels else (),
         ways=tuple((hole.name, hole.xyz) for hole in holes),
+        legend=legend,
     )
+
+
+def _logged(holes: Sequence[Hole], site: Site, layer: Layer, look: Look) -> tuple[list[Part], Legend | None]:
+    """Return the intervals of the table that the layer is coloured by, a part and a swatch a code."""
+    if layer.colour_by not in log_files(site):
+        return [], None
+    pieces: dict[str, list[Floats]] = {}
+    for hole in holes:
+        for one in hole_intervals(site, hole, layer.colour_by):
+            pieces.setdefault(one.code, []).append(one.xyz)
+    # The same colours as on a section sheet, which shows all tables.
+    every = {str(code) for campaign in site.boreholes for log in campaign.logs for code in np.unique(log.code)}
+    styles = lithology_style(sorted(every))
+    parts = [
+        Part(lines(_runs(runs, look), styles[code][0], 2.0), width=LOGGED) for code, runs in sorted(pieces.items())
+    ]
+    swatches = tuple(Swatch(styles[code][0], code) for code in sorted(pieces))
+    return parts, Legend(layer.colour_by, "", swatches)
 
 
 def dips_item(dips: Orientations, width: float, layer: Layer, look: Look) -> Item:

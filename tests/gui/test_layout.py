@@ -103,14 +103,18 @@ def test_a_button_unfolds_a_panel_and_folds_all_away_again(app):
     app.idle()
     assert "checks" in in_front(app.window)
     assert panels.view.height() < 0.75 * high
-    panels.bar.buttons["plan"].trigger()
+    assert not panels.bar.isVisible(), "the panels have tabs now"
+    panels.reveal("plan")
     app.idle()
     assert "plan" in in_front(app.window)
-    assert not panels.bar.buttons["checks"].isChecked()
-    panels.bar.buttons["plan"].trigger()
+    app.trigger("fold")
     app.idle()
     assert panels.layout.folded
+    assert panels.bar.isVisible()
     assert panels.view.height() == high
+    app.trigger("fold")
+    app.idle()
+    assert "plan" in in_front(app.window), "what was in front comes back"
 
 
 def test_panels_can_be_reset(app):

@@ -13,6 +13,7 @@ from geofit.data.accuracy import Check
 from geofit.data.languages import EN
 from geofit.data.messages import message
 from geofit.gui.dialogs.export_step import ExportDialog
+from geofit.io.site_file import read_site
 from geofit.project.commands import SetSurface
 from geofit.project.provenance import Row
 
@@ -24,7 +25,8 @@ FAILED = Check("trend", False, 9.0, 1.0, "m", message("test.text", "it runs away
 def shown(app):
     """The sample site with one surface of which a check fails, examined off its data."""
     document = app.document
-    app.desktop.session.begin(sample_site(), SITE)
+    # The holes of the samples of panels have other names than their interval tables.
+    app.desktop.session.begin(replace(sample_site(), holes=read_site(SITE).holes), SITE)
     document.select(NAME)
     recipe, surface = document.recipe(NAME), fitted()
     accuracy = replace(surface.accuracy, checks=(*surface.accuracy.checks, FAILED))
@@ -239,3 +241,37 @@ def test_one_switch_fades_what_no_data_support_in_view_and_section(shown, qtbot)
     assert min(opacities()) == 1.0
     switch.trigger()
     assert min(opacities()) < 0.5
+
+
+def test_holes_show_their_lithology_in_view_and_section_in_the_same_colours(shown, qtbot):
+    from geofit.gui.view3d.colouring import rgb
+    from geofit.report.section_sheet import lithology_style
+    from geofit.site.hole_logs import hole_intervals, log_files
+
+    site, layers = shown.document.site, shown.view.layers
+    table = log_files(site)[0]
+    assert layers["holes"].choices == ("plain", *log_files(site))
+    assert layers["holes"].colour_by == table
+    boreholes = [hole for hole in site.holes if hole.kind == "borehole"]
+    codes = sorted({one.code for hole in boreholes for one in hole_intervals(site, hole, table)})
+    legend = layers["holes"].legend
+    assert codes
+    assert [swatch.text for swatch in legend.swatches] == codes
+    every = sorted({str(code) for one in site.boreholes for log in one.logs for code in np.unique(log.code)})
+    styles = lithology_style(every)
+    assert [swatch.colour for swatch in legend.swatches] == [styles[code][0] for code in codes]
+    item = {layer.key: item for layer, item in shown.view._stage.items()}["holes"]
+    drawn = [tuple(round(255 * c) for c in part.actor.GetProperty().GetColor()) for part in item.parts[2:]]
+    assert drawn == [rgb(styles[code][0]) for code in codes]
+    layers.change("holes", colour_by="plain")
+    assert layers["holes"].legend is None
+    hole = max(boreholes, key=lambda one: len(list(hole_intervals(site, one, table))))
+    x, y = hole.xyz[0, :2]
+    shown.panels.reveal("section")
+    shown.window.showing.line = np.array([[x - 200, y], [x + 200, y]])
+    shown.window.showing.show_section()
+    qtbot.waitUntil(lambda: bool(shown.panels.section.canvas.figure.axes), timeout=30_000)
+    patches = shown.panels.section.canvas.figure.axes[0].patches
+    assert len(patches) >= len(list(hole_intervals(site, hole, table)))
+    hatches = {patch.get_hatch() or "" for patch in patches}
+    assert hatches <= {pattern for _, pattern in styles.values()}
