@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,7 +96,8 @@ def read_ply(path: Path) -> TriangleMesh:
     if not mark:
         raise _damaged(source, "PLY")
     body = body[body.index(b"\n") + 1 :]
-    kind, elements = "", []
+    kind = ""
+    elements: list[tuple[str, int, list[list[str]]]] = []
     for line in head.decode("ascii", "replace").splitlines():
         words = line.split()
         if words[:1] == ["format"]:
@@ -108,7 +110,7 @@ def read_ply(path: Path) -> TriangleMesh:
         found = dict(_elements(kind, elements, body))
         vertices = np.array([found["vertex"][axis] for axis in "xyz"], dtype=np.float64).T
         faces = found.get("face", {})
-        polygons = faces.get("vertex_indices", faces.get("vertex_index", []))
+        polygons: Any = faces.get("vertex_indices", faces.get("vertex_index", []))
     except (KeyError, ValueError, IndexError, TypeError):
         raise _damaged(source, "PLY") from None
     fans = [(p[0], a, b) for p in polygons for a, b in pairwise(p[1:])]

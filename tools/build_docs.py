@@ -34,6 +34,7 @@ CHAPTERS = {
     "site": "Several horizons and faults",
     "prediction": "Prediction",
     "bodies": "Bodies",
+    "morphing": "Metamorphosis",
     "sampling": "Sections and contours",
     "project": "Reports",
 }
@@ -42,7 +43,8 @@ RESULTS = (
     "geofit.surfaces.protocol", "geofit.surfaces.patch_surface", "geofit.surfaces.trimmed",
     "geofit.surfaces.mesh_surface", "geofit.splines.patch", "geofit.data.accuracy", "geofit.data.prediction",
     "geofit.site.fit_site", "geofit.site.order", "geofit.site.separate", "geofit.site.fault_blocks",
-    "geofit.site.throw", "geofit.sampling.contours", "geofit.sampling.cut", "geofit.data.site",
+    "geofit.site.throw", "geofit.morphing.sequence", "geofit.morphing.body", "geofit.morphing.change",
+    "geofit.sampling.contours", "geofit.sampling.cut", "geofit.data.site",
 )  # fmt: skip
 
 
@@ -77,9 +79,10 @@ def write_gallery(examples: list[Path]) -> None:
         source = path.read_text(encoding="utf-8")
         title, _, rest = (ast.get_docstring(ast.parse(source)) or "").partition("\n")
         title = title.rstrip(".")
+        film = f"![{title}, the film]({path.stem}.gif)\n\n" if (folder / f"{path.stem}.gif").is_file() else ""
         write(
             f"gallery/{path.stem}.md",
-            f"# {title}\n\n{rest.strip()}\n\n![{title}]({path.stem}.png)\n\n```python\n{source}```",
+            f"# {title}\n\n{rest.strip()}\n\n![{title}]({path.stem}.png)\n\n{film}```python\n{source}```",
         )
         cards.append(f"[![{title}]({path.stem}.png){{ width=320 }}<br>{title}]({path.stem}.md)")
     cards += [""] * (len(cards) % 2)

@@ -209,6 +209,10 @@ def _polish(
         return d_b.value(large * some @ turned.T + centre + away)
 
     found = least_squares(
-        off, np.zeros(6 + scaled), max_nfev=EVALUATIONS // 8, diff_step=1e-4, x_scale=a.lattice.spacing
+        off,
+        np.zeros(6 + scaled),
+        max_nfev=EVALUATIONS // 8,
+        diff_step=np.full(6 + scaled, 1e-4),
+        x_scale=a.lattice.spacing,
     )
     return moved(found.x)

@@ -66,12 +66,12 @@ class BetweenSurfaces:
 
     def value(self, xyz: Floats) -> Floats:
         """Return the field (n,) at (n, 3) places about the origin: about the distance, metres."""
-        return self._parts(xyz)[0].max(axis=0)
+        return np.asarray(self._parts(xyz)[0].max(axis=0))
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return the gradients (n, 3) of the face that is nearest."""
         values, gradients = self._parts(xyz)
-        return np.take_along_axis(gradients, values.argmax(axis=0)[None, :, None], axis=0)[0]
+        return np.asarray(np.take_along_axis(gradients, values.argmax(axis=0)[None, :, None], axis=0)[0])
 
     def _parts(self, xyz: Floats) -> tuple[Floats, Floats]:
         (low, high) = self.box
@@ -117,6 +117,11 @@ def between(
         If the area is not known, or the raster too fine.
     MorphError
         If the upper surface lies nowhere above the lower one.
+
+    Notes
+    -----
+    The field is the largest of the distances from both surfaces, to first order, and from the edge in plan:
+    ``docs/morph.md``.
     """
     low, high = _area(upper, lower, area)
     size = float((high - low).max())

@@ -71,13 +71,14 @@ class Leg:
         s = np.linspace(0, 1, TABLED)
         join, leave = self.path.crossings()
         cell = self.lattice.spacing**3
-        return s, np.searchsorted(join, s, "right") * cell, np.searchsorted(leave, s, "right") * cell
+        joined, left = (np.asarray(np.searchsorted(times, s, "right") * cell) for times in (join, leave))
+        return s, joined, left
 
-    def progress(self, s: ArrayLike) -> Floats:
-        """Return the share of the symmetric difference of the ends that is done at shares s."""
+    def progress(self, s: float) -> float:
+        """Return the share of the symmetric difference of the ends that is done at share s."""
         tabled, joined, left = self._tabled
         done = joined + left
-        return np.interp(s, tabled, done / done[-1] if done[-1] > 0 else tabled)
+        return float(np.interp(s, tabled, done / done[-1] if done[-1] > 0 else tabled))
 
     def share_at_progress(self, p: float) -> float:
         """Return the share s at which a share p of the symmetric difference is done."""

@@ -58,7 +58,7 @@ def morph(
     a, b : Field, ImplicitBody, TriangleMesh, MeshSurface or MorphBody
         The bodies: implicit fields, fitted bodies, closed meshes in map coordinates (see :func:`geofit.io.read_body`),
         or two horizons closed by :func:`geofit.between`.
-    *more : body
+    more : body
         Further surveys, in order.
     mode : {"arrival", "blend", "pde"}
         "arrival": a front with the speed |d_B|, from one solve; "blend": (1 - tau) d_A + tau d_B; "pde": the level-set

@@ -31,7 +31,10 @@ KEPT = 4.0
 class Path(Protocol):
     """Fields between two bodies."""
 
-    lattice: Lattice
+    @property
+    def lattice(self) -> Lattice:
+        """The nodes."""
+        ...
 
     def between(self, s: float) -> tuple[NDArray[np.floating], NDArray[np.floating], float]:
         """Return two stored fields and the share t between them: the frame is (1 - t) first + t last."""

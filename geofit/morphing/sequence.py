@@ -212,7 +212,7 @@ class Morph:
         first, last = self.knots[leg], self.knots[leg + 1]
         match self.pace:
             case "progress":
-                p = float(self.legs[leg].progress(s))
+                p = self.legs[leg].progress(s)
             case "volume":
                 low, high = self.legs[leg].volume(0.0), self.legs[leg].volume(1.0)
                 p = (self.legs[leg].volume(s) - low) / (high - low)

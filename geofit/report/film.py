@@ -54,6 +54,10 @@ def write_film(bodies: Sequence[MorphBody], path: str | PathLike[str]) -> Path:
         If the ending is another, or ffmpeg fails.
     MissingDependencyError
         If there is no OpenGL library, or no encoder of MP4.
+
+    Notes
+    -----
+    One camera from the south-west; the first and the last body are drawn sheer behind each frame: ``docs/morph.md``.
     """
     labels = [
         f"{body.date.isoformat() if body.date else f'tau {body.tau:.2f}'}   {body.volume:,.0f} m3   "
@@ -108,7 +112,7 @@ def body_pictures(
             if len(mesh.triangles):
                 plotter.add_mesh(shape(mesh), color=GHOST, opacity=0.1, show_edges=False)
         eye = np.array(EYE) / np.linalg.norm(EYE)
-        plotter.camera_position = [tuple(1.9 * reach * eye), (0, 0, 0), (0, 0, 1)]
+        plotter.camera_position = [tuple(1.4 * reach * eye), (0, 0, 0), (0, 0, 1)]
         plotter.camera.view_angle = 32
         plotter.enable_anti_aliasing("ssaa")
         images = []
