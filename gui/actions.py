@@ -43,6 +43,8 @@ _PLAIN: dict[str, _Spec] = {
                QT_TRANSLATE_NOOP("Actions", "Rows that were not used, and why"), ""),
     "close": (QT_TRANSLATE_NOOP("Actions", "&Close site"), _Key.Close, "", ""),
     "quit": (QT_TRANSLATE_NOOP("Actions", "&Quit"), "Ctrl+Q", "", ""),
+    "steps": (QT_TRANSLATE_NOOP("Actions", "All &steps…"), "Ctrl+Alt+Z",
+              QT_TRANSLATE_NOOP("Actions", "What was done in this session; go back or forward to any step"), ""),
     "rename": (QT_TRANSLATE_NOOP("Actions", "Re&name site…"), None, "", ""),
     "preferences": (QT_TRANSLATE_NOOP("Actions", "&Preferences…"), "Ctrl+,", "", ""),
     "home": (QT_TRANSLATE_NOOP("Actions", "&Show all"), "Home",

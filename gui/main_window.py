@@ -14,6 +14,7 @@ from geofit.gui.activity_bar import ActivityBar
 from geofit.gui.adjusting import Adjusting
 from geofit.gui.delivering import Delivering
 from geofit.gui.dialogs.error import ErrorDialog
+from geofit.gui.dialogs.steps import StepsDialog
 from geofit.gui.files import Files
 from geofit.gui.fitting import Fitting
 from geofit.gui.help import Help
@@ -48,6 +49,7 @@ class MainWindow(QMainWindow):
         super().__init__()
         self.session, self.preferences = session, preferences
         self._ready = self._leaving = False
+        self.steps: StepsDialog | None = None
         self.setWindowIcon(application_icon())
         self.setAcceptDrops(True)
         self.setMinimumSize(QSize(960, 640))
@@ -108,6 +110,8 @@ class MainWindow(QMainWindow):
         for end in self._ends:
             end()
         self.session.recorded.disconnect(self.tell)
+        if self.steps is not None:
+            self.steps.close()
         self.panels.close()
         event.accept()
         self.closed.emit()
@@ -155,6 +159,7 @@ class MainWindow(QMainWindow):
             "issues": lambda: self.help.issues(self.session.document.site),
             "close": files.close,
             "quit": self.close,
+            "steps": self._show_steps,
             "rename": self._rename,
             "preferences": lambda: self.help.preferences(self.preferences, self._set_theme, self.language_chosen.emit),
             "home": view.reset_camera,
@@ -291,6 +296,16 @@ class MainWindow(QMainWindow):
         name = self._horizon()
         if name is not None:
             self.fitting.exclude(name, rows)
+
+    def _show_steps(self) -> None:
+        """List the steps; one list at a time."""
+        if self.steps is None:
+            self.steps = StepsDialog(self.session.stack, self)
+            self.activity.began.connect(lambda _: self.steps and self.steps.set_busy(True))
+            self.activity.ended.connect(lambda: self.steps and self.steps.set_busy(False))
+        self.steps.set_busy(self.activity.busy)
+        self.steps.show()
+        self.steps.raise_()
 
     def _rename(self) -> None:
         name, given = QInputDialog.getText(

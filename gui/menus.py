@@ -41,7 +41,7 @@ class Menus(QObject):
         )
         edit = bar.addMenu(self.tr("&Edit"))
         edit.addActions([self.undo, self.redo])
-        self._menu(edit, "| exclude rename | preferences")
+        self._menu(edit, "steps | exclude rename | preferences")
         view = self._menu(bar.addMenu(self.tr("&View")), "home top north south east west iso | orthographic clip")
         view.addMenu(_group_menu(self.tr("Vertical e&xaggeration"), actions.exaggerations.actions(), window))
         self._menu(view, "faded control_points seams |")

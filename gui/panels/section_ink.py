@@ -31,6 +31,8 @@ Floats = NDArray[np.float64]
 NAME, LETTERS, LEGEND = 12, 7.0, 7.5
 #: Free room between the legend and the edge, and the height of the line that tells the exaggeration, logical pixels.
 FREE, NOTE = 8.0, 20.0
+#: Height of a line of the legend, logical pixels.
+ROW = 16.0
 #: Half width of a 90 % band in standard deviations.
 NINETY = 1.6449
 GROUND = "#6b7d3a"
@@ -173,6 +175,7 @@ def _holes(axes: Axes, data: SectionData, ink: Ink) -> None:
 
 def _logged(axes: Axes, data: SectionData, ink: Ink) -> None:
     """Draw the first interval table of the holes within the thickness as columns, each code with its pattern."""
+    import matplotlib as mpl
     from matplotlib.patches import Polygon
 
     tables = log_files(data.site)
@@ -193,7 +196,9 @@ def _logged(axes: Axes, data: SectionData, ink: Ink) -> None:
             colour, hatch = styles[one.code]
             label = None if one.code in told else one.code
             told.add(one.code)
-            axes.add_patch(Polygon(outline, fc=colour, ec=ink.muted, lw=0.4, hatch=hatch, label=label, zorder=2.5))
+            with mpl.rc_context({"hatch.linewidth": 0.3}):
+                made = Polygon(outline, fc=colour, ec=ink.muted, lw=0.4, hatch=hatch, label=label, zorder=2.5)
+            axes.add_patch(made)
 
 
 def seen_in(axes: Axes, curtain: Curtain) -> Extent:
@@ -241,7 +246,8 @@ def explain(figure: Figure, ink: Ink, *, narrow: bool) -> tuple[Text, tuple[floa
     if handles:
         legend = figure.legend(
             handles, labels, labelcolor=ink.text, fontsize=LEGEND, borderpad=0, borderaxespad=0,
-            loc="lower center" if narrow else "upper left", ncols=3 if narrow else 1,
+            loc="lower center" if narrow else "upper left",
+            ncols=3 if narrow else 1 + (len(handles) * ROW > height - 2 * NOTE), handlelength=1.4, columnspacing=0.8,
         )  # fmt: skip
         box = legend.get_window_extent()
         column, row = (100 * float(side) / figure.dpi for side in (box.width, box.height))
