@@ -16,7 +16,7 @@ __all__ = ["exaggeration_for", "north_arrow", "scale_bar", "scale_for", "scale_t
 STEPS = (1.0, 2.0, 2.5, 5.0)
 #: Heights of a section are drawn so many times larger, the least that reaches SHALLOWEST mm.
 EXAGGERATIONS = (1, 2, 5, 10)
-SHALLOWEST = 42.0
+SHALLOWEST = 30.0
 
 
 def scale_for(length: float, room: float) -> int:

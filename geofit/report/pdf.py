@@ -38,6 +38,8 @@ BODY, QUIET, SMALL, TINY = 8.6, 7.6, 7.0, 6.4
 LEADING = 1.45
 #: No picture is higher than this, mm: two fit on a page. One to scale may be higher.
 HIGHEST = 104.0
+#: Heights of a line of the title block and of a signature, and the least of the picture on the cover, mm.
+FIELD, SIGNED, LOWEST_COVER = 8.6, 9.0, 40.0
 #: Dots an inch of pictures to scale.
 DOTS = 200.0
 #: A chapter that follows on begins on a page if so much of it is left, mm.
@@ -81,7 +83,7 @@ class _Pages(FPDF):
         # Each font that is asked for a character it lacks would say so, though the next one has it.
         logging.getLogger("fpdf").setLevel(logging.ERROR)
         logging.getLogger("fontTools").setLevel(logging.ERROR)
-        self.document, self.running = document, ""
+        self.document, self.running, self.highest = document, "", HIGHEST
         fonts = pdf_fonts(chinese=document.language.startswith("zh"))
         for family, style, font in (
             ("text", "", fonts.regular),
@@ -147,6 +149,7 @@ class _Pages(FPDF):
             self.ln(6)
         if cover:
             self._cover()
+            self.highest = self._room_for_picture(chapter)
         else:
             self.start_section(chapter.title)
             self._title(chapter.title, chapter.verdict)
@@ -154,6 +157,21 @@ class _Pages(FPDF):
             if isinstance(block, Heading) and self._least(chapter.blocks[i:], images) > self.foot - self.y:
                 self.add_page()
             self._block(block, images)
+        self.highest = HIGHEST
+
+    def _room_for_picture(self, cover: Chapter) -> float:
+        """Return how high the picture of the cover may be, so that the signatures stay on the first page, mm."""
+        height = 14.0
+        for block in cover.blocks:
+            if isinstance(block, Fields):
+                height += FIELD * ((len(block.items) + 1) // 2) + 2.5
+            elif isinstance(block, Table):
+                height += table_height(block, self.epw, self.type) + 2.5
+            elif isinstance(block, Signatures):
+                height += 5 + SIGNED * len(block.roles)
+            elif not isinstance(block, Picture):
+                height += 9
+        return min(max(self.foot - self.y - height, LOWEST_COVER), HIGHEST)
 
     def contents(self, following: str) -> None:
         """Keep a page for the list of chapters, which is drawn when their pages are known."""
@@ -272,7 +290,7 @@ class _Pages(FPDF):
 
     def _fields(self, block: Fields) -> None:
         """Draw the title block: two fields a row, label above value."""
-        wide, height, value = self.epw / 2, 8.6, Pen(BODY + 0.6, INK, bold=True)
+        wide, height, value = self.epw / 2, FIELD, Pen(BODY + 0.6, INK, bold=True)
         self.set_draw_color(*rgb(MUTED))
         self.set_line_width(0.2)
         for i, (label, text) in enumerate(block.items):
@@ -290,7 +308,7 @@ class _Pages(FPDF):
         data = images.get(block.name)
         if data is None:
             return
-        wide, tall = _size(data, self.epw, to_scale=block.to_scale)
+        wide, tall = _size(data, self.epw, self.highest, to_scale=block.to_scale)
         pen = Pen(QUIET, MUTED)
         line = QUIET * POINT * LEADING
         caption = len(self.type.lines(block.caption, self.epw, pen)) * line
@@ -302,7 +320,7 @@ class _Pages(FPDF):
         self.set_y(self.y + 3)
 
     def _signatures(self, block: Signatures) -> None:
-        first, height = 26.0, 9.0
+        first, height = 26.0, SIGNED
         wide = (self.epw - first) / (len(block.columns) - 1)
         if self.y + 5 + height * len(block.roles) > self.foot:
             self.add_page()
@@ -331,13 +349,15 @@ class _Pages(FPDF):
             if isinstance(block, Heading):
                 height += 11 if block.level == 2 else 8
             elif isinstance(block, Picture):
-                tall = _size(images[block.name], self.epw, to_scale=block.to_scale)[1] if block.name in images else 0.0
+                tall = 0.0
+                if block.name in images:
+                    tall = _size(images[block.name], self.epw, self.highest, to_scale=block.to_scale)[1]
                 return height + tall + 10
             elif isinstance(block, Table):
                 whole = table_height(block, self.epw, self.type)
                 return height + (whole if whole <= WHOLE * self.empty_page else 38.0)
             elif isinstance(block, Signatures):
-                return height + 5 + 9 * len(block.roles)
+                return height + 5 + SIGNED * len(block.roles)
             elif isinstance(block, Facts | Fields):
                 height += 20
             else:
@@ -347,12 +367,12 @@ class _Pages(FPDF):
         return height
 
 
-def _size(data: bytes, room: float, *, to_scale: bool) -> tuple[float, float]:
+def _size(data: bytes, room: float, highest: float, *, to_scale: bool) -> tuple[float, float]:
     """Return width and height of a picture on the page, mm: the whole width unless it would be too high."""
     wide, tall = (int.from_bytes(data[k : k + 4], "big") for k in (16, 20))
     if to_scale:
         return wide / DOTS * 25.4, tall / DOTS * 25.4
-    scale = min(room / wide, HIGHEST / tall)
+    scale = min(room / wide, highest / tall)
     return wide * scale, tall * scale
 
 

@@ -337,3 +337,31 @@ def test_version_and_help(monkeypatch, capsys):
         "--json",
     ):
         assert option in out
+
+
+def test_report_takes_chosen_horizons_and_its_title_block_from_options(tmp_path, monkeypatch, capsys):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+    picks = write_picks(tmp_path / "picks.csv")
+    lines = picks.read_text(encoding="utf-8").splitlines()
+    lines += [line.replace("T3/T2", "T2/T1") for line in lines[1:]]
+    picks.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    options = ("--project", "P-7", "--client", "River Company", "--document", "D-1", "--status", "issued")
+    code, out, err = run(
+        monkeypatch, capsys, "report", picks, "--horizon", "T2/T1", *options, "--author", "Li Wen",
+        "--revision", "A:First issue", "--json", "--out", tmp_path / "o",
+    )  # fmt: skip
+    assert code == 0, err
+    data = json.loads((tmp_path / "o" / "report.json").read_text(encoding="utf-8"))
+    assert [one["horizon"] for one in data["horizons"]] == ["T2/T1"]
+    title = data["title"]
+    assert [title[key] for key in ("project", "client", "document", "status", "author")] == [
+        "P-7", "River Company", "D-1", "issued", "Li Wen",
+    ]  # fmt: skip
+    revision = {"mark": "A", "date": "2023-11-14", "text": "First issue", "author": "Li Wen"}
+    assert title["revisions"] == [revision]
+    printed = json.loads(out)
+    assert {key: printed[key] for key in data} == data
+    page = (tmp_path / "o" / "report.html").read_text(encoding="utf-8")
+    assert all(word in page for word in ("P-7", "River Company", "D-1", "First issue"))
+    code, _, err = run(monkeypatch, capsys, "report", picks, "--horizon", "T9", "--out", tmp_path / "p")
+    assert (code, "T2/T1" in err) == (2, True)

@@ -364,3 +364,27 @@ def test_sample_site_reads_without_an_error(request):
     assert len(site.horizons) >= 5
     assert len(site.boundary) >= 3
     assert site.ground is not None
+
+
+def test_the_title_block_of_the_report_is_read_and_its_errors_name_the_key(make_site):
+    path = make_site()
+    text = path.read_text(encoding="utf-8")
+    path.write_text(
+        text
+        + '\n[report]\nproject = 2026\nclient = "River Company"\nstatus = "draft"\n'
+        + '[[report.revision]]\nmark = "A"\ndate = 2026-01-02\n[[report.revision]]\nmark = 1\ntext = "second"\n',
+        encoding="utf-8",
+    )
+    title = read_site(path).title
+    assert (title.project, title.client, title.status, title.author) == ("2026", "River Company", "draft", "")
+    assert [(one.mark, one.date, one.text) for one in title.revisions] == [("A", "2026-01-02", ""), ("1", "", "second")]
+    assert title.revision == "1"
+    for bad, key in (
+        ("cleint = 'x'", "cleint"),
+        ("client = 3.5", "client"),
+        ("[[report.revision]]\ntext = 'x'", "mark"),
+    ):
+        path.write_text(f"{text}\n[report]\n{bad}\n", encoding="utf-8")
+        with pytest.raises(InputError) as refused:
+            read_site(path)
+        assert refused.value.column == key

@@ -1,0 +1,207 @@
+"""The report as a reviewer reads it: title block, contents, drawings to scale, no near-empty page, no torn table."""
+
+from __future__ import annotations
+
+import io
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from results import examined, horizon
+
+from geofit.data.languages import EN, ZH
+from geofit.data.site import Ground, Section
+from geofit.data.title_block import Revision, TitleBlock
+from geofit.report import fonts
+from geofit.report.chapters import document
+from geofit.report.document import Column, Picture, Signatures, Table
+from geofit.report.furniture import exaggeration_for, scale_for, scale_text
+from geofit.report.gather import accuracy_report
+from geofit.report.html import write_html
+from geofit.report.pdf import write_pdf
+from geofit.report.pdf_table import FEWEST, _Laid, _parts
+from geofit.report.pictures import draw, draw_sections, draw_site
+from geofit.report.profile import along, profiles, report_sections
+
+pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
+Image = pytest.importorskip("PIL.Image", reason="Pillow comes with fpdf2")
+
+NO_FONT = fonts._chinese() is None
+TITLE = TitleBlock(
+    project="HB-2026", client="River Company", document="GEO-012", status="for review", author="Li Wen",
+    checker="Zhang", revisions=(Revision("A", "2026-01-02", "First issue", "Li Wen"), Revision("B", "2026-03-04")),
+)  # fmt: skip
+
+
+def with_surroundings(result):
+    """The same horizon on a site with a title, a ground 40 m above it, and two section lines."""
+    origin = np.array([500_000.0, 3_100_000.0])
+    x, y = np.linspace(-800, 1600, 25) + origin[0], np.linspace(-700, 700, 15) + origin[1]
+    ground = Ground(x, y, np.full((15, 25), 1560.0))
+    lines = (
+        Section("A", np.add(origin, [[-600.0, 0.0], [1400.0, 0.0]])),
+        Section("B", np.add(origin, [[300.0, -550.0], [300.0, 550.0]])),
+    )
+    return replace(result, site=replace(result.site, title=TITLE, ground=ground, sections=lines))
+
+
+@pytest.fixture(scope="module")
+def results():
+    made = [with_surroundings(examined(horizon())), with_surroundings(horizon(name="T2/T1", epsilon=0.05))]
+    sections = report_sections(made[0].site, [one.surface.points for one in made])
+    return [replace(one, profiles=profiles(one.surface, one.offdata, sections)) for one in made], sections
+
+
+@pytest.fixture(scope="module")
+def report(results):
+    return accuracy_report(results[0], [], sections=results[1], date="2026-11-21")
+
+
+@pytest.fixture(scope="module")
+def images(results):
+    made, sections = results
+    found = {**draw_site(made).images, **draw_sections(made, sections)}
+    for one in made:
+        found |= draw(one).images
+    return found
+
+
+def _pages(path):
+    pdf = pdfium.PdfDocument(path)
+    texts = [re.sub(r"\s+", " ", pdf[i].get_textpage().get_text_range()) for i in range(len(pdf))]
+    pictures = [np.asarray(pdf[i].render(scale=0.5).to_pil().convert("L")) for i in range(len(pdf))]
+    pdf.close()
+    return texts, pictures
+
+
+@pytest.fixture(scope="module")
+def pages(report, images, tmp_path_factory):
+    path = tmp_path_factory.mktemp("layout") / "r.pdf"
+    write_pdf(document(report, EN), images, path)
+    return _pages(path)
+
+
+def test_the_title_block_stands_on_the_cover_and_in_the_running_head(pages):
+    texts, _ = pages
+    for word in ("HB-2026", "River Company", "GEO-012", "for review", "Li Wen", "Zhang", "First issue", "2026-03-04"):
+        assert word in texts[0], word
+    assert all("GEO-012 · Rev. B" in text for text in texts[1:])
+
+
+def test_the_signatures_stay_on_the_cover_however_many_revisions_there_are(report, images, tmp_path):
+    revisions = tuple(Revision(chr(65 + k), f"2026-01-{k + 1:02d}", "Change", "Li Wen") for k in range(8))
+    long = replace(report, title=replace(TITLE, revisions=revisions))
+    write_pdf(document(long, EN), images, tmp_path / "r.pdf")
+    texts, _ = _pages(tmp_path / "r.pdf")
+    assert "Approved" in texts[0]
+    assert "Contents" in texts[1]
+
+
+def test_the_contents_name_the_page_on_which_each_chapter_begins(pages, report):
+    texts, _ = pages
+    chapters = [chapter.title for chapter in document(report, EN).chapters[1:]]
+    assert "Contents" in texts[1]
+    for title in chapters:
+        page = int(re.search(re.escape(title) + r" (\d+)", texts[1])[1])
+        assert title in texts[page - 1]
+    assert f"{len(texts)} / {len(texts)}" in texts[-1]
+
+
+def test_no_page_is_nearly_empty(pages):
+    _, pictures = pages
+    for i, page in enumerate(pictures[1:-1], 2):
+        tall = page.shape[0]
+        body = page[int(0.075 * tall) : int(0.945 * tall)]
+        rows = np.flatnonzero((body < 200).any(axis=1))
+        assert rows.size
+        assert rows[-1] / len(body) > 0.33, f"page {i} ends at {rows[-1] / len(body):.0%}"
+
+
+def test_a_drawing_keeps_its_scale_on_paper(results, report, images):
+    _, sections = results
+    (plan,) = [
+        b for c in document(report, EN).chapters for b in c.blocks if isinstance(b, Picture) and b.name == "plan/T3/T2"
+    ]
+    assert plan.to_scale
+    assert f"scale {scale_text(report.horizons[0].plan.scale)}" in plan.caption
+    for sheet, section in zip(report.sections, sections, strict=True):
+        picture = np.asarray(Image.open(io.BytesIO(images[sheet.picture])).convert("L"))
+        assert picture.shape[1] == round(174 / 25.4 * 200)
+        # The frame of the drawing: its sides are the longest dark columns.
+        dark = np.flatnonzero((picture < 170).sum(axis=0) > 0.3 * picture.shape[0])
+        wide = (dark[-1] - dark[0]) / 200 * 25.4
+        length = float(np.linalg.norm(section.line[-1] - section.line[0]))
+        assert wide == pytest.approx(length * 1000 / sheet.scale, abs=0.6)
+        tall = (sheet.high - sheet.low) * 1000 / sheet.scale * sheet.exaggeration
+        assert 20 < tall < 151
+
+
+def test_sections_hold_the_line_its_band_and_what_lies_above_the_ground(results):
+    made, sections = results
+    (line,) = made[0].profiles["A"]
+    assert (line.line[0, 0], line.line[-1, 0]) == pytest.approx((0.0, 2000.0), abs=1e-6)
+    xy = np.column_stack([499_400.0 + line.line[:, 0], np.full(len(line.line), 3_100_000.0)])
+    np.testing.assert_allclose(made[0].surface.elevation(*xy.T), line.line[:, 1], atol=1e-6)
+    assert line.lower is None  # nothing stands behind a surface that was made by hand
+    s, off = along(sections[0].line, np.array([[500_000.0, 3_100_030.0], [499_300.0, 3_100_000.0]]))
+    assert (s.tolist(), off.tolist()) == ([600.0, 0.0], [30.0, 100.0])
+
+
+def test_a_site_without_sections_is_cut_along_and_across():
+    result = horizon()
+    site = replace(result.site, sections=())
+    first, second = report_sections(site, [result.surface.points])
+    ways = [one.line[1] - one.line[0] for one in (first, second)]
+    assert abs(ways[0] @ ways[1]) < 1e-6 * np.hypot(*ways[0]) * np.hypot(*ways[1])
+    assert np.hypot(*ways[0]) > np.hypot(*ways[1])
+
+
+@pytest.mark.parametrize(("length", "room"), [(1500.0, 150.0), (87.3, 150.0), (12_345.0, 146.0), (0.4, 100.0)])
+def test_a_scale_is_a_usual_one_that_fits(length, room):
+    scale = scale_for(length, room)
+    assert length * 1000 / scale <= room * (1 + 1e-9) or scale == 1
+    assert re.fullmatch(r"(1|2|25|5)0*", str(scale))
+    assert exaggeration_for(0.01 * length, scale, room) in (1, 2, 5, 10)
+
+
+class _Ruler:
+    """Every character is a millimetre wide."""
+
+    def width(self, text, pen):
+        return float(len(text))
+
+    def lines(self, text, room, pen):
+        return [text]
+
+
+@pytest.mark.parametrize("room", [20.0, 60.0, 100.0, 180.0, 250.0])
+@pytest.mark.parametrize("count", [1, 3, 5, 11, 23, 24, 45, 46, 47, 100, 300])
+def test_no_table_is_torn_by_a_row_or_two(count, room):
+    table = Table((Column("a"), Column("b", "number")), tuple((f"r{k}", str(k)) for k in range(count)))
+    laid = _Laid(table, 170.0, _Ruler())
+    ends = _parts(laid, room, 250.0)
+    turned, ends = ends[0] == 0, [end for end in ends if end]
+    assert ends[-1] == count
+    parts = np.diff([0, *ends])
+    assert (parts > 0).all()
+    heights = [laid.head_height + sum(laid.heights[a:b]) for a, b in zip([0, *ends], ends, strict=False)]
+    assert heights[0] <= (250.0 if turned else room)
+    assert max(heights) <= 250.0
+    if len(parts) > 1:
+        assert parts.min() >= FEWEST
+
+
+@pytest.mark.parametrize(
+    "t", [EN, pytest.param(ZH, marks=pytest.mark.skipif(NO_FONT, reason="no font with Chinese characters"))]
+)
+def test_each_language_has_its_usual_signatures_and_punctuation(report, images, t, tmp_path):
+    pages = document(report, t)
+    (signed,) = [block for block in pages.chapters[0].blocks if isinstance(block, Signatures)]
+    roles = [role for role, _ in signed.roles]
+    assert roles == (["Prepared", "Checked", "Approved"] if t is EN else ["批准", "审定", "审查", "校核", "编制"])
+    assert dict(signed.roles)["Prepared" if t is EN else "编制"] == "Li Wen"
+    write_html(pages, images, tmp_path / "r.html")
+    page = re.sub(r"<style>.*?</style>", "", (tmp_path / "r.html").read_text(encoding="utf-8"), flags=re.S)
+    text = re.sub(r"<[^>]+>|base64,[^\"]+", "\n", page)
+    assert not re.findall(r"[\u4e00-\u9fff] ?[,;:](?= |[\u4e00-\u9fff])", text)
