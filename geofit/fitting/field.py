@@ -220,9 +220,9 @@ def choose(
     if known:
         free = 2 if log_rho is None else 0
         found, rival = [], math.inf
-        for one in known:
-            start = (math.log(one.kappa), math.log(one.rho), *one.stretch)
-            found.append(likelihood(one.alpha).best([start], free, _AGAIN, _NEARBY, rival))
+        for guess in known:
+            start = (math.log(guess.kappa), math.log(guess.rho), *guess.stretch)
+            found.append(likelihood(guess.alpha).best([start], free, _AGAIN, _NEARBY, rival))
             rival = min(rival, found[-1].value)
     else:
         found = _search(likelihood, space.degree, len(plane), log_rho)

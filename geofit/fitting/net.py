@@ -47,6 +47,8 @@ Stage = Callable[[str, float], None]
 #: Shortest spans of the space on which the field is chosen, in units of the spacing: what is shorter no points of that
 #: spacing resolve. Control points of the level that the search begins on, of the first that is kept, and at most.
 EVEN, SKETCH, FIRST_LEVEL, LAST_LEVEL = 0.5, 500, 1_500, 25_000
+#: Points that the search begins with, at least; of twice as many every other one serves.
+SKETCHED = 10_000
 #: A finer level must raise the restricted likelihood by this much, -2 log of it.
 GAIN = 10.0
 #: Span around a point that is met within its tolerance, in units: what lies between stays the field's.
@@ -168,7 +170,9 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, T
     space, sketch = (even_space(data.area, EVEN, degree, most) for most in (count, SKETCH))
     known: list[Field] = []
     if sketch.size < space.size:
-        known = [one for one, _ in choose(sketch, data.plane, data.value, noise, given, (), data.trend)]
+        some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
+        found = choose(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
+        known = [one for one, _ in found]
     field, value = choose(space, data.plane, data.value, noise, given, known, data.trend)[0]
     while 2 * count <= limit:
         count *= 2

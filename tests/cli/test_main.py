@@ -164,6 +164,23 @@ def test_info_tells_points_and_step_apart(fitted, monkeypatch, capsys):
     assert [int(row["patches"]) for row in json.loads(out)] == [len(known["patches"])]
 
 
+def test_strict_brings_points_within_the_tolerance_that_noise_explains(tmp_path, monkeypatch, capsys):
+    rng = np.random.default_rng(6)
+    plan = rng.uniform(0, 400, (1200, 2))
+    z = 900 + 5 * np.sin(plan[:, 0] / 90) + rng.normal(0, 0.05, 1200)
+    source = tmp_path / "cloud.csv"
+    rows = "\n".join(f"{x:.3f},{y:.3f},{h:.3f}" for x, y, h in np.column_stack([plan, z]))
+    source.write_text(f"x,y,z\n{rows}\n", encoding="utf-8")
+    beyond = {}
+    for option in ([], ["--strict"]):
+        out = tmp_path / ("strict" if option else "usual")
+        run(monkeypatch, capsys, "fit", source, "--out", out, "--core", "none", *option)
+        with next(out.glob("*_residuals.csv")).open(encoding="utf-8-sig", newline="") as stream:
+            beyond[bool(option)] = max(abs(float(row["residual_m"])) for row in csv.DictReader(stream))
+    assert beyond[False] > 0.1
+    assert beyond[True] <= 0.1
+
+
 def test_a_failing_horizon_ends_with_1(picks, tmp_path, monkeypatch, capsys):
     code, out, _ = run(
         monkeypatch, capsys, "fit", picks, "--out", tmp_path / "o", "--epsilon", "1e-7",
