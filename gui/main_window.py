@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from PySide6.QtCore import QEvent, QSize, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
@@ -301,8 +302,8 @@ class MainWindow(QMainWindow):
         """List the steps; one list at a time."""
         if self.steps is None:
             self.steps = StepsDialog(self.session.stack, self)
-            self.activity.began.connect(lambda _: self.steps and self.steps.set_busy(True))
-            self.activity.ended.connect(lambda: self.steps and self.steps.set_busy(False))
+            self.activity.began.connect(partial(self.steps.set_busy, True))
+            self.activity.ended.connect(partial(self.steps.set_busy, False))
         self.steps.set_busy(self.activity.busy)
         self.steps.show()
         self.steps.raise_()

@@ -35,6 +35,6 @@ class StepsDialog(QDialog):
         self.setWindowIcon(icon("report"))
         self.resize(QSize(420, 460))
 
-    def set_busy(self, busy: bool) -> None:
+    def set_busy(self, busy: bool, *_: object) -> None:
         """Rest while a task runs."""
         self.list.setEnabled(not busy)
