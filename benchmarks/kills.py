@@ -126,10 +126,8 @@ def workers(kills: int, rng: random.Random, folder: Path) -> int:
     owner = QObject()
 
     def ended(task: worker.Task, seconds: float = 120.0) -> None:
-        over: list[bool] = []
-        task.ended.connect(lambda: over.append(True))
         last = time.monotonic() + seconds
-        while not over:
+        while task in worker.tasks():
             app.processEvents()
             time.sleep(0.005)
             assert time.monotonic() < last, "a task does not end"
@@ -143,19 +141,22 @@ def workers(kills: int, rng: random.Random, folder: Path) -> int:
             ended(worker.run_apart(owner, _slowly, 0.0, **keep))
             assert results == [0.0], errors
             (process,) = multiprocessing.active_children()
+            number = process.pid or 0
             how = signal.SIGSTOP if turn % 4 == 3 else signal.SIGKILL
             if turn % 2:  # at work
                 task = worker.run_apart(owner, _slowly, 0.3, **keep)
                 until = time.monotonic() + rng.uniform(0, 0.4)
                 while time.monotonic() < until:
                     app.processEvents()
-                os.kill(process.pid or 0, how)
+                os.kill(number, how)
                 if how is signal.SIGSTOP:
                     task.cancel()
                 ended(task)
+                if number in [left.pid for left in multiprocessing.active_children()]:
+                    os.kill(number, signal.SIGKILL)  # stopped after its work, it would wait until somebody ends it
                 assert all(isinstance(error, GeofitError) for error in errors), errors
             else:
-                os.kill(process.pid or 0, how)
+                os.kill(number, how)
                 time.sleep(rng.uniform(0, 0.1))
             cut += 1
     finally:
