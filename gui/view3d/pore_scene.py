@@ -144,7 +144,8 @@ class PoreScene(QWidget):
                 share = (of_pore - low) / max(high - low, 1e-12)
                 colours = (255 * np.asarray(mpl.colormaps["viridis"](share))[:, :3]).astype(np.uint8)
             else:
-                table = np.array([QColor(colour).getRgb()[:3] for colour in CONNECTED], np.uint8)
+                known = [QColor(colour) for colour in CONNECTED]
+                table = np.array([(c.red(), c.green(), c.blue()) for c in known], np.uint8)
                 colours = table[of_pore.astype(np.int64)]
             mesh["colour"] = colours
             mesh.set_active_scalars("colour")
