@@ -22,9 +22,11 @@ __all__ = ["laplace_permeability", "mobility"]
 
 #: Largest residual of the solve, relative to the inflow.
 _TOLERANCE = 1e-4
-#: From the centre of the nearest rock voxel back to the wall: half a voxel at a flat wall; at a round one the nearest
-#: of many rock voxels lies just behind the wall.
-_FLAT_WALL, _ROUND_WALL = 0.5, 0.3
+#: From the centre of the nearest rock voxel back to the wall: half a voxel at a flat wall. At a round one the nearest
+#: of many rock voxels lies just behind the wall; a narrow passage has few, and its wall is that of their faces. Half
+#: widths and what belongs to them, from the flow in ducts with the section of voxel discs of radius 1.2 to 12.
+_FLAT_WALL = 0.5
+_ROUND_WALL = ((2.0, 6.8), (0.5, 0.3))
 
 
 def mobility(volume: RockVolume) -> NDArray[np.float64]:
@@ -45,7 +47,8 @@ def mobility(volume: RockVolume) -> NDArray[np.float64]:
     half, flatness = passages(balls, volume.pore)
     inside = volume.pore
     ball = widest[inside]
-    back = _ROUND_WALL + (_FLAT_WALL - _ROUND_WALL) * flatness[ball]
+    round_wall = np.interp(half, *_ROUND_WALL)
+    back = (round_wall + (_FLAT_WALL - round_wall) * flatness)[ball]
     d = np.sqrt(reach2[inside].astype(np.float64)) - back
     width = np.maximum(half[ball] - back, d)
     out = np.zeros(volume.shape)

@@ -17,6 +17,7 @@ _BINS = 256
 
 def grey_histogram(values: NDArray[Any], bins: int = _BINS) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return counts (n,) and edges (n + 1,) of the values of voxels; whole numbers get a bin each where they fit."""
+    values = values.view(np.uint8) if values.dtype == bool else values
     low, high = float(values.min()), float(values.max())
     if values.dtype.kind in "bui" and high - low < bins:
         edges = np.arange(low, high + 2) - 0.5

@@ -46,6 +46,7 @@ class PoreScene(QWidget):
         self.setFocusProxy(self.canvas)
         self._view: PoreView | None = None
         self._actors: dict[str, Any] = {}
+        self._frame: Any = None
         self._visible = {"network": True, "surface": True}
         self.colour: Colour = "radius"
         self.limits = (0.0, 1.0)
@@ -81,6 +82,7 @@ class PoreScene(QWidget):
             self._add("surface", surface, 0.25)
         self._paint()
         box = np.array([[0.0] * 3, np.array(network.shape) * network.edges])
+        self._outline(box)
         self.canvas.look(framed(self.canvas.eye, box, self.width() / max(self.height(), 1)))
 
     def set_colour(self, colour: Colour) -> None:
@@ -115,6 +117,18 @@ class PoreScene(QWidget):
         self.canvas.renderer.AddActor(actor)
         self._actors[name] = actor
 
+    def _outline(self, box: Floats) -> None:
+        """Draw the edges of the sample."""
+        import pyvista as pv
+
+        if self._frame is not None:
+            self.canvas.renderer.RemoveActor(self._frame)
+        (x0, y0, z0), (x1, y1, z1) = box.tolist()
+        self._frame = pv.Actor(mapper=pv.DataSetMapper(pv.Box((x0, x1, y0, y1, z0, z1)).outline()))
+        self._frame.prop.color = "#8a939c"
+        self._frame.prop.lighting = False
+        self.canvas.renderer.AddActor(self._frame)
+
     def _paint(self) -> None:
         if self._view is None or not len(self._view.network.pores):
             return
@@ -128,9 +142,10 @@ class PoreScene(QWidget):
                 import matplotlib as mpl
 
                 share = (of_pore - low) / max(high - low, 1e-12)
-                colours = (255 * mpl.colormaps["viridis"](share)[:, :3]).astype(np.uint8)
+                colours = (255 * np.asarray(mpl.colormaps["viridis"](share))[:, :3]).astype(np.uint8)
             else:
-                table = np.array([QColor(colour).getRgb()[:3] for colour in CONNECTED], np.uint8)
+                known = [QColor(colour) for colour in CONNECTED]
+                table = np.array([(c.red(), c.green(), c.blue()) for c in known], np.uint8)
                 colours = table[of_pore.astype(np.int64)]
             mesh["colour"] = colours
             mesh.set_active_scalars("colour")

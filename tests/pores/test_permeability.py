@@ -41,6 +41,21 @@ def test_tubes(radius, offset):
     assert laplace_permeability(volume_of(tube)).square_metres[0] == pytest.approx(truth, rel=0.03)
 
 
+@pytest.mark.parametrize("radius", [1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.5])
+def test_narrow_tubes_on_average_over_their_place_on_the_grid(radius):
+    """With one distance of the wall for all radii, tubes of 1.2 voxels carried 1.9 times their flow."""
+    ratio = []
+    for offset in (0.0, 0.25, 0.5):
+        x = np.arange(-int(radius) - 3, int(radius) + 4) + offset
+        section = x[:, None] ** 2 + x**2 <= radius**2
+        truth = duct_conductance(section.astype(np.uint8), 1.0, 1.0) / section.size
+        tube = volume_of(np.repeat(section[None], 6, axis=0))
+        ratio.append(laplace_permeability(tube).square_metres[0] / truth)
+    assert np.mean(ratio) == pytest.approx(1.0, abs=0.16)
+    assert min(ratio) > 0.7
+    assert max(ratio) < 1.2
+
+
 def test_a_bundle_of_tubes_adds_up():
     section = disc(8, 0.5)
     bundle = np.tile(np.repeat(section[None], 20, axis=0), (1, 2, 3))
