@@ -184,7 +184,8 @@ def factor_for(left: LeftOutPoints, local: Floats | float, weight: Floats, share
     order = np.argsort(needed, kind="stable")
     reached = np.cumsum(weight[order])
     k = int(np.searchsorted(reached, share * reached[-1] * (1 - 1e-12)))
-    return max(float(np.sqrt(needed[order][min(k, len(needed) - 1)])), _LEAST)
+    # The point that the factor is taken from lies inside, rounding or not.
+    return max(float(np.sqrt(needed[order][min(k, len(needed) - 1)])) * (1 + 1e-9), _LEAST)
 
 
 def common_factor(fit: LinearFit, judged: NDArray[np.bool_]) -> float:
