@@ -309,7 +309,7 @@ def write_reports(
     images: dict[str, bytes] = {}
     made: list[HorizonResult] = []
     warnings: list[Message] = []
-    sections = report_sections(results[0].site, [result.surface.points for result in results]) if pictured else ()
+    sections = report_sections(results[0].site, [result.surface.points for result in results])
     for i, result in enumerate(results):
         low, high = 0.9 * i / len(results), 0.9 * (i + 1) / len(results)
         part = _within(progress, low, high, result.name)
@@ -320,11 +320,11 @@ def write_reports(
             storage, missing = compared(result.surface)
             result = replace(result, storage=storage)
             warnings += missing
+        profiles, uncut = section_profiles(result, sections)
+        result = replace(result, profiles=profiles)
+        warnings += uncut
         if pictured:
             part("pictures", 0.6)
-            profiles, uncut = section_profiles(result, sections)
-            result = replace(result, profiles=profiles)
-            warnings += uncut
             images |= draw(result, language).images
         made.append(result)
     tell(progress, "report", 0.9)
@@ -334,7 +334,8 @@ def write_reports(
     orders, unordered = _orders(made[0].site, fits)
     made = _with_orders(made, orders or (), fits)
     report = accuracy_report(made, orders, cuts=fits.cuts, date=date, sections=sections)
-    images |= draw_sections(made, sections, language)
+    if pictured:
+        images |= draw_sections(made, sections, language)
     whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
     tell(progress, "report", 0.95)
     _write_report(report, whole, images, out, language, font, forms)

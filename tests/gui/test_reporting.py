@@ -13,6 +13,7 @@ from PySide6.QtGui import QDesktopServices
 from geofit.cli.main import main
 from geofit.gui.dialogs.export_step import ExportDialog
 from geofit.gui.dialogs.report import ReportDialog
+from geofit.project import side_by_side
 from geofit.report import pictures
 
 NAMES = ("upper", "lower")
@@ -58,6 +59,8 @@ def test_the_window_s_report_says_what_the_command_line_s_says(app, qtbot, site_
     monkeypatch.setattr(pictures, "draw", lambda *_: pictures.Pictures({}, None, ""))
     monkeypatch.setattr(pictures, "draw_site", lambda *_: pictures.Pictures({}, None, ""))
     monkeypatch.setattr(pictures, "write_picture", lambda *_: None)
+    # Functions that are replaced here stay what they are in another process.
+    monkeypatch.setattr(side_by_side, "available", lambda: 1)
     monkeypatch.setattr(sys, "argv", ["geofit", "fit", str(site_file), "--out", str(tmp_path / "cli")])
     with pytest.raises(SystemExit) as end:
         main()
