@@ -67,6 +67,6 @@ def test_same_bytes_and_refusals(written, meshes, tmp_path, monkeypatch):
     with pytest.raises(InputError, match="No surface"):
         write_geoh5({}, tmp_path / "a.geoh5")
     monkeypatch.setitem(__import__("sys").modules, "h5py", None)
-    with pytest.raises(MissingDependencyError, match=r"geofit\[geoh5\]"):
+    with pytest.raises(MissingDependencyError, match=r"geofit-geology\[geoh5\]"):
         write_geoh5(meshes, tmp_path / "a.geoh5")
     assert [p.name for p in tmp_path.iterdir()] == ["b.geoh5"]

@@ -128,6 +128,6 @@ def test_refusals(tmp_path, monkeypatch):
     with pytest.raises(InputError, match="No surface"):
         write_ifc({}, tmp_path / "a.ifc")
     monkeypatch.setitem(__import__("sys").modules, "ifcopenshell", None)
-    with pytest.raises(MissingDependencyError, match=r"geofit\[ifc\]"):
+    with pytest.raises(MissingDependencyError, match=r"geofit-geology\[ifc\]"):
         write_ifc(surfaces(), tmp_path / "a.ifc")
     assert list(tmp_path.iterdir()) == []
