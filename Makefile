@@ -44,7 +44,7 @@ real: .venv/.installed-test
 	$(BIN)/python benchmarks/real.py
 
 bench: .venv/.installed-test
-	@set -e; for script in benchmarks/fit.py benchmarks/distance.py; do $(BIN)/python $$script; done
+	@set -e; for script in benchmarks/fit.py benchmarks/distance.py benchmarks/scale.py; do $(BIN)/python $$script; done
 
 docs: .venv/.installed-docs
 	rm -rf build/docs
