@@ -48,7 +48,7 @@ real: .venv/.installed-all
 	$(BIN)/python benchmarks/real.py
 
 bench: .venv/.installed-all
-	@set -e; for script in benchmarks/fit.py benchmarks/distance.py benchmarks/pores.py; do $(BIN)/python $$script; done
+	@set -e; for script in fit distance pores scale; do $(BIN)/python benchmarks/$$script.py; done
 
 docs: .venv/.installed-all
 	rm -rf build/docs

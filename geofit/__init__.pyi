@@ -45,5 +45,7 @@ from geofit.site.fit_site import fit_site as fit_site
 from geofit.site.order import compare_horizons as compare_horizons
 from geofit.site.order import thickness as thickness
 from geofit.site.separate import separate_horizons as separate_horizons
+from geofit.streaming.fit import CloudFit as CloudFit
+from geofit.streaming.fit import fit_cloud as fit_cloud
 
 __version__: str

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 from PySide6.QtCore import QEvent, QSize, Signal
 from PySide6.QtGui import QCloseEvent, QDragEnterEvent, QDropEvent
@@ -302,8 +301,9 @@ class MainWindow(QMainWindow):
         """List the steps; one list at a time."""
         if self.steps is None:
             self.steps = StepsDialog(self.session.stack, self)
-            self.activity.began.connect(partial(self.steps.set_busy, True))
-            self.activity.ended.connect(partial(self.steps.set_busy, False))
+            steps = self.steps
+            self.activity.began.connect(lambda *_: steps.set_busy(True))
+            self.activity.ended.connect(lambda *_: steps.set_busy(False))
         self.steps.set_busy(self.activity.busy)
         self.steps.show()
         self.steps.raise_()

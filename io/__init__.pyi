@@ -4,6 +4,8 @@ from geofit.io.boreholes import Boreholes as Boreholes
 from geofit.io.boreholes import read_boreholes as read_boreholes
 from geofit.io.boundary import read_boundary as read_boundary
 from geofit.io.centreline import read_centreline as read_centreline
+from geofit.io.clouds import Cloud as Cloud
+from geofit.io.clouds import open_cloud as open_cloud
 from geofit.io.compass import read_compass as read_compass
 from geofit.io.contacts import Contacts as Contacts
 from geofit.io.contacts import take_contacts as take_contacts

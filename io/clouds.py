@@ -99,12 +99,21 @@ def open_cloud(
     sep, decimal : str, optional
         Separator and decimal mark of a text, where the guess is wrong.
 
+    Returns
+    -------
+    Cloud
+        The file, with the number of its points where it says it; ``chunks()`` reads it.
+
     Raises
     ------
     InputError
         If there is no such file, or it is damaged.
     MissingDependencyError
         If laspy or pyarrow is needed and not installed (extra ``scale``).
+
+    Notes
+    -----
+    Formats: ``docs/formats_in.md``, "Clouds of points".
     """
     Source(path=path, sep=sep, decimal=decimal)
     if not path.is_file():

@@ -238,12 +238,13 @@ def choose(
         raise FitError(text)
     scatter = spread(z)
     fields = []
-    for one in found:
-        own = math.sqrt(one.variance) if one.value < UNSOLVABLE else math.nan
+    for optimum in found:
+        own = math.sqrt(optimum.variance) if optimum.value < UNSOLVABLE else math.nan
         contradictory = not few and own > CONTRADICTION * max(scatter, FINEST)
-        field = Field(one.alpha, one.kappa, one.rho, one.stretch, own, contradictory, scatter, one.hold)
-        fields.append((field.turned if turned else field, one.value))
-    return [one for one in fields if one[1] < UNSOLVABLE]
+        covariance = (optimum.alpha, optimum.kappa, optimum.rho, optimum.stretch)
+        field = Field(*covariance, own, contradictory, scatter, optimum.hold)
+        fields.append((field.turned if turned else field, optimum.value))
+    return [(field, value) for field, value in fields if value < UNSOLVABLE]
 
 
 def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rho: float | None) -> list[Optimum]:

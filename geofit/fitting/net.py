@@ -250,7 +250,7 @@ class Periphery:
         if chased and (misfit > limit).any():
             space, coefficients = self._narrowed(space, coefficients, plane[misfit > limit])
         total, field = 0, coefficients
-        if not (misfit > limit).any():
+        if not chased or not (misfit > limit).any():
             beyond = np.where(misfit > tolerance, misfit, 0.0)
             return Beside(space, coefficients, self._frozen(space), 0, limit, self._notes(beyond, limit))
         while True:

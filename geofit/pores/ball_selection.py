@@ -56,7 +56,7 @@ class BallSearch:
         found = _maximal(
             reach2, first - low, end - low, low, self._directions, self._source, self._tables, self._counts
         )
-        return np.asarray(found + low * reach2.shape[1] * reach2.shape[2])
+        return np.asarray(found + low * reach2.shape[1] * reach2.shape[2], np.int64)
 
 
 def block_maxima(reach2: NDArray[Any], first: int) -> NDArray[np.int64]:

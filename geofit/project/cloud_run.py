@@ -12,7 +12,8 @@ import numpy as np
 
 from geofit.data.accuracy import plain
 from geofit.data.errors import InputError
-from geofit.data.files import file_stems, legible, replacing
+from geofit.data.files import file_stems, replacing
+from geofit.data.legible import legible
 from geofit.data.messages import Message, message
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings

@@ -170,14 +170,25 @@ def write_pores_report(
 
     Raises
     ------
+    SettingsError
+        If the volume was read slab by slab: it has no surface.
     MissingDependencyError
         If the report is to be in Chinese and the machine has no font for it.
     """
     from geofit.pores.representative import representative_volume
+    from geofit.pores.volume import RockVolume
     from geofit.report.pores_chapter import PoresFindings, pores_chapter, pores_picture
     from geofit.report.pores_pictures import draw_pores
     from geofit.report.single import single_document
 
+    if run.balls is None or run.surface is None or run.table is None or not isinstance(run.volume, RockVolume):
+        raise SettingsError(
+            message(
+                "run.pores-report-slabs",
+                "The report of a rock volume shows its surface, which needs all voxels at once. Leave out --slabs, or "
+                "--report.",
+            )
+        )
     settling = representative_volume(run.volume)
     found = PoresFindings(name, run.volume, len(run.balls), run.network, run.table, settling)
     images = draw_pores(found, run.surface.triangulate(), t)

@@ -50,7 +50,7 @@ class RockVolumeDialog(TaskDialog):
         self.view: PoreView | None = None
         self.slices, self.scene, self.table = VolumeSlices(), PoreScene(), DataTable()
         self.table.setAccessibleName(self.tr("Figures of the pore space"))
-        self.choose = QPushButton(self.tr("&Open a volume…"))
+        self.open_button = QPushButton(self.tr("&Open a volume…"))
         self.low, self.high, self.edge = QDoubleSpinBox(), QDoubleSpinBox(), QDoubleSpinBox()
         for box in (self.low, self.high):
             box.setRange(UNSTATED, 1e12)
@@ -69,9 +69,9 @@ class RockVolumeDialog(TaskDialog):
         self.key = QLabel()
         self.key.setTextFormat(Qt.TextFormat.RichText)
         self.go.setText(self.tr("&Find pores"))
-        self.fields = (self.choose, self.low, self.high, self.edge)
+        self.fields = (self.open_button, self.low, self.high, self.edge)
         self._lay_out()
-        self.choose.clicked.connect(self._ask)
+        self.open_button.clicked.connect(self._ask)
         self.go.clicked.connect(self._find)
         for box in (self.low, self.high, self.edge):
             box.valueChanged.connect(self._changed)
@@ -114,7 +114,7 @@ class RockVolumeDialog(TaskDialog):
         left = QWidget()
         column = QVBoxLayout(left)
         column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.choose, 0, Qt.AlignmentFlag.AlignLeft)
+        column.addWidget(self.open_button, 0, Qt.AlignmentFlag.AlignLeft)
         column.addWidget(self.slices, 1)
         column.addLayout(form)
         colours = QHBoxLayout()

@@ -18,7 +18,7 @@ from geofit.data.site import Ground, Site
 from geofit.gui.panels.canvas import DOT, Ink
 from geofit.gui.panels.curtain import Curtain, Traces
 from geofit.gui.panels.section_scale import Extent
-from geofit.report.section_sheet import lithology_style
+from geofit.report.section_pages import lithology_style
 from geofit.report.style import horizon_colours, kind_style, quiet
 from geofit.site.hole_logs import hole_intervals, log_files
 from geofit.site.support import support_of

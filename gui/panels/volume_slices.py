@@ -94,8 +94,8 @@ class VolumeSlices(QWidget):
         counts = self.volume.counts
         middle, width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
         inside = np.zeros(len(middle), bool) if self.range is None else self._within(middle)
-        colours = np.where(inside, ink.of(PORE), ink.muted)
-        histogram.bar(middle, counts / counts.sum() * 100, 0.9 * width, color=colours.tolist())
+        shades = np.where(inside, ink.of(PORE), ink.muted)
+        histogram.bar(middle, counts / counts.sum() * 100, 0.9 * width, color=shades.tolist())
         histogram.set_ylabel(self.tr("voxels, %"))
         histogram.set_xlabel(self.tr("value of a voxel"))
         for axes in (picture, histogram):

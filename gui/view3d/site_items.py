@@ -14,7 +14,7 @@ from geofit.gui.view3d.colouring import legible
 from geofit.gui.view3d.item import Item, Look, extent
 from geofit.gui.view3d.layers import Layer, Legend, Swatch
 from geofit.gui.view3d.shape import Shape
-from geofit.report.section_sheet import lithology_style
+from geofit.report.section_pages import lithology_style
 from geofit.report.style import FAIL, KIND_STYLE
 from geofit.site.hole_logs import hole_intervals, log_files
 

@@ -1,0 +1,250 @@
+"""How time and memory grow: points in memory up to 1e6, clouds up to 1e7 (1e8 on request), CSV, horizons side by side.
+
+Run ``python benchmarks/scale.py [LARGEST]`` (default 1e7): each row runs in a process of its own, which tells its
+processor time and its peak memory, and docs/scale.md is written from what was measured. 1e8 takes 5 GB of disk.
+"""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import os
+import resource
+import sys
+import tempfile
+import textwrap
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "tests"))
+from truth import EASTING, NORTHING, hills  # noqa: E402
+
+NOISE, SIZE, CHUNK = 0.05, 2000.0, 100_000
+CSV_ROWS, HORIZONS, POINTS = 1_000_000, 16, 600
+Figures = dict[str, float]
+COMMANDS = (
+    "geofit fit scan.laz --out results",
+    "geofit fit scan.csv --out results --stream     # a table that need not fit into the memory",
+    "geofit fit scan.laz --out results --scheduler tcp://host:8786",
+)
+TABLE = (
+    "| points | `fit_horizon`, s | MB above the input's | `fit_cloud`, s | MB above the input's "
+    "| streamed: fit, s | fit and distances, s | MB |",
+    "|---|---|---|---|---|---|---|---|",
+)
+
+
+def made(n: int, seed: int = 0) -> Iterator[np.ndarray]:
+    """Yield n points of a truth with noise, some at a time."""
+    rng, height = np.random.default_rng(seed), hills(seed)
+    for start in range(0, n, CHUNK):
+        xy = rng.uniform((EASTING, NORTHING), (EASTING + SIZE, NORTHING + SIZE), (min(CHUNK, n - start), 2))
+        yield np.column_stack([xy, height(*xy.T) + rng.normal(0, NOISE, len(xy))])
+
+
+def used(since: float = 0.0) -> float:
+    """Return the processor seconds of this process and its ended children."""
+    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) - since
+
+
+def peak() -> float:
+    """Return the largest memory that this process or one of its children took, MB."""
+    return max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) / 1024
+
+
+def from_arrays(n: int) -> Figures:
+    from geofit import FitSettings, PointSet, fit_horizon
+
+    points = PointSet(np.concatenate(list(made(n))))
+    before, start = peak(), used()
+    fit_horizon(points, FitSettings(core="none"))
+    return {"cpu": used(start), "before": before, "peak": peak(), "input": points.xyz.nbytes / 1e6}
+
+
+def cloud_in_memory(n: int) -> Figures:
+    from geofit.streaming.fit import fit_cloud
+
+    xyz = np.concatenate(list(made(n)))
+    before, start = peak(), used()
+    fit_cloud(xyz)
+    return {"cpu": used(start), "before": before, "peak": peak(), "input": xyz.nbytes / 1e6}
+
+
+def streamed(n: int) -> Figures:
+    from geofit.streaming.fit import fit_cloud
+    from geofit.streaming.residuals import measure
+    from geofit.streaming.spool import spooled
+
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        spool = spooled(made(n), folder, "made", n)
+        start, wall = used(), time.perf_counter()
+        fit = fit_cloud(spool.xyz(), folder=folder)
+        fitted = used(start)
+        found = measure(spool, fit.surface, 0.1, 0.5, fit.field.noise, folder=folder / "distances")
+        whole = time.perf_counter() - wall
+        return {"cpu": used(start), "fit": fitted, "wall": whole, "peak": peak(), "sigma": found.sigma}
+
+
+def csv_file(rows: int) -> Figures:
+    from geofit.io.picks import read_points
+
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "picks.csv"
+        with path.open("w", encoding="utf-8") as file:
+            file.write("x,y,z,horizon\n")
+            for part in made(rows):
+                file.writelines(f"{x:.3f},{y:.3f},{z:.3f},T2\n" for x, y, z in part.tolist())
+        before, start = peak(), used()
+        read_points(path)
+        figures = {"cpu": used(start), "before": before, "peak": peak(), "bytes": float(path.stat().st_size)}
+        try:
+            import polars
+        except ImportError:
+            return figures
+        times = []
+        for _ in range(5):
+            start = used()
+            polars.read_csv(path)
+            mid = used()
+            read_points(path)
+            times.append((mid - start, used(mid)))
+        theirs, ours = np.median(times, axis=0)
+        return {**figures, "polars": float(theirs), "again": float(ours)}
+
+
+def side_by_side(count: int) -> Figures:
+    from geofit import PointSet
+    from geofit.data.site import Site
+    from geofit.site.fit_site import fit_site
+
+    horizons = {f"H{k}": PointSet(next(made(POINTS, k))) for k in range(count)}
+    site = Site(name="many", horizons=horizons)
+    start, wall = used(), time.perf_counter()
+    fit_site(site)
+    one, alone = used(start), time.perf_counter() - wall
+    start, wall = used(), time.perf_counter()
+    fit_site(site, scheduler="local", workers=2)
+    return {"one": one, "two": used(start), "wall_one": alone, "wall_two": time.perf_counter() - wall}
+
+
+TASKS: dict[str, Callable[[int], Figures]] = {
+    "arrays": from_arrays,
+    "cloud": cloud_in_memory,
+    "streamed": streamed,
+    "csv": csv_file,
+    "horizons": side_by_side,
+}
+
+
+def apart(task: str, n: int) -> Figures:
+    """Run one measurement in a process of its own."""
+    context = multiprocessing.get_context("spawn")
+    queue: Any = context.SimpleQueue()
+    child = context.Process(target=_told, args=(queue, task, n))
+    child.start()
+    child.join()
+    if queue.empty():
+        sys.exit(f"{task} {n:,}: the process ended without a result")
+    figures: Figures = queue.get()
+    print(f"{task:10s}{n:12,d}  " + ", ".join(f"{key} {value:.4g}" for key, value in figures.items()), flush=True)
+    return figures
+
+
+def _told(queue: Any, task: str, n: int) -> None:
+    queue.put(TASKS[task](n))
+
+
+def exponent(table: dict[int, Figures], key: str = "cpu") -> float:
+    """Return the slope of the logarithm of time against that of n, between the ends of a table."""
+    low, high = min(table), max(table)
+    if low == high:
+        return math.nan
+    return math.log(table[high][key] / table[low][key]) / math.log(high / low)
+
+
+def page(found: dict[str, dict[int, Figures]]) -> str:
+    """Return docs/scale.md."""
+    arrays, clouds, files = found["arrays"], found["cloud"], found["streamed"]
+    largest = max(files)
+    best = files[largest]
+    rate = best["cpu"] / largest
+    csv, many = found["csv"][CSV_ROWS], found["horizons"][HORIZONS]
+    each = many["one"] / HORIZONS
+    hours = rate * 1e10 / 3600
+    lines = ["# Scale", ""]
+
+    def say(text: str) -> None:
+        lines.extend([*textwrap.wrap(" ".join(text.split()), 118, break_on_hyphens=False), ""])
+
+    say(f"""`python benchmarks/scale.py [LARGEST]` measures this page and writes it. Seconds are those of the processor
+        ({os.cpu_count()} processors), of all processes together; memory is the peak of the largest process. Points are
+        seeded hills on 2 km x 2 km with a noise of {NOISE} m. What is in *italics* is extrapolated, not measured.""")
+    lines += ["## One surface", "", "```", *COMMANDS, "```", ""]
+    say("""LAS, LAZ and Parquet need the extra: `pip install 'geofit[scale]'`. A cloud is read once, to 24 bytes a point
+        in the folder of the results; every later pass is over that file. The passes find the extent, the frame,
+        coincident points, the sums of the field's cells (one pass a level of control points), and the distances. The
+        state is that of the cells: it does not grow with n. Parts of a million points are measured by the workers,
+        which write their distances as Parquet and send back sums. A run that is stopped, or loses its
+        scheduler, goes on with the same command: points that were read and parts that were
+        measured are kept; the fit between them is made again.""")
+    lines += [*TABLE]
+    for n in sorted({*arrays, *clouds, *files}):
+        cells = [f"{n:,}"]
+        for table in (arrays, clouds):
+            row = table.get(n)
+            cells += ["–", "–"] if row is None else [f"{row['cpu']:.2f}", f"{row['peak'] - row['before']:.0f}"]
+        row = files.get(n)
+        cells += ["–"] * 3 if row is None else [f"{row['fit']:.2f}", f"{row['cpu']:.1f}", f"{row['peak']:.0f}"]
+        lines.append("| " + " | ".join(cells) + " |")
+    far = f"| *10,000,000,000* | – | – | – | – | *{best['fit'] / largest * 1e10:,.0f}* | *{rate * 1e10:,.0f}* |"
+    lines += [f"{far} *{best['peak']:.0f}* |", ""]
+    say(f"""Growth of the time from the smallest to the largest n: exponent {exponent(arrays):.2f} (`fit_horizon`),
+        {exponent(clouds):.2f} (`fit_cloud` in memory), {exponent(files):.2f} (streamed).""")
+    say(f"""*1e10 points*, from {rate * 1e6:.2f} s a million at {largest:,}: {hours:.0f} h of one processor, 240 GB of
+        disk for the points and some 80 GB for the distances. Only the distances are spread over the workers: the fit
+        takes {best["fit"] / largest * 1e10 / 3600:.0f} h on one processor however many there are.""")
+    lines += ["## Many horizons", ""]
+    say("""`geofit fit site.toml --scheduler local` fits horizons side by side in processes of this machine; an address
+        or the file of a scheduler (`dask scheduler --scheduler-file FILE`, as a job of Slurm starts it) sends them to a
+        Dask cluster. The surfaces are the same to the last bit. A worker that dies costs its horizon a second try.""")
+    lines += [
+        "| horizons of 600 points | one process, s | two processes, both together, s | wall time, two / one |",
+        "|---|---|---|---|",
+        f"| {HORIZONS} | {many['one']:.1f} | {many['two']:.1f} | {many['wall_two'] / many['wall_one']:.2f} |",
+        f"| *10,000* | *{each * 1e4:,.0f}* | – | – |",
+        "",
+    ]
+    say(f"""Two processes cost {many["two"] - many["one"]:.1f} s more of the processors than one, their start included.
+        *1e4 horizons*: {each * 1e4 / 3600:.1f} h of one processor, {each * 1e4 / 64 / 60:.0f} min on 64 if nothing else
+        limits them.""")
+    lines += ["## Tables", ""]
+    text = f"""A CSV of {CSV_ROWS:,} rows, {csv["bytes"] / 1e6:.0f} MB: {csv["cpu"]:.2f} s at first, peak memory
+        {csv["peak"]:.0f} MB ({(csv["peak"] - csv["before"]) * 1e6 / csv["bytes"]:.1f} bytes a byte above the start)."""
+    if "polars" in csv:
+        text += f""" polars reads the same file in {csv["polars"]:.2f} s, geofit, which accounts for every row, in
+            {csv["again"]:.2f} s: {csv["again"] / csv["polars"]:.1f} times as long."""
+    say(text)
+    return "\n".join(lines)
+
+
+def main() -> None:
+    largest = int(float(sys.argv[1])) if len(sys.argv) > 1 else 10_000_000
+    decades = [10**k for k in range(3, 10) if 10**k <= largest]
+    found = {
+        "arrays": {n: apart("arrays", n) for n in decades if n <= 10**7},
+        "cloud": {n: apart("cloud", n) for n in decades if 10**5 <= n <= 10**7},
+        "streamed": {n: apart("streamed", n) for n in decades if n >= 10**6},
+        "csv": {CSV_ROWS: apart("csv", CSV_ROWS)},
+        "horizons": {HORIZONS: apart("horizons", HORIZONS)},
+    }
+    (ROOT / "docs" / "scale.md").write_text(page(found), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
