@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from geofit.data.errors import SettingsError
 from geofit.data.guard import guarded
 from geofit.data.languages import EN, Language, language
 from geofit.data.messages import Message, message
