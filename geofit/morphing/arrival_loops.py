@@ -66,12 +66,15 @@ def start_values(d_a: Floats, d_b: Floats, h: float, floor: float) -> Floats:
                                 w[0, x] * w[1, y] * w[2, z] * d_b[cell[0] + x - 1, cell[1] + y - 1, cell[2] + z - 1]
                             )
                 sign = 1.0 if d_b[i, j, k] > 0 else -1.0
-                if sign * there <= 0 and (a < 0) == (d_b[i, j, k] < 0):
-                    # Beyond B's surface, seen from A's: continued from the way between them.
+                if sign * there <= 0:
+                    # The foot lies across B's surface: another front, or none, starts there.
                     continue
                 v0, v1 = max(sign * there, floor), max(sign * d_b[i, j, k], floor)
                 # The signed way from A's surface, positive where the front goes.
                 way = a if sign < 0 else -a
+                if abs(way) > v0:
+                    # Where both surfaces meet, the front comes from the side, before that along the normal.
+                    continue
                 mean = (v0 - v1) / math.log(v0 / v1) if abs(v0 - v1) > 1e-6 * v0 else (v0 + v1) / 2
                 u[i, j, k] = math.exp(min(-way / mean, 20.0))
     return u
@@ -121,7 +124,8 @@ def _update(u: Floats, done: NDArray[np.bool_], at: int, strides: Ints, q: float
         if inner < 0:
             break
         found = c / (b + math.sqrt(inner))
-    return found
+    # Nodes behind A's surface have more than 1; no front starts there.
+    return min(found, 1.0)
 
 
 @njit(cache=True)

@@ -28,6 +28,8 @@ Pace = Literal["progress", "volume", "time"]
 
 #: Shares of the way at which the pace is tabled; between them it is linear.
 TABLED = 257
+#: A frame's field is kept within this many spacings: a spline would swing next to larger steps.
+KEPT = 6.0
 #: Corrections of a share by the volume of its surface.
 SECANTS = 4
 
@@ -63,7 +65,10 @@ class Leg:
 
     def spline(self, s: float) -> SplineGrid:
         """Return the C2 field of the frame at share s."""
-        return spline_grid(samples_at(self.path, s), self.lattice)
+        # No surface of a frame is farther away than both ends together: where these meet, large steps would make the
+        # spline swing.
+        far = np.minimum(np.abs(self.d_a) + np.abs(self.d_b), KEPT * self.lattice.spacing)
+        return spline_grid(np.clip(samples_at(self.path, s), -far, far), self.lattice)
 
     @cached_property
     def _tabled(self) -> tuple[Floats, Floats, Floats]:
