@@ -143,9 +143,11 @@ class ReportDialog(TaskDialog):
 
     def _write(self) -> None:
         examined = self.examine.isChecked()
-        # What stands behind the patches is only needed to leave points out.
+        # What stands behind the patches is only needed to leave points out, and for the bands of the sections.
         results = [
-            result if examined and result.offdata is None else replace(result, surface=result.surface.with_(model=None))
+            result
+            if examined or result.offdata is not None
+            else replace(result, surface=result.surface.with_(model=None))
             for result in self._results
         ]
         date = self.date.date().toString(Qt.DateFormat.ISODate)
