@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.active import spread
-from geofit.bodies.posterior import CALIBRATION, Posterior
+from geofit.bodies.posterior import SPREAD, Posterior
 from geofit.bodies.simulate import changes
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
@@ -167,7 +167,7 @@ def direction_of(azimuth: float, dip: float) -> Floats:
 def _drawn(body: ImplicitBody, xyz: Floats) -> Floats:
     """Return what each realization adds to the field at (n, 3) places along a hole, (n, realizations)."""
     posterior = Posterior(body)
-    value, deviation = body.value(xyz), CALIBRATION * posterior.deviation(xyz)
+    value, deviation = body.value(xyz), SPREAD * posterior.deviation(xyz)
     # Off the box, and beyond the reach of the data of a closed body, ground is outside in every realization.
     near = np.flatnonzero((np.abs(value) < FAR * deviation) & posterior.open_ground(xyz))
     change = np.zeros((len(xyz), body.settings.realizations))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.active import spread
-from geofit.bodies.posterior import CALIBRATION, Posterior
+from geofit.bodies.posterior import SPREAD, Posterior
 from geofit.bodies.rbf import Saddle
 
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ def draws(body: ImplicitBody) -> Draws:
     # The nearest ones only: no draw reaches the others, and each variance costs the square of the data.
     order = np.argsort(np.abs(value), kind="stable")[:REACHED]
     nodes, value = nodes[order], value[order]
-    deviation = CALIBRATION * posterior.deviation(nodes)
+    deviation = SPREAD * posterior.deviation(nodes)
     near = np.abs(value) < FAR * deviation
     fitted = body.field.frame.to_fit(nodes[near])
     change = changes(body, posterior, fitted[_first_knots(fitted, value[near], deviation[near])], fitted, rng)
@@ -131,7 +131,7 @@ def changes(
         return np.zeros((len(places), body.settings.realizations))
     guards, side, held = _guards(body, posterior)
     every = np.concatenate([knots, guards])
-    covariance = (CALIBRATION * posterior.scale) ** 2 * posterior.system.covariance(every)
+    covariance = (SPREAD * posterior.scale) ** 2 * posterior.system.covariance(every)
     root, vectors = np.linalg.eigh(covariance)
     factor = vectors * np.sqrt(np.maximum(root, 0.0))
     drawn = factor @ rng.standard_normal((len(every), body.settings.realizations))

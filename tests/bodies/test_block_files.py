@@ -66,8 +66,9 @@ def test_probability_is_calibrated() -> None:
     p, inside = np.concatenate(chance), np.concatenate(true)
     for low, high in ((0.02, 0.3), (0.3, 0.7), (0.7, 0.98)):
         own = (p > low) & (p < high)
-        # 5 points are wanted; places in doubt are outside up to 17 points more often than predicted.
-        assert abs(p[own].mean() - inside[own].mean()) < 0.2
+        # An ellipsoid is smoother than rock: what is said of it is up to 12 points too cautious. Bodies of all kinds
+        # are in test_spread.py.
+        assert abs(p[own].mean() - inside[own].mean()) < 0.15
 
 
 def test_blocks_that_are_too_small(ring: ImplicitBody) -> None:
