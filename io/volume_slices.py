@@ -70,8 +70,16 @@ def open_volume(
     path : path
         A raw, npy, mhd, mha or TIFF file, a folder of TIFF slices, or a zarr store. Packed files (gz, zip, npz) have to
         be unpacked first.
-    pore, voxel, shape, dtype, name
-        As for :func:`read_volume`.
+    pore : value or collection of values
+        Which voxels are pore; see :class:`geofit.RockVolume`.
+    voxel : float or three floats
+        Edge length of a voxel in metres; may be left out if the header states it.
+    shape : three int, optional
+        Voxels along each axis, the slowest first; for raw files.
+    dtype : str, optional
+        Type of a raw file's values.
+    name : str, optional
+        Which array of a zarr store, if there are several.
 
     Returns
     -------
