@@ -38,7 +38,7 @@ LOOK = 0.02
 
 
 class SchedulerError(GeofitError):
-    """A scheduler is lost, or workers die again and again; what was ready stays."""
+    """A scheduler is lost, or workers die again and again."""
 
 
 def run_tasks(
@@ -102,7 +102,7 @@ def _on_processes(work: Callable[[T], R], tasks: Sequence[T], count: int) -> Ite
                         message(
                             "streaming.workers-die",
                             "Worker processes died {count} times over task {task} of {total}, perhaps for want of "
-                            "memory. Free memory, or use fewer workers; what was ready is kept.",
+                            "memory. Free memory, or use fewer workers.",
                             count=TRIES,
                             task=k + 1,
                             total=len(tasks),
@@ -183,8 +183,8 @@ def _lost(scheduler: str, ready: int, total: int) -> SchedulerError:
     return SchedulerError(
         message(
             "streaming.scheduler-lost",
-            "The scheduler at {scheduler} or its workers are lost; {ready} of {total} tasks are ready and kept. Start "
-            "the same command again: it goes on with the others.",
+            "The scheduler at {scheduler} or its workers are lost; {ready} of {total} tasks were ready. Start the same "
+            "command again: a cloud goes on with the other parts, horizons are fitted anew.",
             scheduler=scheduler,
             ready=ready,
             total=total,
