@@ -262,7 +262,7 @@ def _folds(points: PointSet) -> tuple[float, list[float], int, float] | None:
         return None
     try:
         kriged = krige_left_out(plane, z, groups)
-    except np.linalg.LinAlgError:  # points at one place
+    except np.linalg.LinAlgError:  # points at one location
         kriged = np.full(len(z), np.nan)
     others = [plate, kriged, *dense]
     figures = [rms((other - z)[known]) for other in others]

@@ -125,7 +125,7 @@ def large() -> None:
     def error_of(spans: int) -> float:
         return rms(reference(spans).elevation(*places) - height(*places))
 
-    # The reference is sized for geofit's error before the clock starts, with the truth at hand: in its favour.
+    # The reference is sized for geofit's error before the clock starts, with the truth available: in its favour.
     spans = smallest(error_of, EQUAL * error, *SPANS)
     print(f"{MILLION:,} points, noise {NOISE} m, core='none': medians of {FEW_TURNS} runs in turn")
     if spans is None:

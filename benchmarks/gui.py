@@ -60,7 +60,7 @@ def resident() -> float:
     return pages * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
-def settle(desktop: Desktop) -> None:
+def resolve_conflicts(desktop: Desktop) -> None:
     """Handle events until nothing runs and everything is shown."""
     window = desktop.window
     while window.activity.busy or window.showing.drawing.busy:
@@ -74,10 +74,10 @@ def refit(desktop: Desktop, epsilon: float) -> float:
     """Fit once; return the seconds until the surface is drawn."""
     window, document = desktop.window, desktop.session.document
     window.fitting.set_settings(HORIZON, replace(document.settings(HORIZON), epsilon=epsilon))
-    settle(desktop)
+    resolve_conflicts(desktop)
     began = time.perf_counter()
     window.fitting.fit(HORIZON)
-    settle(desktop)
+    resolve_conflicts(desktop)
     return time.perf_counter() - began
 
 
@@ -98,7 +98,7 @@ def main() -> None:
         for _ in range(2):
             warm(get_ready)
         window.files.open(Path(folder) / "site.toml")
-        settle(desktop)
+        resolve_conflicts(desktop)
         desktop.session.document.select(HORIZON)
         window.panels.reveal(asked.panel)
         refit(desktop, 0.49)

@@ -70,12 +70,12 @@ def torn(folder: Path) -> list[str]:
 
 def runs(kills: int, rng: random.Random, folder: Path) -> int:
     """Kill runs of one horizon; return how many were cut off."""
-    from geofit.project.run import deliver
+    from geofit.project.run import run_horizons
 
     site = Site("killed", {"T": points(1)})
 
     def work(out: Path) -> None:
-        deliver(site, out, date="2024-01-01")
+        run_horizons(site, out, date="2024-01-01")
 
     start = time.perf_counter()
     killed(lambda: work(folder / "whole"), None)  # in a fork, too: this process shall have no connection to a screen
@@ -138,13 +138,13 @@ def workers(kills: int, rng: random.Random, folder: Path) -> int:
             results: list[object] = []
             errors: list[Exception] = []
             keep = {"on_done": results.append, "on_failed": errors.append}
-            ended(worker.run_apart(owner, _slowly, 0.0, **keep))
+            ended(worker.run_in_process(owner, _slowly, 0.0, **keep))
             assert results == [0.0], errors
             (process,) = multiprocessing.active_children()
             number = process.pid or 0
             how = signal.SIGSTOP if turn % 4 == 3 else signal.SIGKILL
             if turn % 2:  # at work
-                task = worker.run_apart(owner, _slowly, 0.3, **keep)
+                task = worker.run_in_process(owner, _slowly, 0.3, **keep)
                 until = time.monotonic() + rng.uniform(0, 0.4)
                 while time.monotonic() < until:
                     app.processEvents()

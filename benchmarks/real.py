@@ -1,7 +1,7 @@
 """Fit and examine the real sets as ``geofit fit`` does, score them on points left out, write ``docs/real_data.md``.
 
 Run ``make real``, or ``python benchmarks/real.py [SET ...]`` for some sets (then only the table is printed).
-Needs ``GEOFIT_DATA`` or ``../shared/data``; without them it says so and exits with 2.
+Needs ``GEOFIT_DATA`` or ``../shared/data``; without them it reports it and exits with 2.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from functools import cache
 from multiprocessing import get_context
 from pathlib import Path
 
-from realdata.offdata import OFF_DATA, Off, field_alone, off_cells, off_data
 from realdata.page import ERRORS, FITS, Fitted, Row, error_cells, fit_cells, markdown
+from realdata.prediction import OFF_DATA, Off, field_alone, off_cells, prediction
 from realdata.score import Errors, left_out_errors
 from realdata.sets import SETS, RealSet, data_folder
 from realdata.why import Trial, try_out, worse
@@ -25,7 +25,7 @@ from geofit.cli.console import print_table
 from geofit.data.accuracy import Check
 from geofit.data.files import replacing
 from geofit.prediction.examine import examine
-from geofit.project.run import deliver
+from geofit.project.run import run_horizons
 from geofit.report.result import HorizonResult
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -46,9 +46,9 @@ def real_set(key: str) -> RealSet:
 def deliver_set(key: str) -> dict[str, Found]:
     """Fit all horizons of a set with the default settings and leave their files; figures, or why a horizon failed."""
     real = real_set(key)
-    delivery = deliver(real.site, OUT / key)
-    found: dict[str, Found] = {name: (str(reason), None) for name, reason in delivery.failures.items()}
-    return found | {result.name: (fitted(result), off_of(result, FitSettings())) for result in delivery.results}
+    result = run_horizons(real.site, OUT / key)
+    found: dict[str, Found] = {name: (str(reason), None) for name, reason in result.failures.items()}
+    return found | {result.name: (fitted(result), off_of(result, FitSettings())) for result in result.results}
 
 
 def fit_at_scale(key: str, name: str) -> Found:
@@ -59,13 +59,15 @@ def fit_at_scale(key: str, name: str) -> Found:
         surface = fit_horizon(real.site.horizons[name], real.scale, real.site.boundary, name=name)
     except GeofitError as error:
         return str(error), None
-    result = HorizonResult(surface, real.site, seconds={"fit": time.perf_counter() - start}, offdata=examine(surface))
+    result = HorizonResult(
+        surface, real.site, seconds={"fit": time.perf_counter() - start}, prediction=examine(surface)
+    )
     return fitted(result), off_of(result, surface.settings)
 
 
 def off_of(result: HorizonResult, settings: FitSettings) -> Off | None:
-    """Take the figures off the data from a result, with the field alone where another method is nearer."""
-    off = off_data(result.surface, result.offdata)
+    """Take the figures away from the data from a result, with the field alone where another method is nearer."""
+    off = prediction(result.surface, result.prediction)
     return off and field_alone(off, result.surface.points, settings, result.site.boundary)
 
 

@@ -1,6 +1,6 @@
 """Edit a surface by hand.
 
-A fit is never changed: each edit returns a new one with its own check. ``pull_to`` lets the surface pass through a
+A fit is never changed: each edit returns a new one with its own check. ``move_to`` lets the surface pass through a
 point or a place, ``adjust`` moves one control point. Points of the core stay exact, seams stay closed.
 """
 
@@ -21,8 +21,8 @@ fit = geofit.fit_horizon(geofit.PointSet(np.column_stack([x, y, z]), accuracy=0.
 
 here = np.array([500.0, 300.0])
 place = [*here, float(fit.elevation(*here)) + 4.0]  # a geologist knows that the rock lies 4 m higher here
-pulled = geofit.pull_to(fit, place)
-half = geofit.pull_to(fit, place, share=0.5)
+pulled = geofit.move_to(fit, place)
+half = geofit.move_to(fit, place, share=0.5)
 for one in (fit, half, pulled):
     print(one, one.accuracy.notes[-1:])
 

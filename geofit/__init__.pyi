@@ -14,7 +14,7 @@ from geofit.data.site import Site as Site
 from geofit.data.title_block import Revision as Revision
 from geofit.data.title_block import TitleBlock as TitleBlock
 from geofit.fitting.edit import adjust as adjust
-from geofit.fitting.edit import pull_to as pull_to
+from geofit.fitting.edit import move_to as move_to
 from geofit.fitting.edit import weigh as weigh
 from geofit.fitting.horizon_fit import HorizonFit as HorizonFit
 from geofit.fitting.judge import judge as judge

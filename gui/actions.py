@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QMainWindow
 
 from geofit.gui.icons import icon
 from geofit.gui.language import LANGUAGES
-from geofit.gui.words import bare
+from geofit.gui.translate import bare
 
 __all__ = ["EXAGGERATIONS", "Actions"]
 
@@ -66,14 +66,15 @@ _PLAIN: dict[str, _Spec] = {
     "fit": (QT_TRANSLATE_NOOP("Actions", "&Fit"), "F5",
             QT_TRANSLATE_NOOP("Actions", "Fit the chosen horizon with its settings"), "fit"),
     "fit_all": (QT_TRANSLATE_NOOP("Actions", "Fit &all"), "Shift+F5",
-                QT_TRANSLATE_NOOP("Actions", "Fit what has no surface or a stale one"), "fit_all"),
-    "examine": (QT_TRANSLATE_NOOP("Actions", "&Examine off the data"), "F6",
-                QT_TRANSLATE_NOOP("Actions", "Cross-validate: how far the rock may lie elsewhere"), "examine"),
+                QT_TRANSLATE_NOOP("Actions", "Fit horizons with no surface or an outdated one"), "fit_all"),
+    "examine": (QT_TRANSLATE_NOOP("Actions", "&Examine away from the data"), "F6",
+                QT_TRANSLATE_NOOP("Actions", "Cross-validate: find the prediction error away from the data"),
+                "examine"),
     "check_order": (QT_TRANSLATE_NOOP("Actions", "Check the &order"), "F7",
                     QT_TRANSLATE_NOOP("Actions", "Whether each horizon stays above the next one"), ""),
     "order": (QT_TRANSLATE_NOOP("Actions", "O&rder of the horizons…"), None,
               QT_TRANSLATE_NOOP("Actions", "Say which horizon lies above which"), ""),
-    "repair": (QT_TRANSLATE_NOOP("Actions", "&Push apart…"), "Ctrl+F7",
+    "separate": (QT_TRANSLATE_NOOP("Actions", "&Separate horizons…"), "Ctrl+F7",
                QT_TRANSLATE_NOOP("Actions", "Push horizons apart where they cross; points met exactly stay"), ""),
     "worst": (QT_TRANSLATE_NOOP("Actions", "Go to the &worst point"), "F8", "", ""),
     "exclude": (QT_TRANSLATE_NOOP("Actions", "E&xclude or include the chosen row"), "Ctrl+D", "", ""),

@@ -12,8 +12,8 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from geofit.data.messages import message
-from geofit.gui.words import shown_error
-from geofit.gui.worker import Task, run, run_apart
+from geofit.gui.translate import shown_error
+from geofit.gui.worker import Task, run, run_in_process
 
 __all__ = ["Activity"]
 
@@ -28,7 +28,7 @@ class _Job:
     prepare: Callable[[], Work]
     on_done: Callable[[Any], object]
     on_failed: Callable[[Exception], object] | None
-    apart: bool
+    in_process: bool
 
 
 class Activity(QObject):
@@ -60,13 +60,13 @@ class Activity(QObject):
         *args: Any,
         on_done: Callable[[Any], object],
         on_failed: Callable[[Exception], object] | None = None,
-        apart: bool = False,
+        in_process: bool = False,
     ) -> None:
-        """Run ``function(*args, progress=...)`` when its turn comes; ``apart`` in a process of its own.
+        """Run ``function(*args, progress=...)`` when its turn comes; ``in_process`` in a process of its own.
 
-        Without ``on_failed`` a failure is told by the signal.
+        Without ``on_failed`` a failure is reported by the signal.
         """
-        self.prepare(title, lambda: (function, args), on_done=on_done, on_failed=on_failed, apart=apart)
+        self.prepare(title, lambda: (function, args), on_done=on_done, on_failed=on_failed, in_process=in_process)
 
     def prepare(
         self,
@@ -75,10 +75,10 @@ class Activity(QObject):
         *,
         on_done: Callable[[Any], object],
         on_failed: Callable[[Exception], object] | None = None,
-        apart: bool = False,
+        in_process: bool = False,
     ) -> None:
         """As :meth:`do`, with the function and its arguments asked for when the turn comes."""
-        self._waiting.append(_Job(title, prepare, on_done, on_failed, apart))
+        self._waiting.append(_Job(title, prepare, on_done, on_failed, in_process))
         if self._task is None:
             self._next()
 
@@ -94,7 +94,7 @@ class Activity(QObject):
             work = job.prepare()
             if work is None:
                 continue
-            start = run_apart if job.apart else run
+            start = run_in_process if job.in_process else run
             self._task = start(
                 self,
                 work[0],
@@ -106,7 +106,7 @@ class Activity(QObject):
                 on_cancelled=partial(_LOG.info, message("log.stopped", "Stopped: {task}", task=job.title)),
             )
             self._task.ended.connect(self._after)
-            # Not before there is a task: who hears of it asks whether something can be stopped.
+            # Not before there is a task: who hears of it checks whether something can be stopped.
             self.began.emit(job.title)
             return
         self.ended.emit()

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QLabel, QMainWindow, QProgressBar, QToolButton
 from geofit.gui.activity import Activity
 from geofit.gui.icons import icon
 from geofit.gui.panel_bar import PanelBar
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 
 __all__ = ["ActivityBar"]
 
@@ -74,7 +74,7 @@ class ActivityBar:
         self._show_task(True)
 
     def _progress(self, stage: str, fraction: float) -> None:
-        self.stage.setText(f"{self._title}: {spoken(stage)}")
+        self.stage.setText(f"{self._title}: {translated(stage)}")
         self.progress.setValue(round(1000 * fraction))
 
     def _show_task(self, shown: bool) -> None:

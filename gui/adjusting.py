@@ -9,11 +9,11 @@ from geofit.data.progress import Progress
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.fitting import Fitting
 from geofit.gui.panels.adjust import AdjustPanel
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.gui.worker import Task, run
 from geofit.project.building import edited
 from geofit.project.document import Document
-from geofit.project.provenance import HandEdit, Move, Pull, Row, Weigh
+from geofit.project.provenance import ManualEdit, Move, MoveToPointEdit, Row, Weigh
 
 __all__ = ["Adjusting"]
 
@@ -26,18 +26,18 @@ class Adjusting(QObject):
         self._document, self._fitting, self._panel = document, fitting, panel
         self._trial: Task | None = None
         panel.adjust_wanted.connect(lambda patch, i, j, dz: self._try(Move(patch, i, j, dz)))
-        panel.pull_wanted.connect(lambda index, share: self._try(Pull(index, share)))
+        panel.move_wanted.connect(lambda index, share: self._try(MoveToPointEdit(index, share)))
         panel.weigh_wanted.connect(lambda patch, i, j, weight: self._try(Weigh(patch, i, j, weight)))
         panel.adjust_requested.connect(self._adjust)
         panel.weigh_requested.connect(self._weigh)
-        panel.pull_requested.connect(self.pull)
+        panel.move_requested.connect(self.move_to)
         fitting.adjusted.connect(panel.show_effect)
 
-    def pull(self, row: Row, share: float = 1.0) -> None:
-        """Pull the chosen horizon's surface to one of its points."""
+    def move_to(self, row: Row, share: float = 1.0) -> None:
+        """MoveToPointEdit the chosen horizon's surface to one of its points."""
         self._stop()
         if self._document.selection.horizon is not None:
-            self._fitting.pull(self._document.selection.horizon, row, share)
+            self._fitting.move_to(self._document.selection.horizon, row, share)
 
     def _adjust(self, patch: str, i: int, j: int, dz: float) -> None:
         self._stop()
@@ -49,7 +49,7 @@ class Adjusting(QObject):
         if self._document.selection.horizon is not None:
             self._fitting.weigh(self._document.selection.horizon, patch, i, j, weight)
 
-    def _try(self, edit: HandEdit) -> None:
+    def _try(self, edit: ManualEdit) -> None:
         self._stop()
         name = self._document.selection.horizon
         surface = None if name is None else self._document.surface(name)
@@ -61,7 +61,7 @@ class Adjusting(QObject):
             surface,
             edit,
             on_done=self._show,
-            on_failed=lambda error: self._panel.say(spoken(str(error))),
+            on_failed=lambda error: self._panel.say(translated(str(error))),
         )
         self._trial.ended.connect(self._forget)
 
@@ -77,5 +77,5 @@ class Adjusting(QObject):
             self._trial = None
 
 
-def _effect(surface: HorizonFit, edit: HandEdit, *, progress: Progress) -> tuple[Accuracy | None, Accuracy | None]:
+def _effect(surface: HorizonFit, edit: ManualEdit, *, progress: Progress) -> tuple[Accuracy | None, Accuracy | None]:
     return surface.accuracy, edited(surface, edit, progress).accuracy

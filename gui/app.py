@@ -1,4 +1,4 @@
-"""``geofit-gui [site.toml|project.geofit]``: what the machine lacks is said before a window is tried."""
+"""``geofit-gui [site.toml|project.geofit]``: what the machine lacks is reported before a window is tried."""
 
 from __future__ import annotations
 
@@ -58,10 +58,10 @@ def start(file: Path | None) -> int:
 def _words(text: Message) -> str:
     """Return a message in the language of the windows, before they have taken it."""
     from geofit.gui.preferences import Preferences
-    from geofit.gui.words import speak, spoken
+    from geofit.gui.translate import speak, translated
 
     speak(Preferences().language)
-    return spoken(text)
+    return translated(text)
 
 
 if __name__ == "__main__":

@@ -20,8 +20,8 @@ from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
 from geofit.gui.splash import Splash, application
 from geofit.gui.theme import apply_theme, missing_chinese, set_font
+from geofit.gui.translate import shown_error
 from geofit.gui.view3d.opengl import require_opengl
-from geofit.gui.words import shown_error
 from geofit.gui.worker import finish_all, warm
 from geofit.project.building import get_ready
 

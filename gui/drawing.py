@@ -11,7 +11,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.drawn import Drawn, drawn_of
-from geofit.gui.worker import run_apart
+from geofit.gui.worker import run_in_process
 
 __all__ = ["Drawing"]
 
@@ -68,7 +68,7 @@ class Drawing(QObject):
             self.failed.emit(error)
 
         self._wanted[surface.name] = show
-        run_apart(self, drawn_of, surface, uncertainty, ground, on_done=done, on_failed=fail)
+        run_in_process(self, drawn_of, surface, uncertainty, ground, on_done=done, on_failed=fail)
 
     def forget(self, name: str) -> None:
         """Take back what was asked for of a horizon; its process is let be."""

@@ -9,7 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject, QStandardPaths, Signal
 from PySide6.QtWidgets import QDialog, QFileDialog, QMessageBox, QWidget
 
-from geofit.data.messages import Verbatim, message, plural_message
+from geofit.data.messages import Untranslated, message, plural_message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
@@ -18,9 +18,9 @@ from geofit.gui.dialogs.recovery import RecoveryDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.journal import Unfinished, unfinished
-from geofit.project.provenance import Recipe
+from geofit.project.provenance import Provenance
 from geofit.project.saving import Opened, Written, read_project, read_surfaces, save_state
 
 __all__ = ["Files"]
@@ -30,9 +30,9 @@ PROJECT = ".geofit"
 
 
 class Files(QObject):
-    """What the File menu does with sites and projects. ``told(text)`` says in the status bar what was done."""
+    """What the File menu does with sites and projects. ``reported(text)`` says in the status bar what was done."""
 
-    told = Signal(str)
+    reported = Signal(str)
 
     def __init__(
         self, session: Session, activity: Activity, fitting: Fitting, preferences: Preferences, window: QWidget
@@ -59,7 +59,7 @@ class Files(QObject):
         self.leave(lambda: self._open(path))
 
     def open_sample(self, folder: Path | None = None) -> None:
-        """Open the sample site; it is written into the user's documents if it is not there yet."""
+        """Open the sample site; it is written into the user's documents if missing."""
         place = folder or Path(_documents()) / "geofit sample site"
         self.leave(lambda: self._open_sample(place))
 
@@ -114,17 +114,17 @@ class Files(QObject):
         if document.site_file is None:
             return
         state, surfaces = document.state, {}
-        for name, recipe in state.recipes.items():
+        for name, provenance in state.provenances.items():
             surface = document.surface(name)
             if surface is not None:
-                # What stands behind the patches is made again from the recipe; it need not travel.
-                surfaces[recipe] = surface.with_(model=None)
+                # The model behind the patches is made again from the provenance; it need not travel.
+                surfaces[provenance] = surface.with_(model=None)
         same = path == document.project_file
         title = self.tr("Save {name}").format(name=path.name)
         # Of the site its label and the hashes of its files are enough.
         site = Site(document.site.name, {}, crs=document.site.crs, inputs=document.site.inputs)
         work = (state, site, document.site_file, path, surfaces, same)
-        self._activity.do(title, save_state, *work, on_done=self._saved, apart=bool(surfaces))
+        self._activity.do(title, save_state, *work, on_done=self._saved, in_process=bool(surfaces))
 
     def leave(self, then: Callable[[], object]) -> None:
         """Do what ends the document, after asking whether to save; not at all if the user wants to stay."""
@@ -190,13 +190,13 @@ class Files(QObject):
         back = plural_message(
             "session.brought-back", "Brought back, {count} step.", "Brought back, {count} steps.", count=count
         )
-        self.told.emit(spoken(back))
+        self.reported.emit(translated(back))
         for name in self._document.lost():
             _LOG.warning(
                 message(
                     "log.data-changed",
                     "The data of {name} have changed since: its surface cannot be made again as it was. Fit it.",
-                    name=Verbatim(name),
+                    name=Untranslated(name),
                 )
             )
 
@@ -214,15 +214,21 @@ class Files(QObject):
                     message(
                         "log.file-changed",
                         "{file}: {change} since the project was saved.",
-                        file=Verbatim(file),
+                        file=Untranslated(file),
                         change=what,
                     )
                 )
-            if found.state.recipes:
+            if found.state.provenances:
                 title = self.tr("Read the surfaces of {name}").format(name=path.name)
-                parted = self._document.site
+                blocks_site = self._document.site
                 self._activity.do(
-                    title, read_surfaces, found.project, path.parent, parted, on_done=self._surfaces_read, apart=True
+                    title,
+                    read_surfaces,
+                    found.project,
+                    path.parent,
+                    blocks_site,
+                    on_done=self._surfaces_read,
+                    in_process=True,
                 )
         errors = sum(issue.severity == "error" for issue in site.issues)
         horizons = plural_message("count.horizons", "{count} horizon", "{count} horizons", count=len(site.horizons))
@@ -231,11 +237,11 @@ class Files(QObject):
         opened = message(
             "session.opened",
             "{name}: {horizons}, {rows} not used.",
-            name=Verbatim(site.name),
+            name=Untranslated(site.name),
             horizons=horizons,
             rows=rows,
         )
-        self.told.emit(spoken(opened))
+        self.reported.emit(translated(opened))
         _LOG.info(
             message(
                 "log.opened",
@@ -247,9 +253,9 @@ class Files(QObject):
             )
         )
 
-    def _surfaces_read(self, surfaces: dict[Recipe, HorizonFit]) -> None:
-        for recipe, surface in surfaces.items():
-            self._document.put(recipe, surface)
+    def _surfaces_read(self, surfaces: dict[Provenance, HorizonFit]) -> None:
+        for provenance, surface in surfaces.items():
+            self._document.put(provenance, surface)
         self._fitting.complete(tuple(surfaces))
         self._fitting.make_missing()
 
@@ -257,7 +263,7 @@ class Files(QObject):
         self._session.saved(written.path, written.state)
         self._preferences.opened(written.path)
         self._preferences.folder = str(written.path.resolve().parent)
-        self.told.emit(self.tr("Saved {name}.").format(name=written.path.resolve()))
+        self.reported.emit(self.tr("Saved {name}.").format(name=written.path.resolve()))
         _LOG.info(message("log.saved", "Saved {path}", path=str(written.path)))
         then, self._after_saving = self._after_saving, None
         if then is not None and not self._document.dirty:

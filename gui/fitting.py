@@ -10,12 +10,12 @@ from PySide6.QtCore import QObject, Signal
 
 from geofit.data.accuracy import Accuracy
 from geofit.data.messages import message
-from geofit.data.prediction import OffData
+from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity, Work
 from geofit.gui.session import Session
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.building import changed, examined, made
 from geofit.project.commands import (
     AdjustControlPoint,
@@ -23,14 +23,14 @@ from geofit.project.commands import (
     Command,
     ExcludeRows,
     IncludeRows,
-    PartAtFaults,
-    PullToPoint,
+    MoveToPoint,
     SetCore,
     SetSettings,
     SetSurface,
+    SplitAtFaults,
 )
-from geofit.project.fault_blocks import Parted, measured, part_at_faults
-from geofit.project.provenance import DocumentError, Recipe, Row
+from geofit.project.fault_blocks import SplitHorizon, measured, split_at_faults
+from geofit.project.provenance import DocumentError, Provenance, Row
 from geofit.site.throw import FaultCut
 
 __all__ = ["Fitting"]
@@ -42,13 +42,13 @@ class Fitting(QObject):
     """What makes and changes surfaces.
 
     Signals: ``refused(exception)`` for a step that does not apply; ``adjusted(before, after)`` with the two checks
-    after a change by hand; ``displaced(cuts)`` with what faults displace, ``told(text)`` says it in words.
+    after a manual edit; ``displaced(cuts)`` with what faults displace, ``reported(text)`` states it in words.
     """
 
     refused = Signal(object)
     adjusted = Signal(object, object)
     displaced = Signal(object)
-    told = Signal(str)
+    reported = Signal(str)
 
     def __init__(self, session: Session, activity: Activity, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -65,9 +65,9 @@ class Fitting(QObject):
     def fit(self, name: str) -> None:
         """Fit a horizon with its present settings and rows.
 
-        One that faults cut is parted at them first, and all its blocks are fitted.
+        One that faults cut is split at them first, and all its blocks are fitted.
         """
-        if self._document.unparted(name):
+        if self._document.needs_split(name):
             self._part(self._document.whole(name))
         else:
             self._fit(name)
@@ -77,7 +77,7 @@ class Fitting(QObject):
         document = self._document
         wanted = [name for name in document.horizons if self._needs_fit(name)] or document.horizons
         # A horizon is parted once, whichever of its blocks is wanted.
-        for name in dict.fromkeys(document.whole(name) if document.unparted(name) else name for name in wanted):
+        for name in dict.fromkeys(document.whole(name) if document.needs_split(name) else name for name in wanted):
             if name in document.horizons:
                 self.fit(name)
             else:
@@ -86,40 +86,40 @@ class Fitting(QObject):
     def _fit(self, name: str) -> None:
         title = self.tr("Fit {name}").format(name=name)
         self._activity.prepare(
-            title, lambda: self._fit_work(name), on_done=lambda done: self._fitted(*done), apart=True
+            title, lambda: self._fit_work(name), on_done=lambda done: self._fitted(*done), in_process=True
         )
 
     def _part(self, whole: str) -> None:
         """Part a horizon at its faults, then fit its blocks."""
         title = self.tr("Part {name} at its faults").format(name=whole)
-        self._activity.prepare(title, lambda: self._part_work(whole), on_done=self._parted, apart=True)
+        self._activity.prepare(title, lambda: self._part_work(whole), on_done=self._split_done, in_process=True)
 
     def _part_work(self, whole: str) -> Work:
         document = self._document
-        given, left_out = document.given_for_parting(whole)
-        return part_at_faults, (whole, document.faults(whole), left_out, given, document.given(whole))
+        given, left_out = document.inputs_for_blocks(whole)
+        return split_at_faults, (whole, document.faults(whole), left_out, given, document.given(whole))
 
-    def _parted(self, found: Parted) -> None:
+    def _split_done(self, found: SplitHorizon) -> None:
         document = self._document
         for note in found.notes:
             _LOG.log(logging.INFO if note.severity == "info" else logging.WARNING, note)
-        for recipe, surface in found.faults.items():
-            self._fitted(recipe, surface)
+        for provenance, surface in found.faults.items():
+            self._fitted(provenance, surface)
         if not found.blocks:
             self._fit(found.horizon)
             return
-        self.push(PartAtFaults(found.horizon, dict(found.blocks)))
+        self.push(SplitAtFaults(found.horizon, dict(found.blocks)))
         for name in found.blocks:
             if name in document.horizons:
                 self._fit(name)
 
     def _measure_throw(self, name: str) -> None:
-        """Measure how far faults displace the horizon of a block, as soon as all its blocks are at hand."""
+        """Measure how far faults displace the horizon of a block, as soon as all its blocks are available."""
         if name not in self._document.state.parts:
             return
         whole = self._document.whole(name)
         title = self.tr("Measure the throw of {name}").format(name=whole)
-        self._activity.prepare(title, lambda: self._throw_work(whole), on_done=self._thrown, apart=True)
+        self._activity.prepare(title, lambda: self._throw_work(whole), on_done=self._thrown, in_process=True)
 
     def _throw_work(self, whole: str) -> Work:
         document = self._document
@@ -134,12 +134,12 @@ class Fitting(QObject):
             _LOG.info(cut.text)
         if cuts:
             self.displaced.emit(cuts)
-            self.told.emit(" · ".join(spoken(cut.text) for cut in cuts))
+            self.reported.emit(" · ".join(translated(cut.text) for cut in cuts))
 
     def examine(self, name: str) -> None:
-        """Find out how far a surface may lie from the rock where nobody drilled."""
-        title = self.tr("Examine {name} off its data").format(name=name)
-        self._activity.prepare(title, lambda: self._examine_work(name), on_done=self._examined, apart=True)
+        """Find the prediction error of a surface away from its data."""
+        title = self.tr("Examine {name} away from its data").format(name=name)
+        self._activity.prepare(title, lambda: self._examine_work(name), on_done=self._examined, in_process=True)
 
     def adjust(self, name: str, patch: str, i: int, j: int, dz: float) -> None:
         """Raise a control point by ``dz`` metres."""
@@ -149,7 +149,7 @@ class Fitting(QObject):
         """Give a control point another weight."""
         self._edit(ChangeWeight(name, patch, i, j, weight))
 
-    def pull(self, name: str, row: Row, share: float = 1.0) -> None:
+    def move_to(self, name: str, row: Row, share: float = 1.0) -> None:
         """Pull a surface to one of its points."""
         surface = self._document.surface(name)
         index = None if surface is None else row.find(surface.points)
@@ -164,7 +164,7 @@ class Fitting(QObject):
             )
             self.refused.emit(DocumentError(text))
             return
-        self._edit(PullToPoint(name, index, share))
+        self._edit(MoveToPoint(name, index, share))
 
     def set_settings(self, name: str, settings: FitSettings) -> None:
         """Give a horizon other settings."""
@@ -195,62 +195,62 @@ class Fitting(QObject):
 
     def make_missing(self) -> None:
         """Make the surfaces that the document wants and does not have."""
-        for recipe in self._document.missing():
-            self._make_again(recipe)
+        for provenance in self._document.missing():
+            self._make_again(provenance)
 
     def _needs_fit(self, name: str) -> bool:
         return self._document.surface(name) is None or self._document.stale(name)
 
     def _fit_work(self, name: str) -> Work:
-        recipe = self._document.recipe(name)
-        surface = self._document.shelf.surface(recipe)
+        provenance = self._document.provenance(name)
+        surface = self._document.shelf.surface(provenance)
         if surface is not None and surface.model is not None:
-            self._fitted(recipe, surface)
+            self._fitted(provenance, surface)
             return None
-        return made, (recipe, self._document.given_for(recipe))
+        return made, (provenance, self._document.given_for(provenance))
 
-    def _fitted(self, recipe: Recipe, surface: HorizonFit) -> None:
-        self._document.put(recipe, surface)
-        if self._document.state.recipes.get(recipe.horizon) != recipe:
-            self.push(SetSurface(recipe))
+    def _fitted(self, provenance: Provenance, surface: HorizonFit) -> None:
+        self._document.put(provenance, surface)
+        if self._document.state.provenances.get(provenance.horizon) != provenance:
+            self.push(SetSurface(provenance))
 
     def _make_missing(self, name: str) -> None:
-        for recipe in self._document.missing():
-            if recipe.horizon == name:
-                self._make_again(recipe)
+        for provenance in self._document.missing():
+            if provenance.horizon == name:
+                self._make_again(provenance)
 
-    def _make_again(self, recipe: Recipe) -> None:
-        title = self.tr("Make {name} again").format(name=recipe.horizon)
+    def _make_again(self, provenance: Provenance) -> None:
+        title = self.tr("Make {name} again").format(name=provenance.horizon)
         self._activity.prepare(
-            title, lambda: self._again_work(recipe), on_done=lambda done: self._document.put(*done), apart=True
+            title, lambda: self._again_work(provenance), on_done=lambda done: self._document.put(*done), in_process=True
         )
 
-    def _again_work(self, recipe: Recipe) -> Work:
+    def _again_work(self, provenance: Provenance) -> Work:
         """Undone or closed in the meantime, or put on the shelf by somebody else: then there is nothing to do."""
-        wanted = self._document.state.recipes.get(recipe.horizon) == recipe
-        surface = self._document.shelf.surface(recipe)
+        wanted = self._document.state.provenances.get(provenance.horizon) == provenance
+        surface = self._document.shelf.surface(provenance)
         if not wanted or (surface is not None and surface.model is not None):
             return None
-        return made, (recipe, self._document.given_for(recipe))
+        return made, (provenance, self._document.given_for(provenance))
 
-    def complete(self, recipes: Sequence[Recipe]) -> None:
-        """Make again what was read from files, so that it can be changed by hand."""
-        for recipe in recipes:
-            if self._document.holds(recipe):
-                self._make_again(recipe)
+    def complete(self, provenances: Sequence[Provenance]) -> None:
+        """Make again what was read from files, so that it can be edited manually."""
+        for provenance in provenances:
+            if self._document.holds(provenance):
+                self._make_again(provenance)
 
-    def _edit(self, command: AdjustControlPoint | PullToPoint | ChangeWeight) -> None:
+    def _edit(self, command: AdjustControlPoint | MoveToPoint | ChangeWeight) -> None:
         self._activity.prepare(
-            spoken(command.text),
+            translated(command.text),
             lambda: self._edit_work(command),
             on_done=lambda done: self._edited(command, *done),
-            apart=True,
+            in_process=True,
         )
 
-    def _edit_work(self, command: AdjustControlPoint | PullToPoint | ChangeWeight) -> Work:
-        recipe = self._document.state.recipes.get(command.horizon)
-        surface = self._document.shelf.surface(recipe)
-        if recipe is None or surface is None:
+    def _edit_work(self, command: AdjustControlPoint | MoveToPoint | ChangeWeight) -> Work:
+        provenance = self._document.state.provenances.get(command.horizon)
+        surface = self._document.shelf.surface(provenance)
+        if provenance is None or surface is None:
             text = message(
                 "project.no-surface-adjust-fit",
                 "'{name}' has no surface to adjust. Fit it first.",
@@ -258,7 +258,7 @@ class Fitting(QObject):
             )
             self.refused.emit(DocumentError(text))
             return None
-        if surface.model is None and not self._document.holds(recipe):
+        if surface.model is None and not self._document.holds(provenance):
             text = message(
                 "window.read-file-data-changed",
                 "'{name}' was read from a file, and its data have changed since. Fit it again, then adjust.",
@@ -266,10 +266,12 @@ class Fitting(QObject):
             )
             self.refused.emit(DocumentError(text))
             return None
-        return changed, (recipe, surface, command.edit, self._document.given_for(recipe))
+        return changed, (provenance, surface, command.edit, self._document.given_for(provenance))
 
-    def _edited(self, command: Command, former: Recipe, recipe: Recipe, before: Accuracy, surface: HorizonFit) -> None:
-        if self._document.state.recipes.get(former.horizon) != former:
+    def _edited(
+        self, command: Command, former: Provenance, provenance: Provenance, before: Accuracy, surface: HorizonFit
+    ) -> None:
+        if self._document.state.provenances.get(former.horizon) != former:
             self.refused.emit(
                 DocumentError(
                     message(
@@ -279,20 +281,20 @@ class Fitting(QObject):
                 )
             )
             return
-        self._document.put(recipe, surface)
+        self._document.put(provenance, surface)
         self.push(command)
         self.adjusted.emit(before, surface.accuracy)
 
     def _examine_work(self, name: str) -> Work:
-        recipe = self._document.state.recipes.get(name)
-        surface = self._document.shelf.surface(recipe)
-        if recipe is None or surface is None:
+        provenance = self._document.state.provenances.get(name)
+        surface = self._document.shelf.surface(provenance)
+        if provenance is None or surface is None:
             text = message(
                 "window.no-surface-examine-fit", "'{name}' has no surface to examine. Fit it first.", name=name
             )
             self.refused.emit(DocumentError(text))
             return None
-        return examined, (recipe, surface)
+        return examined, (provenance, surface)
 
-    def _examined(self, found: tuple[Recipe, OffData]) -> None:
-        self._document.put_offdata(*found)
+    def _examined(self, found: tuple[Provenance, PredictionResult]) -> None:
+        self._document.put_prediction(*found)

@@ -38,12 +38,13 @@ class Help(QObject):
         self._box(
             self.tr("The way through geofit"),
             self.tr(
-                "<ol><li>Open the sample site, a project, or drop your tables on the window.</li>"
-                "<li>Choose a horizon in the project tree; its plan shows the dense core that is interpolated.</li>"
-                "<li>Press Fit (F5). The badge says PASS when σ is below ε.</li>"
-                "<li>Go to the worst point (F8): its hole, file and row are shown. Exclude it, or adjust by hand.</li>"
-                "<li>Examine off the data (F6) to see how far the rock may lie elsewhere.</li>"
-                "<li>Export STEP (Ctrl+E); write the report (Ctrl+R).</li></ol>"
+                "<ol><li>Open the sample site, a project, or drop your tables on the "
+                "window.</li><li>Choose a horizon in the project tree; its plan shows the dense core "
+                "that is interpolated.</li><li>Press Fit (F5). The badge shows PASS when σ is below "
+                "ε.</li><li>Go to the worst point (F8): its hole, file and row are shown. Exclude it, "
+                "or edit the surface manually.</li><li>Examine away from the data (F6) to see the "
+                "prediction error elsewhere.</li><li>Export STEP (Ctrl+E); write the report "
+                "(Ctrl+R).</li></ol>"
             ),
         )
 

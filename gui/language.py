@@ -7,7 +7,7 @@ from gettext import NullTranslations
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QLocale, QObject, QTranslator
 
 from geofit.data.languages import catalogue
-from geofit.gui.words import speak
+from geofit.gui.translate import speak
 
 __all__ = ["LANGUAGES", "apply_language", "system_language"]
 

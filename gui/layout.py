@@ -13,7 +13,7 @@ __all__ = ["BOTTOM", "Layout"]
 VERSION = 2
 _Area = Qt.DockWidgetArea
 #: What folds away below the view.
-BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "offdata", "log")
+BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "log")
 _PLACES = (
     (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
     (_Area.RightDockWidgetArea, ("fit", "adjust"), True),

@@ -12,9 +12,9 @@ from geofit.gui.actions import Actions
 from geofit.gui.activity import Activity
 from geofit.gui.activity_bar import ActivityBar
 from geofit.gui.adjusting import Adjusting
-from geofit.gui.delivering import Delivering
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.steps import StepsDialog
+from geofit.gui.exporting import Delivering
 from geofit.gui.files import Files
 from geofit.gui.fitting import Fitting
 from geofit.gui.help import Help
@@ -96,7 +96,7 @@ class MainWindow(QMainWindow):
         self.close()
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802
-        """Ask whether to save, end what runs, and let go of the 3D view."""
+        """Check whether to save, end what runs, and let go of the 3D view."""
         if not self._leaving and self.session.document.dirty:
             event.ignore()
             self.files.leave(self.leave_without_asking)
@@ -125,7 +125,7 @@ class MainWindow(QMainWindow):
         self.panels.start.dropEvent(event)
 
     def focusNextPrevChild(self, forward: bool) -> bool:  # noqa: N802
-        """Let Tab pass over docks that stand behind others: Qt would give the keyboard to what nobody sees."""
+        """Let Tab pass over docks that are behind others: Qt would give the keyboard to what nobody sees."""
         start = QApplication.focusWidget()
         while super().focusNextPrevChild(forward):
             now = QApplication.focusWidget()
@@ -172,7 +172,7 @@ class MainWindow(QMainWindow):
             "examine": self._with_horizon(self.fitting.examine),
             "check_order": self.ordering.check,
             "order": self.ordering.edit,
-            "repair": self.ordering.ask_repair,
+            "separate": self.ordering.ask_separation,
             "worst": self.selecting.go_to_worst,
             "exclude": lambda: self._exclude(self.selecting.rows()),
             "stop": self.activity.cancel,
@@ -212,8 +212,8 @@ class MainWindow(QMainWindow):
         panels.plan.core_changed.connect(fitting.set_core)
         panels.plan.pointer_moved.connect(lambda x, y: self.bar.show_place(x, y, float("nan")))
         panels.residuals.exclude_requested.connect(self._exclude)
-        panels.residuals.pull_requested.connect(self.adjusting.pull)
-        panels.offdata.examine_requested.connect(self._with_horizon(fitting.examine))
+        panels.residuals.move_requested.connect(self.adjusting.move_to)
+        panels.prediction.examine_requested.connect(self._with_horizon(fitting.examine))
         panels.section.failed.connect(lambda error: self.fail(self.tr("Section"), error))
         panels.view.pointer_moved.connect(self.bar.show_place)
         panels.view.measured.connect(self.tell)
@@ -229,9 +229,9 @@ class MainWindow(QMainWindow):
             refusing.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
         for part in (self.files, self.delivering, self.ordering, self.fitting):
-            part.told.connect(self.tell)
+            part.reported.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)
-        self.selecting.said.connect(self.tell)
+        self.selecting.reported.connect(self.tell)
         self.session.recorded.connect(self.tell)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QMainWindow, QMenu, QSizePolicy, QToolBar, QWidget
 
 from geofit.gui.actions import Actions
 from geofit.gui.icons import icon
-from geofit.gui.words import bare
+from geofit.gui.translate import bare
 
 __all__ = ["Menus"]
 
@@ -48,7 +48,7 @@ class Menus(QObject):
         self.panels = view.addMenu(self.tr("&Panels"))
         view.addMenu(_group_menu(self.tr("T&heme"), actions.themes.actions(), window))
         view.addMenu(_group_menu(self.tr("&Language"), actions.languages.actions(), window))
-        self._menu(bar.addMenu(self.tr("Hori&zon")), "fit fit_all | examine worst | order check_order repair | stop")
+        self._menu(bar.addMenu(self.tr("Hori&zon")), "fit fit_all | examine worst | order check_order separate | stop")
         self._menu(bar.addMenu(self.tr("&Tools")), "measure section | rock_volume")
         self._menu(bar.addMenu(self.tr("&Help")), "tutorial shortcuts | system_report about")
         self.tools = self._tool_bar()

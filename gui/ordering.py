@@ -8,20 +8,20 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QDialog, QInputDialog, QWidget
 
-from geofit.data.messages import Verbatim, message, plural_message
+from geofit.data.messages import Untranslated, message, plural_message
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity
 from geofit.gui.dialogs.order import OrderDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.showing import Showing
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.gui.workspace import Workspace
-from geofit.project.commands import PushApart, SetOrder
+from geofit.project.commands import SeparateHorizons, SetOrder
 from geofit.project.document import Document
-from geofit.project.ordering import all_orders, comparable, over_map, pushed_apart
+from geofit.project.ordering import all_orders, comparable, over_map, separated
 from geofit.project.provenance import DocumentError
-from geofit.site.separate import Repair
+from geofit.site.separate import Separation
 
 __all__ = ["Ordering"]
 
@@ -29,12 +29,12 @@ _LOG = logging.getLogger(__name__)
 
 
 class Ordering(QObject):
-    """Compares every two horizons, and pushes them apart; what is found stands in the checks.
+    """Compares every two horizons, and pushes them apart; what is found is in the checks.
 
-    ``told(text)`` sums it up, ``refused(exception)`` says why nothing was done.
+    ``reported(text)`` sums it up, ``refused(exception)`` states why nothing was done.
     """
 
-    told = Signal(str)
+    reported = Signal(str)
     refused = Signal(object)
 
     def __init__(
@@ -57,16 +57,18 @@ class Ordering(QObject):
             self._fitting.push(SetOrder(dialog.order()))
 
     def check(self) -> None:
-        """Compare the strata at hand, in the document's order."""
-        # What stands behind the patches is not needed there, and is much to send to another process.
+        """Compare the strata available, in the document's order."""
+        # The model behind the patches is not needed there, and is much to send to another process.
         surfaces = {name: one.with_(model=None) for name, one in self._strata().items()}
         document = self._document
         pairs = comparable(tuple(surfaces), document.state.parts)
         if not pairs:
-            self.told.emit(self.tr("Two fitted horizons are needed to check their order."))
+            self.reported.emit(self.tr("Two fitted horizons are needed to check their order."))
             return
         title = self.tr("Check the order")
-        self._activity.do(title, all_orders, surfaces, pairs, document.site.ground, on_done=self._found, apart=True)
+        self._activity.do(
+            title, all_orders, surfaces, pairs, document.site.ground, on_done=self._found, in_process=True
+        )
 
     def _strata(self) -> dict[str, HorizonFit]:
         """Return the surfaces over the map; where the site states an order, those that it names (weathering cuts)."""
@@ -74,8 +76,8 @@ class Ordering(QObject):
         over = over_map(document.surfaces())
         return {name: one for name, one in over.items() if not stated or document.whole(name) in stated}
 
-    def ask_repair(self) -> None:
-        """Ask how thick the rock between two horizons is at least, and push them apart."""
+    def ask_separation(self) -> None:
+        """Ask how thick the rock between two horizons is at least, and separate them."""
         minimum, given = QInputDialog.getDouble(
             self._window,
             self.tr("Push horizons apart"),
@@ -83,41 +85,41 @@ class Ordering(QObject):
             0.0, 0.0, 1000.0, 2,
         )  # fmt: skip
         if given:
-            self.repair(minimum)
+            self.separate(minimum)
 
-    def repair(self, minimum: float = 0.0) -> None:
+    def separate(self, minimum: float = 0.0) -> None:
         """Push the horizons apart where they cross; exact points stay."""
         parts = self._document.state.parts
         strata = self._strata()
         blocks = [name for name in strata if name in parts]
         if blocks:
             names = ", ".join(blocks)
-            _LOG.warning("%s", self.tr("Cut by a fault, so not pushed apart from others: {names}").format(names=names))
+            _LOG.warning("%s", self.tr("Cut by a fault, so not separated from others: {names}").format(names=names))
         surfaces = {name: one for name, one in strata.items() if name not in parts}
         unready = [name for name, surface in surfaces.items() if surface.model is None]
         if len(surfaces) < 2 or unready:
             text = (
                 message(
                     "window.horizon-not-fitted-here",
-                    "'{name}' was read from a file and not fitted here. Fit it again, then push apart.",
-                    name=Verbatim(unready[0]),
+                    "'{name}' was read from a file and not fitted here. Fit it again, then separate the horizons.",
+                    name=Untranslated(unready[0]),
                 )
                 if unready
                 else message(
                     "window.two-fitted-horizons-needed",
-                    "Two fitted horizons are needed to push them apart. Press Fit all first.",
+                    "Two fitted horizons are needed to separate them. Press Fit all first.",
                 )
             )
             self.refused.emit(DocumentError(text))
             return
         self._activity.do(
             self.tr("Push horizons apart"),
-            pushed_apart,
+            separated,
             surfaces,
             minimum,
             Site("", {}, ground=self._document.site.ground, orientations=self._document.site.orientations),
             on_done=lambda found: self._repaired(surfaces, minimum, found),
-            apart=True,
+            in_process=True,
         )
 
     def _found(self, orders: tuple[Any, ...]) -> None:
@@ -131,8 +133,8 @@ class Ordering(QObject):
                     "{upper} and {lower} cross at {count} place",
                     "{upper} and {lower} cross at {count} places",
                     count=len(order.crossings),
-                    upper=Verbatim(order.upper),
-                    lower=Verbatim(order.lower),
+                    upper=Untranslated(order.upper),
+                    lower=Untranslated(order.lower),
                 )
             )
         if crossing:
@@ -143,18 +145,18 @@ class Ordering(QObject):
                 count=len(crossing),
                 total=len(orders),
             )
-            self.told.emit(spoken(text))
+            self.reported.emit(translated(text))
         else:
-            self.told.emit(self.tr("No two horizons cross."))
+            self.reported.emit(self.tr("No two horizons cross."))
 
-    def _repaired(self, former: dict[str, HorizonFit], minimum: float, found: Repair) -> None:
+    def _repaired(self, former: dict[str, HorizonFit], minimum: float, found: Separation) -> None:
         document = self._document
         if any(document.surface(name) is not surface for name, surface in former.items()):
             self.refused.emit(
                 DocumentError(
                     message(
                         "window.surface-changed-meanwhile",
-                        "A surface changed meanwhile. Push the horizons apart once more.",
+                        "A surface has changed since. Separate the horizons again.",
                     )
                 )
             )
@@ -164,14 +166,14 @@ class Ordering(QObject):
         if found.contradictions:
             self._panels.reveal("log")
         if not found.moved:
-            self.told.emit(self.tr("No horizon had to move."))
+            self.reported.emit(self.tr("No horizon had to move."))
             return
-        command = PushApart(tuple(found.moved), tuple(former), minimum)
-        for name, recipe in command.recipes(document.state).items():
-            document.put(recipe, found.surfaces[name])
+        command = SeparateHorizons(tuple(found.moved), tuple(former), minimum)
+        for name, provenance in command.provenances(document.state).items():
+            document.put(provenance, found.surfaces[name])
         self._fitting.push(command)
         moved = ", ".join(f"{name} {by:.2f} m" for name, by in found.moved.items())
-        self.told.emit(
+        self.reported.emit(
             self.tr("Moved at most: {moved}. Contradictions that stay: {count}.").format(
                 moved=moved, count=len(found.contradictions)
             )

@@ -1,4 +1,4 @@
-"""Going to any panel: from the menu, which brings to the front what stands behind, and with the keyboard."""
+"""Going to any panel: from the menu, which brings to the front what is behind, and with the keyboard."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["Reach"]
 
 
 class Reach(QObject):
-    """Knows the docks of a window and what stands in its middle."""
+    """Knows the docks of a window and what is in its middle."""
 
     def __init__(self, docks: Mapping[str, QDockWidget], middle: QWidget, reveal: Callable[[str], None]) -> None:
         super().__init__(middle)

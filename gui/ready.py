@@ -54,7 +54,7 @@ def require_display() -> None:
     Raises
     ------
     MissingDependencyError
-        If neither DISPLAY nor WAYLAND_DISPLAY is set, or libraries are missing; the text says what to do.
+        If neither DISPLAY nor WAYLAND_DISPLAY is set, or libraries are missing; the text states what to do.
     """
     if not sys.platform.startswith("linux") or os.environ.get("QT_QPA_PLATFORM", "xcb") not in ("xcb", "wayland"):
         return

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, Signal
 
 from geofit.gui.showing import Showing
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.gui.workspace import Workspace
 from geofit.project.document import Document, Selection
 from geofit.project.provenance import Row
@@ -15,9 +15,9 @@ __all__ = ["Selecting"]
 
 
 class Selecting(QObject):
-    """Links tree, tables, plan, section and view. ``said(text)`` tells what was chosen, for the status bar."""
+    """Links tree, tables, plan, section and view. ``reported(text)`` reports what was chosen, for the status bar."""
 
-    said = Signal(str)
+    reported = Signal(str)
 
     def __init__(self, document: Document, workspace: Workspace, showing: Showing, parent: QObject) -> None:
         super().__init__(parent)
@@ -36,9 +36,9 @@ class Selecting(QObject):
         panels.section.line_changed.connect(self._line_edited)
         panels.section.thickness_changed.connect(self._thickness_edited)
         panels.section.point_chosen.connect(document.select)
-        for table in (panels.residuals.point_chosen, panels.checks.point_chosen, panels.offdata.point_chosen):
+        for table in (panels.residuals.point_chosen, panels.checks.point_chosen, panels.prediction.point_chosen):
             table.connect(self._chosen_here)
-        panels.offdata.suggestion_chosen.connect(self._suggestion_chosen)
+        panels.prediction.suggestion_chosen.connect(self._suggestion_chosen)
         panels.checks.place_chosen.connect(panels.view.focus_place)
         panels.scene.zoom_requested.connect(panels.view.zoom_to)
         panels.seams.seam_chosen.connect(self._seam_chosen)
@@ -67,7 +67,7 @@ class Selecting(QObject):
         name = self._document.selection.horizon
         surface = None if name is None else self._document.surface(name)
         if name is None or surface is None or surface.accuracy is None or not surface.accuracy.worst:
-            self.said.emit(self.tr("There is no surface yet: press Fit."))
+            self.reported.emit(self.tr("There is no surface yet: press Fit."))
             return
         self._document.select(name, Row.of(surface.points, surface.accuracy.worst[0]))
 
@@ -97,15 +97,15 @@ class Selecting(QObject):
             panels.view.focus_point(chosen.horizon, row)
         panels.adjust.choose_point(None if surface is None else row.find(surface.points))
         points = self._document.listing(chosen.horizon).points
-        self.said.emit(f"{chosen.horizon}: {spoken(points.describe(index))}")
+        self.reported.emit(f"{chosen.horizon}: {translated(points.describe(index))}")
 
     def _go_to_hole(self, name: str) -> None:
         self._panels.view.focus_hole(name)
-        self.said.emit(name)
+        self.reported.emit(name)
 
     def _hole_picked(self, name: str) -> None:
         self._panels.tree.choose_hole(name)
-        self.said.emit(name)
+        self.reported.emit(name)
 
     def _control_picked(self, horizon: str, patch: str, i: int, j: int) -> None:
         self._document.select(horizon)

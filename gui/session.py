@@ -11,7 +11,7 @@ from PySide6.QtGui import QUndoCommand, QUndoStack
 from geofit.data.messages import message
 from geofit.data.site import Site
 from geofit.data.verdict import verdict_of
-from geofit.gui.words import shown_error, spoken
+from geofit.gui.translate import shown_error, translated
 from geofit.project.commands import Command, SetSurface
 from geofit.project.document import Document
 from geofit.project.journal import Journal, Unfinished
@@ -50,7 +50,7 @@ class Session(QObject):
             _LOG.warning(
                 message(
                     "log.no-journal",
-                    "There is no journal, so that a crash would lose unsaved work: {error}",
+                    "No journal can be written, so a crash would lose unsaved work: {error}",
                     error=shown_error(error),
                 )
             )
@@ -111,19 +111,19 @@ class Session(QObject):
         elif action == "redo":
             text = message("log.redone", "Done again: {step}", step=text)
         elif isinstance(command, SetSurface):
-            surface = self.document.surface(command.recipe.horizon)
+            surface = self.document.surface(command.provenance.horizon)
             if surface is not None and surface.accuracy is not None:
                 figures = verdict_of(surface.accuracy).data.text
                 text = message("log.fitted", "{step}: {figures}", step=text, figures=figures)
         _LOG.info(text)
-        self.recorded.emit(spoken(text))
+        self.recorded.emit(translated(text))
 
 
 class _Step(QUndoCommand):
     """A command on Qt's undo stack."""
 
     def __init__(self, session: Session, command: Command) -> None:
-        super().__init__(spoken(command.text))
+        super().__init__(translated(command.text))
         self._session, self._command, self._action = session, command, "do"
 
     def redo(self) -> None:

@@ -30,7 +30,7 @@ THICKNESS = 50.0
 class Showing(QObject):
     """Keeps the panels as the document is. Several changes in one event are shown once.
 
-    ``drawn(horizon)`` tells that the 3D view has a surface. ``busy()`` returns whether something runs, so that
+    ``drawn(horizon)`` signals that the 3D view has a surface. ``busy()`` returns whether something runs, so that
     surfaces may still come.
     """
 
@@ -134,7 +134,7 @@ class Showing(QObject):
         return {
             name: found.uncertainty
             for name in self._document.horizons
-            if (found := self._document.offdata(name)) is not None and found.uncertainty is not None
+            if (found := self._document.prediction(name)) is not None and found.uncertainty is not None
         }
 
     def set_faded(self, on: bool) -> None:
@@ -163,18 +163,18 @@ class Showing(QObject):
         self._show_horizon()
 
     def _show_in_view(self, name: str) -> None:
-        surface, offdata, view = self._document.surface(name), self._document.offdata(name), self._panels.view
+        surface, prediction, view = self._document.surface(name), self._document.prediction(name), self._panels.view
         if name in self._document.site.horizons:
             view.show_listing(name, self._document.listing(name))
         if surface is None:
             self.drawing.forget(name)
             view.remove_surface(name)
             return
-        uncertainty = None if offdata is None else offdata.uncertainty
+        uncertainty = None if prediction is None else prediction.uncertainty
 
         def show(drawn: Drawn) -> None:
             view.show_surface(surface, uncertainty, drawn)
-            view.show_suggestions(name, () if offdata is None else offdata.suggestions)
+            view.show_suggestions(name, () if prediction is None else prediction.suggestions)
             self.drawn.emit(name)
 
         self.drawing.draw(surface, uncertainty, self._document.site.ground, show)
@@ -194,7 +194,7 @@ class Showing(QObject):
         document, panels, name = self._document, self._panels, self._document.selection.horizon
         known = name is not None and name in document.site.horizons
         surface = document.surface(name) if known and name else None
-        offdata = document.offdata(name) if known and name else None
+        prediction = document.prediction(name) if known and name else None
         settings = document.settings(name) if known and name else FitSettings()
         stale = bool(known and name and document.stale(name))
         waiting = bool(known and name and self._busy() and document.waiting(name))
@@ -206,12 +206,14 @@ class Showing(QObject):
         panels.seams.show_surface(surface)
         panels.checks.show_surface(
             surface,
-            offdata,
+            prediction,
             self._orders_of(name),
             self._file_of(name, surface),
             tuple(cut for cut in self.cuts if name in (cut.up, cut.down)),
         )
-        panels.offdata.show_offdata(offdata, None if surface is None else surface.points, fitted=surface is not None)
+        panels.prediction.show_prediction(
+            prediction, None if surface is None else surface.points, fitted=surface is not None
+        )
         panels.adjust.show_surface(surface)
         panels.plan.show_surface(document.site_in_use() if known else None, name or "", surface, settings)
         if waiting:
@@ -221,7 +223,14 @@ class Showing(QObject):
         """Say in every panel of the surface that it is still being read."""
         panels = self._panels
         words = self.tr("The surface of the project is being read.")
-        for panel in (panels.residuals, panels.histogram, panels.seams, panels.checks, panels.offdata, panels.adjust):
+        for panel in (
+            panels.residuals,
+            panels.histogram,
+            panels.seams,
+            panels.checks,
+            panels.prediction,
+            panels.adjust,
+        ):
             panel.pages.say(words)
 
     def verdict(self, name: str) -> Verdict | None:
@@ -230,7 +239,7 @@ class Showing(QObject):
         if surface is None or surface.accuracy is None:
             return None
         orders = (order.check() for order in self._orders_of(name))
-        return verdict_of(surface.accuracy, self._document.offdata(name), self._file_of(name, surface), orders)
+        return verdict_of(surface.accuracy, self._document.prediction(name), self._file_of(name, surface), orders)
 
     def _file_of(self, name: str | None, surface: HorizonFit | None) -> ReadBack | None:
         """Return what the reader found in the file that has this very surface."""

@@ -15,7 +15,7 @@ __all__ = ["Splash", "application"]
 
 #: Logical pixels: the picture, its icon, and the height of the bar at its foot.
 WIDTH, HEIGHT, ICON, BAR = 420, 220, 72, 4
-PAPER, INK, QUIET, ACCENT = "#f3f5f7", "#1c2733", "#5d6b7a", "#0b5c8a"
+PAPER, TEXT, QUIET, ACCENT = "#f3f5f7", "#1c2733", "#5d6b7a", "#0b5c8a"
 
 
 def application() -> QApplication:
@@ -69,7 +69,7 @@ def _picture() -> QPixmap:
     font.setPointSizeF(26)
     font.setBold(True)
     painter.setFont(font)
-    painter.setPen(QColor(INK))
+    painter.setPen(QColor(TEXT))
     painter.drawText(QRectF(24 + ICON + 20, 40, 280, 44), Qt.AlignmentFlag.AlignVCenter, "geofit")
     font.setPointSizeF(10)
     font.setBold(False)

@@ -1,4 +1,4 @@
-"""What stands in the middle before a site is open: the sample site, recent files, and a place to drop files."""
+"""What is in the middle before a site is open: the sample site, recent files, and a place to drop files."""
 
 from __future__ import annotations
 
@@ -167,7 +167,7 @@ class StartPage(QWidget):
 
 
 class _DropField(QLabel):
-    """A dashed frame that says where files may be dropped."""
+    """A dashed frame that shows where files may be dropped."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)

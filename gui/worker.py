@@ -1,8 +1,8 @@
 """Long tasks beside the window: stages, progress, Cancel; results come back in the window's own thread.
 
 A task is a function that takes ``progress=`` (see :mod:`geofit.data.progress`). :func:`run` calls it in a thread.
-:func:`run_apart` calls it in a process of its own: whatever holds the interpreter's lock in a thread (OpenCASCADE for
-seconds, a fit for tenths) would stop the window; such a function, its arguments and its result must be picklable.
+:func:`run_in_process` calls it in a process of its own: whatever holds the interpreter's lock in a thread (OpenCASCADE
+for seconds, a fit for tenths) would stop the window; such a function, its arguments and its result must be picklable.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from shiboken6 import isValid
 from geofit.data.errors import Cancelled, GeofitError
 from geofit.data.messages import message
 
-__all__ = ["Task", "finish_all", "run", "run_apart", "tasks", "warm"]
+__all__ = ["Task", "finish_all", "run", "run_in_process", "tasks", "warm"]
 
 _LOG = logging.getLogger(__name__)
 
@@ -39,19 +39,19 @@ _PATIENCE = 1.0
 class _Line:
     """What a task's thread knows of it: whether to stop, and where news go.
 
-    It is no Qt object: those die in the window's thread, at any time.
+    It is not a Qt object: those die in the window's thread, at any time.
     """
 
     def __init__(self, number: int) -> None:
         self.number = number
         self.stop = threading.Event()
-        self._told = 0.0
+        self._reported = 0.0
 
     def listen(self, stage: str, fraction: float, /) -> bool:
         """Hear of progress in the task's thread, and pass it on, not too often."""
         now = time.monotonic()
-        if now - self._told >= _PAUSE or fraction >= 1.0:
-            self._told = now
+        if now - self._reported >= _PAUSE or fraction >= 1.0:
+            self._reported = now
             _bridge().heard.emit(self.number, stage, fraction)
         return not self.stop.is_set()
 
@@ -59,7 +59,7 @@ class _Line:
 class Task(QObject):
     """A task under way. Signals come in the thread that started it; after ``ended`` nothing more comes."""
 
-    # Objects: of a sentence Qt would keep the letters only, not what another language is told from.
+    # Objects: of a sentence Qt would keep the letters only, not what another language is raised from.
     progressed = Signal(object, float)
     done = Signal(object)
     failed = Signal(object)
@@ -103,7 +103,7 @@ class _Job(QRunnable):
         self._line, self._title, self._function, self._args = line, title, function, args
 
     def run(self) -> None:
-        """Run the function; whatever happens is told in the window's thread."""
+        """Run the function; whatever happens is raised in the window's thread."""
         try:
             if self._line.stop.is_set():
                 raise Cancelled(message("window.stopped-began", "Stopped before it began."))
@@ -180,7 +180,7 @@ def run(
     return task
 
 
-def run_apart(parent: QObject, function: Callable[..., Any], *args: Any, **listeners: Any) -> Task:
+def run_in_process(parent: QObject, function: Callable[..., Any], *args: Any, **listeners: Any) -> Task:
     """As :func:`run`, in another process, which Cancel ends at once."""
     return run(parent, _in_process, function, args, **listeners)
 
@@ -261,7 +261,7 @@ class _Helper:
                 ended = GeofitError(
                     message(
                         "window.process-work-ended-exit",
-                        "The process that did the work ended by itself (exit code {code}). Memory may have run out: "
+                        "The worker process ended unexpectedly (exit code {code}). Memory may have run out: "
                         "close other programs and try again.",
                         code=self._process.exitcode,
                     )
@@ -272,7 +272,7 @@ class _Helper:
             elif kind == "progress":
                 name, fraction = value
             elif kind == "error":
-                raise _Told(value)
+                raise _ChildError(value)
             else:
                 return value
 
@@ -292,7 +292,7 @@ class _Helper:
         self._process.close()
 
 
-class _Told(Exception):  # noqa: N818 - the error is what it carries
+class _ChildError(Exception):
     """An error that the function raised: the process itself is sound."""
 
     def __init__(self, error: Exception) -> None:
@@ -317,9 +317,9 @@ def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: C
         if idle:  # it was ended while it waited, perhaps as the order was on its way: a fresh one does the work
             return _in_process(function, args, progress)
         raise gone.error from None
-    except _Told as told:
+    except _ChildError as raised:
         _HELPERS.append(helper)
-        raise told.error from None
+        raise raised.error from None
     except BaseException:
         helper.end()
         if helper.first is not None:

@@ -12,8 +12,8 @@ from geofit.gui.panels.checks import ChecksPanel
 from geofit.gui.panels.fit_panel import FitPanel
 from geofit.gui.panels.histogram import HistogramPanel
 from geofit.gui.panels.log import LogPanel
-from geofit.gui.panels.offdata import OffDataPanel
 from geofit.gui.panels.plan import PlanPanel
+from geofit.gui.panels.prediction import PredictionPanel
 from geofit.gui.panels.project_tree import ProjectTree
 from geofit.gui.panels.residuals import ResidualTable
 from geofit.gui.panels.scene_list import SceneList
@@ -42,19 +42,19 @@ class Workspace(QObject):
         self.fit, self.verdict, self.adjust = FitPanel(), VerdictBadge(), AdjustPanel()
         self.residuals, self.section, self.histogram = ResidualTable(), SectionPanel(), HistogramPanel()
         self.log, self.seams, self.checks = LogPanel(), SeamTable(), ChecksPanel()
-        self.offdata, self.plan = OffDataPanel(), PlanPanel()
+        self.prediction, self.plan = PredictionPanel(), PlanPanel()
         self.docks = {
             "tree": self._dock("tree", self.tr("Project"), self.tree),
             "scene": self._dock("scene", self.tr("Scene"), self.scene),
             "fit": self._dock("fit", self.tr("Fit"), _stacked(_inset(self.verdict), self.fit)),
-            "adjust": self._dock("adjust", self.tr("Adjust by hand"), self.adjust),
+            "adjust": self._dock("adjust", self.tr("Manual edit"), self.adjust),
             "residuals": self._dock("residuals", self.tr("Residuals"), self.residuals),
             "section": self._dock("section", self.tr("Section"), self.section),
             "histogram": self._dock("histogram", self.tr("Histogram"), self.histogram),
             "plan": self._dock("plan", self.tr("Plan"), self.plan),
             "seams": self._dock("seams", self.tr("Seams"), self.seams),
             "checks": self._dock("checks", self.tr("Checks", "Workspace"), self.checks),
-            "offdata": self._dock("offdata", self.tr("Off the data"), self.offdata),
+            "prediction": self._dock("prediction", self.tr("Away from the data"), self.prediction),
             "log": self._dock("log", self.tr("Log"), self.log),
         }
         self.layout = Layout(window, self.docks)

@@ -68,14 +68,14 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
 def _no_path(entity: Entity, xyz: Floats, region: Region | None) -> Message:
     if entity.type == "POINT" or (trouble := problem(entity)):
         return (
-            message("import.no-path", "A {entity} is no path", entity=entity.type)
+            message("import.no-path", "A {entity} is not a path", entity=entity.type)
             if entity.type == "POINT"
             else trouble
         )
     if np.isnan(xyz[:, 2]).any():
         return message("import.polyline-no-elevation", "The polyline has no elevation")
     if not (np.diff(xyz, axis=0) != 0).any():
-        return message("import.polyline-place", "The polyline has one place only")
+        return message("import.polyline-place", "The polyline has only one distinct point")
     if region is not None:
         west, east, south, north = region
         x, y = xyz[:, :2].mean(axis=0)
@@ -99,7 +99,7 @@ def drawn_contacts(
         horizon = horizons.match(entity.words) if entity.words else None
         if horizon is None or entity.words in (entity.layer, *(adit.name for adit in adits)):
             what = (
-                message("import.no-horizon", "'{words}' is no horizon", words=entity.words)
+                message("import.no-horizon", "'{words}' is not a horizon", words=entity.words)
                 if entity.words
                 else message("import.names-no-horizon", "A {entity} names no horizon", entity=entity.type)
             )
@@ -108,7 +108,7 @@ def drawn_contacts(
                 source,
                 entity,
                 what,
-                message("import.write-horizon-text-beside", "Write the horizon as text beside the adit."),
+                message("import.write-horizon-text-beside", "Write the horizon as text next to the adit."),
                 "note",
             )
             listed += entity.size
@@ -117,7 +117,7 @@ def drawn_contacts(
         if not apart <= BESIDE:
             reason = message(
                 "import.contact-stands-nearest-adit",
-                "The contact '{words}' stands {apart:.1f} m from the nearest adit, {adit}",
+                "The contact '{words}' is {apart:.1f} m from the nearest adit, {adit}",
                 words=entity.words,
                 apart=apart,
                 adit=adit.name,

@@ -10,7 +10,7 @@ import csv
 from dataclasses import dataclass, field
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.io.cells import table_of
 from geofit.io.journal import Journal
 from geofit.io.sniff import decode, is_number
@@ -36,12 +36,12 @@ def group_names(source: Source) -> tuple[str, ...]:
 
 
 def read_group(source: Source, journal: Journal) -> Table:
-    """Read the group that ``source.table`` names; a line that is no row of it is listed.
+    """Read the group that ``source.table`` names; a line that is not a row of it is listed.
 
     Raises
     ------
     InputError
-        If the file is no AGS file, or has no such group.
+        If the file is not an AGS file, or has no such group.
     """
     text, encoding = decode(journal.read(source), source.name, source.encoding)
     groups, edition = _parse(text, encoding, source, journal)
@@ -51,7 +51,7 @@ def read_group(source: Source, journal: Journal) -> Table:
             message(
                 "import.file-no-group-groups",
                 "The file has no group '{table}'; its groups are {names}",
-                table=Verbatim(source.table),
+                table=Untranslated(source.table),
                 names=", ".join(groups),
             ),
             message("import.name-one", "Name one of them."),
@@ -98,7 +98,7 @@ def _parse(text: str, encoding: str, source: Source, journal: Journal) -> tuple[
             name = first.lstrip("*?").strip() if edition == 3 else cells[1].strip()
             group = groups.setdefault(name, _Group(name))
             if group.header:
-                # The same group again: its rows follow under the headings that stand there now.
+                # The same group again: its rows follow under the headings that are there now.
                 group.header, group.units = [], []
         elif group is None:
             continue
@@ -130,8 +130,8 @@ def _line_of_4(group: _Group, number: int, first: str, cells: list[str]) -> None
             group.rows.append((number, cells[1:]))
         case _:
             headless, strange = (
-                message("import.row-stands-above-headings", "The row stands above the headings of its group"),
-                message("import.no-ags-line", "This is no AGS 4 line"),
+                message("import.row-stands-above-headings", "The row is above the headings of its group"),
+                message("import.no-ags-line", "This line is not valid AGS 4"),
             )
             reason = headless if first == "DATA" else strange
             group.odd.append((number, ",".join(cells), reason))

@@ -60,8 +60,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         raise InputError(
             message(
                 "import.look-exchanged-rows-lie",
-                "x and y look exchanged: {count} of {total} rows lie far outside the study area, and inside it "
-                "with x and y swapped, the first at x = {x:.15g}, y = {y:.15g}",
+                "x and y appear to be exchanged: {count} of {total} rows lie far outside the study "
+                "area, and inside it with x and y swapped, the first at x = {x:.15g}, y = {y:.15g}",
                 count=len(swapped),
                 total=used,
                 x=x[i],
@@ -80,7 +80,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         rows.reject(
             i,
             "x",
-            message("import.look-exchanged-row", "x and y look exchanged in this row"),
+            message("import.look-exchanged-row", "x and y appear to be exchanged in this row"),
             message("import.easting-northing", "x is the easting, y the northing."),
         )
     if known and off.size:

@@ -1,6 +1,6 @@
 """Many cells of a text at once: plain numbers and repeated words, from the bytes where they are written.
 
-What is no plain number (exponents, signs of other scripts, words) is left to the reader of single cells, so that
+What is not a plain number (exponents, signs of other scripts, words) is left to the reader of single cells, so that
 both read every cell alike.
 """
 

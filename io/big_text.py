@@ -103,7 +103,7 @@ def big_text(data: bytes, name: str, encoding: str | None) -> tuple[BigText, str
     Raises
     ------
     InputError
-        If the file is no text.
+        If the file is not a text.
     """
     if encoding is None and _plain(data):
         codec = "utf-8"

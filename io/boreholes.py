@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.logs import IntervalLog
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 from geofit.data.site import Ground, Hole, ImportIssue, TableCount
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import COLLAR, COLLAR_ON_GROUND, INTERVALS, plain_name
@@ -29,7 +29,7 @@ __all__ = ["Boreholes", "DipSign", "IntervalLog", "load_boreholes", "read_boreho
 Floats = NDArray[np.float64]
 DipSign = Literal["down-positive", "down-negative"]
 
-#: Depths of logs are written in centimetres: smaller differences are no difference, metres.
+#: Depths of logs are written in centimetres: smaller differences are not difference, metres.
 DEPTH_TOLERANCE = 0.005
 
 
@@ -213,7 +213,7 @@ def _read_collars(
     for i in np.flatnonzero(~rows.ok).tolist():
         if name[i] not in first:
             journal.refused[name[i]] = (
-                Verbatim(rows.file),
+                Untranslated(rows.file),
                 message("place.row", "row {row}", row=int(rows.line[i])),
             )
     if not first:
@@ -235,21 +235,21 @@ def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
                 i,
                 "z",
                 message(
-                    "import.collar-no-elevation-lies", "The collar has no elevation and lies off the ground's grid"
+                    "import.collar-no-elevation-lies", "The collar has no elevation and lies outside the ground's grid"
                 ),
                 message("import.give-elevation", "Give its elevation."),
             )
         else:
             reason = message(
                 "import.collar-no-elevation-ground",
-                "The collar has no elevation; the ground's, {z:.2f} m, is taken",
+                "The collar has no elevation; the ground's, {z:.2f} m, is used",
                 z=z[i],
             )
             rows.warn(i, "z", reason, message("import.give-elevation", "Give its elevation."), severity="note")
 
 
 def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None, declination: float) -> dict[str, Stations]:
-    """Return the straight holes whose azimuth and dip stand in the collar table."""
+    """Return the straight holes whose azimuth and dip are in the collar table."""
     if not {"azimuth", "dip"} <= set(rows.columns):
         return {}
     return Stations.from_rows(rows, name, np.zeros(len(rows)), dip, blank_is_vertical=True, declination=declination)
@@ -350,7 +350,7 @@ def _read_log(
         (
             base == top,
             "to",
-            message("import.interval-no-length", "The interval has no length"),
+            message("import.interval-no-length", "The interval has zero length"),
             message("import.correct-from-to", "Correct from or to."),
         ),
     ):
@@ -392,8 +392,8 @@ def _read_log(
                 "from",
                 message(
                     "import.interval-overlaps-row-limits",
-                    "The interval overlaps that of row {row} by {length:.2f} m; limits inside the other one are no "
-                    "contacts",
+                    "The interval overlaps that of row {row} by {length:.2f} m; limits inside the other "
+                    "interval are not contacts",
                     row=rows.line[i],
                     length=min(base[i], base[k]) - top[k],
                 ),

@@ -14,7 +14,7 @@ from geofit.data.messages import message
 from geofit.geometry.area import fault_of_area
 from geofit.io.columns import BOUNDARY
 from geofit.io.journal import Journal
-from geofit.io.parser_words import told_by
+from geofit.io.parser_errors import parser_message
 from geofit.io.rows import read_rows
 from geofit.io.sniff import decode
 from geofit.io.source import Source, as_source
@@ -63,7 +63,8 @@ def load_boundary(source: Source, journal: Journal) -> Floats:
             "note",
             source.name,
             message(
-                "import.last-corner-repeats-first", "The last corner repeats the first; the boundary closes by itself"
+                "import.last-corner-repeats-first",
+                "The last corner repeats the first; the boundary is closed without it",
             ),
         )
     _check(corners, source.name)
@@ -106,9 +107,9 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
     try:
         rings = _rings(json.loads(text))
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
-        what, line = told_by(error)
+        what, line = parser_message(error)
         raise InputError(
-            message("import.no-geojson-polygon", "This is no GeoJSON polygon: {error}", error=what),
+            message("import.no-geojson-polygon", "This is not a valid GeoJSON polygon: {error}", error=what),
             message("import.export-polygon-without-holes", "Export one polygon without holes."),
             file=source.name,
             row=line,
@@ -129,7 +130,7 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
         corners = np.empty((0, 0))
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
         raise InputError(
-            message("import.corner-polygon-no-pair", "A corner of the polygon is no pair of finite numbers"),
+            message("import.corner-polygon-no-pair", "A corner of the polygon is not a pair of finite numbers"),
             message("import.export-polygon-again", "Export the polygon again."),
             file=source.name,
         )

@@ -11,7 +11,7 @@ import numpy as np
 from geofit.caves.shots import ShotList
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 from geofit.io.columns import ADIT_PATH, Schema, plain_name
 from geofit.io.formats import read_any_table
 from geofit.io.guess import find_columns
@@ -92,7 +92,7 @@ def read_centreline(
     rows = _rows(source, journal)
     if not any(role in rows.columns for role in _SIZES):
         raise InputError(
-            message("import.table-size-section", "The table has no size of the section"),
+            message("import.table-size-section", "The table does not give the size of the section"),
             message(
                 "import.column-radius-width", "Add a column radius, or width and height, or left, right, up and down."
             ),
@@ -133,7 +133,9 @@ def read_centreline(
         journal.add(
             "warning",
             source.name,
-            message("import.line-usable-station", "The line {line} has one usable station only", line=Verbatim(name)),
+            message(
+                "import.line-usable-station", "The line {line} has one usable station only", line=Untranslated(name)
+            ),
             message("import.stations", "Add its other stations."),
             value=name,
         )
@@ -161,7 +163,7 @@ def _rows(source: Source, journal: Journal) -> Rows:
                 message(
                     "import.column-taken",
                     "Column '{column}' is taken as {role}, by its name",
-                    column=Verbatim(header),
+                    column=Untranslated(header),
                     role=role,
                 ),
                 message(

@@ -117,7 +117,7 @@ def open_cloud(
     """
     Source(path=path, sep=sep, decimal=decimal)
     if not path.is_file():
-        Source(path=path).read()  # raises, and says why
+        Source(path=path).read()  # raises, and states why
     given = {role: column for role, column in (columns or {}).items() if column is not None}
     total = None
     match _form(path):

@@ -143,7 +143,7 @@ PICKS = Schema(
     {**_PLACE, "z": _Z},
     {"horizon": _HORIZON, "section": _SECTION, "hole": _PICKED_HOLE, "kind": _KIND, "accuracy": _ACCURACY},
 )
-#: Which columns are horizons only the user knows: they are no roles.
+#: Which columns are horizons only the user knows: they are not roles.
 HORIZON_COLUMNS = Schema("horizon columns", _PLACE, {"hole": _PICKED_HOLE, "z": _Z})
 BOUNDARY = Schema("boundary", _PLACE, {})
 SECTION_LINES = Schema("section lines", {"section": _SECTION, **_PLACE}, {})

@@ -16,7 +16,7 @@ import numpy as np
 from geofit.caves.shots import ShotList, polar
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 from geofit.io.journal import Journal
 from geofit.io.source import Source, as_source
 from geofit.io.units import METRES
@@ -177,7 +177,7 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
         journal.add(
             "error",
             file,
-            message("import.shot-length-bearing", "The shot has no length, bearing and inclination that can be used"),
+            message("import.shot-length-bearing", "The shot has no usable length, bearing and inclination"),
             message("import.complete-readings", "Complete its readings."),
             row=row,
             value=f"{start} {end}",
@@ -195,7 +195,9 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
             "error",
             file,
             message(
-                "import.shot-leads-station", "The shot leads from station {station} to itself", station=Verbatim(start)
+                "import.shot-leads-station",
+                "The shot leads from station {station} to itself",
+                station=Untranslated(start),
             ),
             message("import.correct", "Correct one of the names."),
             row=row,

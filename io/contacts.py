@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.data.points import PointSet
 from geofit.data.site import ImportIssue
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
@@ -77,7 +77,7 @@ def load_contacts(boreholes: Boreholes, code: str, limit: Limit, journal: Journa
             message(
                 "import.no-interval-code-codes",
                 "No interval has the code '{code}'; the codes are {names}",
-                code=Verbatim(code),
+                code=Untranslated(code),
                 names=", ".join(codes[:40]) or message("site.none", "none"),
             ),
             nearest(code, codes, message("import.name-one", "Name one of them.")),
@@ -109,8 +109,8 @@ def _contacts_of(boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit
             log.file,
             message(
                 "import.contacts-no-sure-contact",
-                "{limit} of {code}: contacts: {count}; no sure contact (the code {why}, or its limit is "
-                "contradicted) in holes ({unseen}): {holes}",
+                "{limit} of {code}: contacts: {count}; no certain contact (the code {why}, or its "
+                "limit is contradicted) in holes ({unseen}): {holes}",
                 limit=limit,
                 code=code,
                 count=len(found),
@@ -184,7 +184,7 @@ def _limit_in_hole(
                 code=code,
                 depth=depth,
             ),
-            message("import.mend-overlap", "Mend the overlap."),
+            message("import.mend-overlap", "Remove the overlap."),
         )
         return depth, 0
     if limit == "top":

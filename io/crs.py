@@ -47,7 +47,7 @@ def project(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[
         raise InputError(
             message(
                 "import.target-no-projected-system",
-                "The target '{target}' is no projected system in metres",
+                "The target '{target}' is not a projected system in metres",
                 target=target,
             ),
             message("import.name-grid-site-utm", "Name the grid of the site, such as a UTM zone: EPSG:32650."),

@@ -97,7 +97,7 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
             source.name,
             message(
                 "import.drawing-says-unit-read",
-                "The drawing says that its unit is {unit}; it is read as metres",
+                "The drawing states that its unit is {unit}; it is read as metres",
                 unit=name,
             ),
             message(
@@ -187,16 +187,16 @@ def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> t
 
 
 def problem(entity: Entity, *, closed: bool = False) -> Message:
-    """Return why an entity is no line of points, empty if it is one; ``closed`` allows closed polylines."""
+    """Return why an entity is not a line of points, empty if it is one; ``closed`` allows closed polylines."""
     if entity.type not in LINES or not entity.vertices:
         return message(
             "import.no-lwpolyline-polyline-line",
-            "A {entity} is no LWPOLYLINE, POLYLINE, LINE or POINT",
+            "A {entity} is not an LWPOLYLINE, POLYLINE, LINE or POINT",
             entity=entity.type,
         )
     xyz = np.array(entity.vertices)
     if not np.isfinite(xyz[:, :2]).all() or np.isinf(xyz[:, 2]).any():
-        return message("import.coordinate-no-finite-number", "A coordinate is no finite number")
+        return message("import.coordinate-no-finite-number", "A coordinate is not a finite number")
     if entity.closed and not closed:
         return message("import.polyline-closed-horizon-line", "The polyline is closed, a horizon line is open")
     return EMPTY

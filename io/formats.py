@@ -110,7 +110,7 @@ def _choose(source: Source, form: str, kind: str, journal: Journal) -> Source:
     raise InputError(
         message(
             "import.file-holds-tables",
-            "The file holds {count} tables: {names}",
+            "The file contains {count} tables: {names}",
             count=len(names),
             names=", ".join(names[:40]) or message("site.none", "none"),
         ),

@@ -21,7 +21,7 @@ def read_vertices(source: Source, journal: Journal) -> Table:
     Raises
     ------
     InputError
-        If the file is no GOCAD file or has no vertex.
+        If the file is not a GOCAD file or has no vertex.
     """
     text, encoding = decode(journal.read(source), source.name, source.encoding)
     lines = text.splitlines()
@@ -63,7 +63,7 @@ def read_vertices(source: Source, journal: Journal) -> Table:
                 journal.add(
                     "error",
                     source.name,
-                    message("import.vertex-no-three-coordinates", "The vertex has no three coordinates"),
+                    message("import.vertex-no-three-coordinates", "The vertex does not have three coordinates"),
                     row=number,
                     value=line[:120],
                 )

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, message, plural_message
+from geofit.data.messages import Untranslated, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.site import Ground
 from geofit.io.horizons import HorizonNames
@@ -48,7 +48,7 @@ def read_ground(path: str | Path | Source) -> Ground:
     Raises
     ------
     InputError
-        If the head is incomplete, a cell is no number, or the cells are not columns x rows.
+        If the head is incomplete, a cell is not a number, or the cells are not columns x rows.
     MissingDependencyError
         If rasterio is not installed.
 
@@ -84,7 +84,7 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
         raise InputError(
             message(
                 "import.grid-no-horizon-site",
-                "The grid is of '{horizon}', which is no horizon of the site",
+                "The grid is of '{horizon}', which is not a horizon of the site",
                 horizon=horizon,
             ),
             message("import.state-horizon-grids-add", 'State horizon = "..." in [[grids]], or add the [[horizon]].'),
@@ -137,7 +137,7 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     south = _corner(head, "y", dy, source.name)
     if not np.isfinite(west + south):
         raise InputError(
-            message("import.grid-corner-no-finite", "The grid's corner is no finite place"),
+            message("import.grid-corner-no-finite", "The grid's corner is not a finite location"),
             message("import.export-grid-again", "Export the grid again."),
             file=source.name,
         )
@@ -189,7 +189,7 @@ def _number(word: str, file: str, row: int, column: str) -> float:
         return float(word)
     except ValueError:
         raise InputError(
-            message("import.no-number", "This is no number"),
+            message("import.no-number", "This is not a number"),
             message("import.export-grid-again", "Export the grid again."),
             file=file,
             row=row,
@@ -202,7 +202,11 @@ def _size(head: dict[str, float], key: str, file: str) -> int:
     value = head.get(key, np.nan)
     if not (np.isfinite(value) and value >= 2 and value == int(value)):
         raise InputError(
-            message("import.grid-head-no-whole", "The grid's head has no whole {key} of at least 2", key=Verbatim(key)),
+            message(
+                "import.grid-head-no-whole",
+                "The grid's header has no {key} that is a whole number of at least 2",
+                key=Untranslated(key),
+            ),
             message(
                 "import.esri-ascii-grid-starts",
                 "An ESRI ASCII grid starts with ncols, nrows, xllcorner, yllcorner, cellsize.",
@@ -219,7 +223,7 @@ def _corner(head: dict[str, float], axis: str, step: float, file: str) -> float:
     if f"{axis}llcorner" in head:
         return head[f"{axis}llcorner"] + 0.5 * step
     raise InputError(
-        message("import.grid-no-llcorner", "The grid has no {axis}llcorner", axis=Verbatim(axis)),
-        message("import.add-line-llcorner-500000", "Add a line '{axis}llcorner 500000'.", axis=Verbatim(axis)),
+        message("import.grid-no-llcorner", "The grid has no {axis}llcorner", axis=Untranslated(axis)),
+        message("import.add-line-llcorner-500000", "Add a line '{axis}llcorner 500000'.", axis=Untranslated(axis)),
         file=file,
     )

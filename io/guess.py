@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, Schema, plain_name
 from geofit.io.guess_values import by_values
 from geofit.io.hints import nearest
@@ -80,7 +80,7 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
         for role, j in stated.items()
     }
     unknown = not stated and _unknown(table)
-    if unknown and (told := by_values(table, schema.name)):
+    if unknown and (recognized := by_values(table, schema.name)):
         return {
             role: RoleGuess(
                 role,
@@ -91,7 +91,7 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
                 "values",
                 tuple(table.header[j] for j in guess.others),
             )
-            for role, guess in told.items()
+            for role, guess in recognized.items()
         }
     if not table.named:
         if not stated and len(table.header) == len(schema.required):
@@ -135,7 +135,7 @@ def _unknown(table: Table) -> bool:
 
 
 def _lettered(table: Table) -> bool:
-    """Whether the header is A, B, C ... in order: E is no easting there."""
+    """Whether the header is A, B, C ... in order: E is not an easting there."""
     return len(table.header) > 2 and "".join(table.header) == ascii_uppercase[: len(table.header)]
 
 
@@ -157,7 +157,7 @@ def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, Messa
     if share < 0.9:
         merit *= max(share, 0.1)
         why = message(
-            "import.name-cells-no-numbers", "by its name; {share:.0%} of its cells are no numbers", share=1 - share
+            "import.name-cells-no-numbers", "by its name; {share:.0%} of its cells are not numbers", share=1 - share
         )
     low, high = _LIMITS.get(role, (-np.inf, np.inf))
     inside = np.mean((values >= low) & (values <= high)) if share > 0 else 1.0
@@ -220,14 +220,14 @@ def taken_as(guess: RoleGuess) -> Message:
     text = message(
         "import.column-taken-confidence",
         "Column '{column}' is taken as {role}, {reason}, confidence {confidence:.2f}",
-        column=Verbatim(guess.column),
+        column=Untranslated(guess.column),
         role=guess.role,
         reason=guess.reason,
         confidence=guess.confidence,
     )
     if not guess.others:
         return text
-    others = tuple(message("place.quoted-name", "'{name}'", name=Verbatim(name)) for name in guess.others)
+    others = tuple(message("place.quoted-name", "'{name}'", name=Untranslated(name)) for name in guess.others)
     return message("import.column-alternatives", "{text}; also possible: {others}", text=text, others=others)
 
 
@@ -248,8 +248,8 @@ def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> d
         message(
             "import.taken-longitude-latitude-epsg",
             "'{x}' and '{y}' are taken as longitude and latitude (EPSG:4326) and projected",
-            x=Verbatim(table.header[found["x"]]),
-            y=Verbatim(table.header[found["y"]]),
+            x=Untranslated(table.header[found["x"]]),
+            y=Untranslated(table.header[found["y"]]),
         ),
         message("import.state-crs-columns-wrong", "State crs and columns where this is wrong."),
     )
@@ -273,8 +273,8 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
             table.name,
             message(
                 "import.same-horizons-place-hole",
-                "'{column}' is the same for all horizons of one place: it may be the hole's own",
-                column=Verbatim(table.header[columns["z"]]),
+                "'{column}' has the same value for all horizons at one location: it may be a property of the hole",
+                column=Untranslated(table.header[columns["z"]]),
             ),
             message(
                 "import.state-columns-elevation-horizon",
@@ -294,7 +294,7 @@ def _stated(table: Table, schema: Schema, source: Source) -> dict[str, int]:
                     "import.table-no-column-role",
                     "A {kind} table has no column role '{role}'",
                     kind=schema.name,
-                    role=Verbatim(role),
+                    role=Untranslated(role),
                 ),
                 nearest(role, roles, message("import.known-roles", "The roles are {names}.", names=", ".join(roles))),
                 file=table.name,
@@ -324,8 +324,8 @@ def locate(table: Table, role: str, wanted: str | int) -> int:
         message(
             "import.no-column-columns",
             "There is no column '{wanted}' for {role}; the columns are {names}",
-            wanted=Verbatim(wanted),
-            role=Verbatim(role),
+            wanted=Untranslated(wanted),
+            role=Untranslated(role),
             names=shown(table.header),
         ),
         message(
@@ -351,7 +351,7 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
             ),
             file=table.name,
         )
-    names = tuple(message("place.quoted-name", "'{name}'", name=Verbatim(role)) for role in missing)
+    names = tuple(message("place.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing)
     what = (
         message(
             "import.no-column-found-table",
@@ -377,7 +377,9 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
         "--section for a bare CSV; a column's number counted from 1 will do).",
         example=example,
     )
-    ground = message("import.give-ground-ground-grid", "Or give the ground ([ground], a grid): collars stand on it.")
+    ground = message(
+        "import.give-ground-ground-grid", "Or give the ground ([ground], a grid): collars are placed on it."
+    )
     return InputError(
         what,
         message("import.first-second", "{first} {second}", first=remedy, second=ground) if on_ground else remedy,

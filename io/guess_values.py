@@ -1,4 +1,4 @@
-"""Columns told by their values alone, where no name is known: places, elevations, depths from and to, codes."""
+"""Columns recognized by their values alone, where no name is known: places, elevations, depths from and to, codes."""
 
 from __future__ import annotations
 

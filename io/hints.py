@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 
 __all__ = ["nearest"]
 
@@ -18,6 +18,6 @@ def nearest(wanted: str, known: Iterable[str], all_of_them: Message, cutoff: flo
     return message(
         "import.first-second",
         "{first} {second}",
-        first=message("import.did-you-mean", "Did you mean '{name}'?", name=Verbatim(near[0])),
+        first=message("import.did-you-mean", "Did you mean '{name}'?", name=Untranslated(near[0])),
         second=all_of_them,
     )

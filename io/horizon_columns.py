@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 from geofit.data.points import PointSet
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import HORIZON_COLUMNS
@@ -48,7 +48,7 @@ def load_horizon_columns(
         raise InputError(
             message(
                 "import.depths-need-elevation-count",
-                "Depths need the elevation that they count from, and there is no column for it",
+                "Depths need the elevation of their origin, and there is no column for it",
             ),
             message(
                 "import.state-columns-elevation-collar", "State columns = { z = ... } with the elevation of the collar."
@@ -66,8 +66,8 @@ def load_horizon_columns(
         if name is None:
             reason = message(
                 "import.column-no-horizon-site",
-                "Column '{column}' is no horizon of the site; its values are not used",
-                column=Verbatim(header),
+                "Column '{column}' is not a horizon of the site; its values are not used",
+                column=Untranslated(header),
             )
             journal.add(
                 "warning",
@@ -90,7 +90,7 @@ def load_horizon_columns(
         rows.reject(
             i,
             "horizons",
-            message("import.row-holds-no-horizon", "The row holds no horizon's value"),
+            message("import.row-holds-no-horizon", "The row contains no horizon's value"),
             message("import.complete-row-remove", "Complete the row or remove it."),
         )
     rows.close()
@@ -134,12 +134,12 @@ def _values(rows: Rows, j: int, depths: bool) -> Floats:
     wrong = [i for i in bad.tolist() if cells[i].strip()]
     values[np.isin(values, NO_DATA)] = np.nan
     reasons = dict.fromkeys(
-        wrong, message("import.cell-no-finite-number", "The cell is no finite number; it makes no pick")
+        wrong, message("import.cell-no-finite-number", "The cell is not a finite number; it gives no pick")
     )
     if depths:
         above = np.flatnonzero(values < 0).tolist()
         reasons |= dict.fromkeys(
-            above, message("import.depth-negative-no-pick", "The depth is negative; it makes no pick")
+            above, message("import.depth-negative-no-pick", "The depth is negative; it gives no pick")
         )
         values[above] = np.nan
     for i, reason in sorted(reasons.items()):
@@ -166,7 +166,7 @@ def _count_blanks(rows: Rows, found: dict[str, Floats]) -> None:
             rows.file,
             message(
                 "import.cells-without-value-rows",
-                "Cells without a value in the rows that are used, which make no pick: {counts}",
+                "Cells without a value in rows that are used, which give no pick: {counts}",
                 counts=counts,
             ),
         )

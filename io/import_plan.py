@@ -10,7 +10,7 @@ from typing import Any
 
 from geofit.data.errors import InputError
 from geofit.data.legible import legible
-from geofit.data.messages import EMPTY, Message, Verbatim, message
+from geofit.data.messages import EMPTY, Message, Untranslated, message
 from geofit.data.site import ImportIssue, TableCount
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, plain_name
 from geofit.io.grid import load_ground
@@ -21,7 +21,7 @@ from geofit.io.rows import read_rows
 from geofit.io.sections import load_lines
 from geofit.io.source import Source
 
-__all__ = ["Part", "Plan", "campaigns", "look_at", "settle"]
+__all__ = ["Part", "Plan", "campaigns", "complete", "look_at"]
 
 #: Kinds of which a site has one table.
 SINGLE = ("boundary", "ground", "adit path", "adit contacts")
@@ -138,7 +138,7 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
         return message(
             "import.file-not-used-places",
             "The file is not used: its places are longitude and latitude ({names})",
-            names=tuple(Verbatim(name) for name in preview.header if plain_name(name)[0] in GEOGRAPHIC),
+            names=tuple(Untranslated(name) for name in preview.header if plain_name(name)[0] in GEOGRAPHIC),
         ), message(
             "import.grid-site-crs",
             "Name the grid of the site, in metres, with --crs, such as EPSG:32650: they are projected to it.",
@@ -148,7 +148,7 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
             "import.file-not-used-nearest",
             "The file is not used: nearest to a {kind} table, but without {names}",
             kind=nearest,
-            names=tuple(message("place.quoted-name", "'{name}'", name=Verbatim(role)) for role in missing),
+            names=tuple(message("place.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing),
         ), _REMEDY
     return message(
         "import.file-not-used-columns",
@@ -160,7 +160,7 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
 _REMEDY = message("import.name-kind-columns-mapping", "Name its kind and columns in a mapping file (--mapping).")
 
 
-def settle(plan: Plan) -> None:
+def complete(plan: Plan) -> None:
     """Set aside what a site has no place for: second boundaries, surveys and sections without a line."""
     plan.of("ground").sort(key=lambda part: not any(word in part.source.path.stem.casefold() for word in _GROUND))
     for kind in SINGLE:

@@ -38,7 +38,7 @@ def read_log(source: Source, journal: Journal) -> Table:
     Raises
     ------
     InputError
-        If the file is no LAS file or has no sample.
+        If the file is not a LAS file or has no sample.
     """
     log, line = _open(source, journal)
     hole = _head(log, _WELL["hole"])[0] or source.path.stem

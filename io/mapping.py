@@ -11,11 +11,11 @@ from typing import Any
 
 from geofit.data.errors import InputError
 from geofit.data.files import replacing
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 from geofit.data.numbers import shown
 from geofit.io.columns import SCHEMAS
 from geofit.io.hints import nearest
-from geofit.io.parser_words import told_by
+from geofit.io.parser_errors import parser_message
 from geofit.io.source import Source
 from geofit.io.toml_text import toml_key, toml_value
 
@@ -62,7 +62,7 @@ class ColumnMapping:
         object.__setattr__(self, "horizons", tuple(self.horizons))
         if self.kind not in KINDS:
             raise InputError(
-                message("import.mapping-no-kind", "A mapping has no kind '{kind}'", kind=Verbatim(self.kind)),
+                message("import.mapping-no-kind", "A mapping has no kind '{kind}'", kind=Untranslated(self.kind)),
                 nearest(
                     self.kind, KINDS, message("import.known-kinds", "The kinds are {names}.", names=", ".join(KINDS))
                 ),
@@ -170,7 +170,7 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
     try:
         top = tomllib.loads(source.read().decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        what, _ = told_by(error)
+        what, _ = parser_message(error)
         raise InputError(
             message("import.mapping-not-utf", "The mapping is not UTF-8: {error}", error=what),
             message("import.save-utf", "Save it as UTF-8."),
@@ -183,9 +183,9 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
             file=source.name,
         ) from None
     except ValueError as error:  # also a number of more than 4,300 digits
-        what, line = told_by(error)
+        what, line = parser_message(error)
         raise InputError(
-            message("import.mapping-no-toml", "The mapping is no TOML: {error}", error=what),
+            message("import.mapping-no-toml", "The mapping is not valid TOML: {error}", error=what),
             message("import.see-docs-formats-md", "See docs/formats_in.md."),
             file=source.name,
             row=line,
@@ -206,11 +206,11 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
         raise InputError(
             message(
                 "import.mapping-holds-version-table",
-                "A mapping holds version and [[table]] only, not '{key}'",
-                key=Verbatim(next(iter(top))),
+                "A mapping contains only version and [[table]], not '{key}'",
+                key=Untranslated(next(iter(top))),
             )
             if top
-            else message("import.mapping-holds-version-table-2", "A mapping holds version and [[table]] only"),
+            else message("import.mapping-holds-version-table-2", "A mapping contains only version and [[table]]"),
             message("import.see-docs-formats-md", "See docs/formats_in.md."),
             file=source.name,
         )
@@ -222,7 +222,9 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
     for key, value in table.items():
         if key not in known:
             raise InputError(
-                message("import.table-mapping-no-key", "[[table]] of a mapping has no key '{key}'", key=Verbatim(key)),
+                message(
+                    "import.table-mapping-no-key", "[[table]] of a mapping has no key '{key}'", key=Untranslated(key)
+                ),
                 nearest(key, known, message("import.known-keys", "The keys are {names}.", names=", ".join(known))),
                 file=file,
                 column=key,
@@ -243,7 +245,7 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
                 message(
                     "import.key-where-kind",
                     "{key} in {where} must be {kind}",
-                    key=Verbatim(key),
+                    key=Untranslated(key),
                     where=message("import.a-mapping", "a mapping"),
                     kind=kind.get(key, message("import.a-text", "a text")),
                 ),
@@ -255,8 +257,8 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
     for key in ("file", "kind"):
         if key not in table:
             raise InputError(
-                message("import.table-mapping-no", "A [[table]] of the mapping has no '{key}'", key=Verbatim(key)),
-                message("import.write-key", 'Write {key} = "...".', key=Verbatim(key)),
+                message("import.table-mapping-no", "A [[table]] of the mapping has no '{key}'", key=Untranslated(key)),
+                message("import.write-key", 'Write {key} = "...".', key=Untranslated(key)),
                 file=file,
             )
     return ColumnMapping(**table)

@@ -106,7 +106,7 @@ def _from_normals(rows: Rows) -> tuple[Floats, Floats]:
         rows.reject(
             i,
             "nx",
-            message("import.normal-no-length", "The normal has no length"),
+            message("import.normal-no-length", "The normal has zero length"),
             message("import.give-three-components-plane", "Give the three components of the plane's normal."),
         )
     up = n * np.where(n[:, 2:] < 0, -1.0, 1.0)

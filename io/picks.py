@@ -64,7 +64,7 @@ def read_points(
     progress : callable, optional
         Called as ``progress(stage, fraction)``.
     mapping : ColumnMapping, optional
-        How the table is read, where the other arguments do not say so.
+        How the table is read, where the other arguments do not report it.
     crs : str, optional
         Projected coordinate system of the site; longitudes and latitudes are brought to it.
 

@@ -1,4 +1,4 @@
-"""Points of one horizon that share a place, listed before a fit has to settle them."""
+"""Points of one horizon that share a place, listed before a fit has to resolve them."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Ints = NDArray[np.int64]
 def list_places(horizon: str, points: PointSet, journal: Journal, nearness: float = 0.01) -> None:
     """List points that lie within ``nearness`` (m) of another in plan: repeated, or at two elevations.
 
-    All of them stay in use; the fit settles them by accuracy. A single point is listed too.
+    All of them stay in use; the fit resolves them by accuracy. A single point is listed too.
     """
     if len(points) == 1:
         journal.add(
@@ -66,7 +66,7 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
                 points.labels["file"].word(j),
                 message(
                     "import.horizon-two-elevations-place",
-                    "Horizon {horizon}: two elevations at one place, {rise:+.3f} m against {before}",
+                    "Horizon {horizon}: two elevations at one location, {rise:+.3f} m against {before}",
                     horizon=horizon,
                     rise=rise,
                     before=before,

@@ -21,7 +21,7 @@ __all__ = ["GROUNDS", "TablePreview", "preview_file", "preview_table"]
 #: Endings of grids, and rows that a preview shows.
 GROUNDS = (".asc", ".grd", ".tif", ".tiff")
 SHOWN = 20
-#: A kind below it is not used unless the user says so.
+#: A kind below it is not used unless the user reports it.
 LIKELY = 0.4
 
 _WORDS = {
@@ -59,7 +59,7 @@ class TablePreview:
     missing : tuple of str
         Required roles without a column.
     header, units, rows : tuple
-        As they stand in the file; the first rows only.
+        As written in the file; the first rows only.
     read : int
         Rows of the whole table.
     encoding, sep, decimal, crs : str
@@ -110,7 +110,7 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
     path : path or Source
         Any format that :mod:`geofit.io` reads.
     mappings : sequence of ColumnMapping
-        What the user has said already: it is taken instead of a guess.
+        What the user has stated already: it is taken instead of a guess.
 
     Returns
     -------
@@ -129,11 +129,11 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
     Formats: ``docs/formats_in.md``.
     """
     source = as_source(path)
-    said = [mapping for mapping in mappings if mapping.suits(source.name)]
-    if any(mapping.kind == "skip" and not mapping.table for mapping in said):
+    applicable = [mapping for mapping in mappings if mapping.suits(source.name)]
+    if any(mapping.kind == "skip" and not mapping.table for mapping in applicable):
         return (_fixed(source, "skip"),)
     ending = source.path.suffix.casefold()
-    stated = [mapping for mapping in said if mapping.kind in ("ground", "grid")]
+    stated = [mapping for mapping in applicable if mapping.kind in ("ground", "grid")]
     if ending in GROUNDS or stated:
         source.read()
         return (_fixed(source, stated[0].kind if stated else "ground"),)
@@ -141,14 +141,14 @@ def preview_file(path: str | Path | Source, mappings: Sequence[ColumnMapping] = 
         from geofit.io.dxf import count_points
 
         points = count_points(source)
-        parts = [(mapping.kind, mapping.table) for mapping in said] or [("drawing", "")]
+        parts = [(mapping.kind, mapping.table) for mapping in applicable] or [("drawing", "")]
         return tuple(_fixed(replace(source, table=table, name=source.name), kind, points) for kind, table in parts)
     previews = []
     usual = {name: kind for kind, names in _usual(ending).items() for name in names}
     for name in table_names(source):
         if usual and name not in usual:
             continue
-        own = [mapping for mapping in said if not mapping.table or mapping.table == name]
+        own = [mapping for mapping in applicable if not mapping.table or mapping.table == name]
         part = Source(path=source.path, name=source.name, table=name, target=source.target)
         if own:
             previews += [preview_table(mapping.fill(part), mapping.kind) for mapping in own]
@@ -243,7 +243,7 @@ def _rank(table: Table, source: Source) -> dict[str, float]:
             if any(word in stem for word in _WORDS[name]):
                 merit = merit + 0.2 * (1.0 - merit)
             elif schema is SCHEMAS["collar"] and any(word in stem for word in _WORDS["picks"]):
-                # Holes with a place are collars, unless the file says that the places are points of horizons.
+                # Holes with a place are collars, unless the file states that the places are points of horizons.
                 merit *= 0.6
             if merit > 0:
                 ranked[name] = round(merit, 2)
@@ -269,7 +269,7 @@ def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> fl
         case "collar":
             merit *= _once(table, guesses, "hole") * (1.0 if "z" in guesses else 0.8)
         case "intervals" if "from" not in guesses:
-            # Layer upon layer repeats the hole; a table of one row a hole tells how deep the holes are.
+            # Layer upon layer repeats the hole; a table of one row a hole shows how deep the holes are.
             merit *= 0.85 if _once(table, guesses, "hole") < 0.95 else 0.4
         case "picks":
             merit *= 0.9 if "horizon" in guesses else 0.75

@@ -1,4 +1,4 @@
-"""The project file (``*.geofit``): JSON text with the work on a site; its surfaces stand beside it as STEP.
+"""The project file (``*.geofit``): JSON text with the work on a site; its surfaces are next to it as STEP.
 
 ::
 
@@ -38,7 +38,7 @@ from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.io.parser_words import told_by
+from geofit.io.parser_errors import parser_message
 from geofit.io.source import Source
 
 __all__ = [
@@ -81,7 +81,7 @@ class ProjectSource:
 
 @dataclass(frozen=True, kw_only=True)
 class Edit:
-    """A change by hand, in the order it was made: what was done, to which horizon, with which values."""
+    """A manual edit, in the order it was made: what was done, to which horizon, with which values."""
 
     kind: str
     horizon: str = ""
@@ -92,7 +92,7 @@ class Edit:
 class ProjectResult:
     """A surface that was fitted: its STEP file and hash, its figures, and the version that made it.
 
-    ``recipe`` holds from what it was made (settings, excluded rows, changes by hand) where the writer knows it.
+    ``provenance`` holds from what it was made (settings, excluded rows, manual edits) where the writer knows it.
     """
 
     horizon: str
@@ -102,7 +102,7 @@ class ProjectResult:
     sigma: float | None = None
     passed: bool | None = None
     geofit: str = ""
-    recipe: Mapping[str, Any] = field(default_factory=dict)
+    provenance: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -135,7 +135,7 @@ def save_project(
     project: Project,
     path: str | PathLike[str],
     surfaces: Mapping[str, HorizonFit] | None = None,
-    recipes: Mapping[str, Mapping[str, Any]] | None = None,
+    provenances: Mapping[str, Mapping[str, Any]] | None = None,
 ) -> Project:
     """Write a project file, and the surfaces that are given, as STEP, into ``NAME_surfaces`` beside it.
 
@@ -147,7 +147,7 @@ def save_project(
         The file, usually ``*.geofit``.
     surfaces : mapping of str to HorizonFit, optional
         Surfaces by horizon; each takes the place of its horizon's former result.
-    recipes : mapping of str to mapping, optional
+    provenances : mapping of str to mapping, optional
         From what each surface was made, by horizon, as JSON holds it.
 
     Returns
@@ -170,7 +170,9 @@ def save_project(
     former = {result.surface for result in (*project.results, *_written(target))}
     results = {result.horizon: result for result in project.results}
     for name, surface in (surfaces or {}).items():
-        results[name] = replace(_write_surface(name, surface, target), recipe=plain((recipes or {}).get(name, {})))
+        results[name] = replace(
+            _write_surface(name, surface, target), provenance=plain((provenances or {}).get(name, {}))
+        )
     sources = tuple(_hashed(source, target.parent) for source in project.sources)
     saved = Project(
         name=project.name,
@@ -219,7 +221,7 @@ def open_project(path: str | PathLike[str]) -> Project:
     Raises
     ------
     InputError
-        If there is no such file, it is no project file, or a newer geofit wrote it.
+        If there is no such file, it is not a project file, or a newer geofit wrote it.
 
     Notes
     -----
@@ -229,10 +231,10 @@ def open_project(path: str | PathLike[str]) -> Project:
     try:
         data = json.loads(Source(path=source, name=legible(str(source))).read().decode("utf-8"))
     except (ValueError, RecursionError) as error:
-        what, line = told_by(error)
+        what, line = parser_message(error)
         raise InputError(
-            message("project.no-project-file", "This is no project file: {error}", error=what),
-            message("project.open-geofit-file-mend", "Open a *.geofit file, or mend its JSON."),
+            message("project.no-project-file", "This is not a valid project file: {error}", error=what),
+            message("project.open-geofit-file-mend", "Open a *.geofit file, or correct its JSON."),
             file=str(source),
             row=line,
         ) from None
@@ -246,7 +248,7 @@ def open_project(path: str | PathLike[str]) -> Project:
     if not isinstance(version, int) or isinstance(version, bool) or version < 0:
         raise InputError(
             message("project.project-no-version", "The project has no version"),
-            message("project.should-stand-number", "It should stand as a number up to {known}.", known=VERSION),
+            message("project.should-stand-number", "Give it as a number up to {known}.", known=VERSION),
             file=str(source),
         )
     if version > VERSION:
@@ -270,11 +272,11 @@ def open_project(path: str | PathLike[str]) -> Project:
         raise InputError(
             message(
                 "project.project-not-hold-version",
-                "The project does not hold what version {version} should: {error}",
+                "The project does not contain what version {version} requires: {error}",
                 version=version,
                 error=repr(error),
             ),
-            message("project.undo-last-change-hand", "Undo the last change by hand, or open a copy."),
+            message("project.undo-last-change-hand", "Undo the last manual edit, or open a copy."),
             file=str(source),
         ) from None
 

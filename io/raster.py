@@ -43,7 +43,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
         ) from None
     if place.is_identity or place.b or place.d or place.a <= 0 or place.e >= 0:
         raise InputError(
-            message("import.raster-no-place-map", "The raster has no place on the map, or is turned")
+            message("import.raster-no-place-map", "The raster has no location on the map, or is rotated")
             if not place.is_identity
             else message("import.raster-no-georeference", "The raster has no georeference"),
             message("import.save-gis-geotiff-north", "Save it from a GIS as a GeoTIFF with north up."),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.labels import Labels
-from geofit.data.messages import EMPTY, Message, Verbatim, message
+from geofit.data.messages import EMPTY, Message, Untranslated, message
 from geofit.io.big_columns import BigColumn
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
 from geofit.io.crs import WGS84, is_code, project, refuse_degrees
@@ -84,7 +84,7 @@ class Rows:
         # One sentence for all rows: a column of words may have a million of them.
         empty, wrong = (
             message("row.empty-cell", "The {role} is empty", role=role),
-            message("row.not-a-number", "The {role} is no finite number", role=role),
+            message("row.not-a-number", "The {role} is not a finite number", role=role),
         )
         remedy = message(
             "import.give-number-decimal-mark",
@@ -144,7 +144,7 @@ class Rows:
         self._list(severity, i, role, reason, remedy)
 
     def require_known(self, role: str, names: Sequence[str], known: Iterable[str], where: str) -> None:
-        """Reject the rows whose hole, adit or horizon is not known; ``where`` says what should name it."""
+        """Reject the rows whose hole, adit or horizon is not known; ``where`` states what should name it."""
         present = list(known)
         lookup, hints = set(present), dict[str, Message]()
         if lookup.issuperset(names):
@@ -156,12 +156,12 @@ class Rows:
             if name in self.journal.refused:
                 place = self.journal.refused[name]
                 hints[name] = message(
-                    "import.row-not-used-mend", "Its own row was not used ({place}): mend that first.", place=place
+                    "import.row-not-used-mend", "Its own row was not used ({place}): correct that first.", place=place
                 )
             if name not in hints:
                 near = get_close_matches(name, present, 1) if len(hints) < 20 else []
                 hints[name] = (
-                    message("import.did-you-mean", "Did you mean '{name}'?", name=Verbatim(near[0]))
+                    message("import.did-you-mean", "Did you mean '{name}'?", name=Untranslated(near[0]))
                     if near
                     else message("row.add-name", "Add it to the {where}.", where=where)
                 )
@@ -172,7 +172,7 @@ class Rows:
                     "row.unknown-name",
                     "The {role} '{name}' is not in the {where}",
                     role=role,
-                    name=Verbatim(name),
+                    name=Untranslated(name),
                     where=where,
                 ),
                 hints[name],

@@ -64,7 +64,9 @@ def read_drawing(
         layer = entity.layer
         horizon, trouble = horizons.match(layer.strip()), problem(entity, closed=closed)
         if horizon is None or trouble:
-            stranger = message("import.layer-no-horizon-site", "Layer '{layer}' is no horizon of the site", layer=layer)
+            stranger = message(
+                "import.layer-no-horizon-site", "Layer '{layer}' is not a horizon of the site", layer=layer
+            )
             reason = trouble if horizon is not None else stranger
             journal.add(
                 "error" if horizon is not None else "note",

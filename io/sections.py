@@ -129,7 +129,7 @@ def _ends(rows: Rows, region: Region | None) -> Floats:
     known = np.isfinite(ends).all(axis=1)
     if region is not None and known.any() and place_in(ends[known][:, :2], region) == "exchanged":
         raise InputError(
-            message("import.section-lines-look-exchanged", "x and y of the section lines look exchanged"),
+            message("import.section-lines-look-exchanged", "x and y of the section lines appear to be exchanged"),
             message("import.easting-northing", "x is the easting, y the northing."),
             file=rows.file,
         )

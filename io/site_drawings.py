@@ -122,7 +122,7 @@ def _pairs(reader: Reader, value: Any, where: Message | str, remedy: Message) ->
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
         raise reader.fail(
-            message("import.no-list-finite-pairs", "The {where} is no list of finite pairs", where=where),
+            message("import.no-list-finite-pairs", "The {where} is not a list of finite pairs", where=where),
             remedy,
             value=value,
         )
@@ -134,8 +134,8 @@ def _check_line(reader: Reader, line: Floats, where: Message | str, region: Regi
         raise reader.fail(
             message(
                 "import.look-exchanged-line-lies",
-                "x and y look exchanged in the line of {where}: it lies far outside the study area, and inside "
-                "it with x and y swapped",
+                "x and y appear to be exchanged in the line of {where}: it lies far outside the study "
+                "area, and inside it with x and y swapped",
                 where=where,
             ),
             message("import.easting-northing", "x is the easting, y the northing."),

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.logs import LoggedHoles
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 from geofit.data.points import KINDS, PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
@@ -32,7 +32,7 @@ from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, load_mappings
 from geofit.io.orientations import load_orientations
-from geofit.io.parser_words import told_by
+from geofit.io.parser_errors import parser_message
 from geofit.io.picks import load_picks
 from geofit.io.places import list_places
 from geofit.io.site_drawings import gather, read_sections
@@ -87,7 +87,7 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
     if not site.horizons:
         raise Reader(Path(path)).fail(
             message("import.site-no-horizon", "The site has no horizon"),
-            message("import.add-horizon-table-files", "Add a [[horizon]] table and files that hold its points."),
+            message("import.add-horizon-table-files", "Add a [[horizon]] table and files that contain its points."),
         )
     return site
 
@@ -148,7 +148,7 @@ def build_site(
 
     title = read_title_block(reader, top)
     tell(progress, "read boundary and ground", 0.0)
-    boundary, ground, region = _surroundings(reader, top, journal)
+    boundary, ground, region = _site_area(reader, top, journal)
     tell(progress, "read boreholes and adits", 0.1)
     gathered: dict[str, list[PointSet]] = {name: [] for name in names.names}
     boreholes = [_boreholes(reader, table, journal, region, ground) for table in reader.tables(top, "boreholes")]
@@ -184,7 +184,7 @@ def build_site(
         horizon = stated.get(name) or _Horizon(name, None, None, {}, FitSettings())
         settings[name] = horizon.settings
         points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon)
-        list_places(name, points[name], journal, horizon.settings.conflict_distance)
+        list_places(name, points[name], journal, horizon.settings.coincidence_distance)
     order, faults = _relations(reader, top, label, list(points))
     tell(progress, "read", 1.0)
     return Site(
@@ -211,7 +211,7 @@ def _parse(data: bytes, name: str) -> dict[str, Any]:
     try:
         return tomllib.loads(data.decode("utf-8-sig"))
     except UnicodeDecodeError as error:
-        what, _ = told_by(error)
+        what, _ = parser_message(error)
         raise InputError(
             message("import.site-file-not-utf", "The site file is not UTF-8: {error}", error=what),
             message("import.save-utf", "Save it as UTF-8."),
@@ -224,9 +224,9 @@ def _parse(data: bytes, name: str) -> dict[str, Any]:
             file=name,
         ) from None
     except ValueError as error:  # also a number of more than 4,300 digits
-        what, line = told_by(error)
+        what, line = parser_message(error)
         raise InputError(
-            message("import.site-file-no-toml", "The site file is no TOML: {error}", error=what),
+            message("import.site-file-no-toml", "The site file is not valid TOML: {error}", error=what),
             message("import.see-docs-site-file", "See docs/site_file.md."),
             file=name,
             row=line,
@@ -269,7 +269,7 @@ def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
     return _Horizon(name, top, base, {kind: float(value) for kind, value in accuracy.items()}, settings)
 
 
-def _surroundings(
+def _site_area(
     reader: Reader, top: Mapping[str, Any], journal: Journal
 ) -> tuple[Floats | None, Ground | None, Region | None]:
     boundary = ground = region = None
@@ -343,12 +343,12 @@ def _boreholes(
     return load_boreholes(
         reader.source(
             table["collar"],
-            message("import.key-where", "{key} in {where}", key=Verbatim("collar"), where=where),
+            message("import.key-where", "{key} in {where}", key=Untranslated("collar"), where=where),
             kind="collar",
         ),
         reader.source(
             table["survey"],
-            message("import.key-where", "{key} in {where}", key=Verbatim("survey"), where=where),
+            message("import.key-where", "{key} in {where}", key=Untranslated("survey"), where=where),
             kind="survey",
         )
         if "survey" in table
@@ -356,7 +356,7 @@ def _boreholes(
         [
             reader.source(
                 entry,
-                message("import.key-where", "{key} in {where}", key=Verbatim("intervals"), where=where),
+                message("import.key-where", "{key} in {where}", key=Untranslated("intervals"), where=where),
                 kind="intervals",
             )
             for entry in intervals
@@ -397,7 +397,7 @@ def _gather_contacts(
                 "top" if horizon.top is not None else "base",
             )
         limit: Limit = "top" if horizon.top is not None else "base"
-        # A code need not occur in every campaign; where it occurs in none the first one says so.
+        # A code need not occur in every campaign; where it occurs in none the first one reports it.
         carrying = [c for c in logged if any((log.code == code).any() for log in c.logs)] or logged[:1]
         gathered[horizon.name] += [load_contacts(campaign, code, limit, journal) for campaign in carrying]
 
@@ -423,7 +423,7 @@ def _adits(
     adits = load_adits(
         reader.source(
             table["path"],
-            message("import.key-where", "{key} in {where}", key=Verbatim("path"), where="[adits]"),
+            message("import.key-where", "{key} in {where}", key=Untranslated("path"), where="[adits]"),
             kind="adit path",
         ),
         journal,
@@ -432,7 +432,7 @@ def _adits(
     if "contacts" in table:
         contacts = reader.source(
             table["contacts"],
-            message("import.key-where", "{key} in {where}", key=Verbatim("contacts"), where="[adits]"),
+            message("import.key-where", "{key} in {where}", key=Untranslated("contacts"), where="[adits]"),
             kind="adit contacts",
         )
         gather(gathered, load_adit_contacts(contacts, adits, names, journal))
@@ -450,14 +450,16 @@ def _relations(
     for fault, cut in faults.items():
         if fault in cut:
             raise reader.fail(
-                message("import.fault-said-cut", "The fault '{fault}' is said to cut itself", fault=fault),
+                message("import.fault-said-cut", "The fault '{fault}' is listed as cutting itself", fault=fault),
                 message("import.name-horizons-cuts", "Name the horizons that it cuts."),
                 fault,
             )
         if fault in order:
             raise reader.fail(
                 message(
-                    "import.fault-stands-order-strata", "The fault '{fault}' stands in the order of strata", fault=fault
+                    "import.fault-stands-order-strata",
+                    "The fault '{fault}' is listed in the order of strata",
+                    fault=fault,
                 ),
                 message("import.take-out", "Take it out of it."),
                 "order",
@@ -473,8 +475,8 @@ def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horiz
             raise reader.fail(
                 message(
                     "import.names-unknown-horizon",
-                    "{key} in {where} names '{name}', which is no horizon",
-                    key=Verbatim(key),
+                    "{key} in {where} names '{name}', which is not a horizon",
+                    key=Untranslated(key),
                     where=where,
                     name=name,
                 ),
@@ -491,7 +493,7 @@ def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horiz
                 message(
                     "import.names-twice",
                     "{key} in {where} names '{name}' twice",
-                    key=Verbatim(key),
+                    key=Untranslated(key),
                     where=where,
                     name=name,
                 ),
@@ -524,7 +526,7 @@ def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> Point
                     "import.accuracy-unknown-kind",
                     "accuracy of horizon '{name}' names the kind '{kind}', which no point has",
                     name=horizon.name,
-                    kind=Verbatim(kind),
+                    kind=Untranslated(kind),
                 ),
                 nearest(kind, kinds, message("import.known-kinds", "The kinds are {names}.", names=", ".join(kinds))),
                 kind,

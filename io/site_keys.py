@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.settings import FitSettings
 from geofit.io.hints import nearest
@@ -77,7 +77,7 @@ class Reader:
         for key in table:
             if key not in allowed:
                 raise self.fail(
-                    message("import.no-key", "{where} has no key '{key}'", where=where, key=Verbatim(key)),
+                    message("import.no-key", "{where} has no key '{key}'", where=where, key=Untranslated(key)),
                     nearest(
                         key,
                         allowed,
@@ -98,7 +98,7 @@ class Reader:
                 message(
                     "import.key-where-kind",
                     "{key} in {where} must be {kind}",
-                    key=Verbatim(key),
+                    key=Untranslated(key),
                     where=where,
                     kind=_KINDS[kind],
                 ),
@@ -113,7 +113,7 @@ class Reader:
         value = self.get(table, key, kind, where)
         if value is None:
             raise self.fail(
-                message("import.missing-key", "{where} has no '{key}'", where=where, key=Verbatim(key)), remedy, key
+                message("import.missing-key", "{where} has no '{key}'", where=where, key=Untranslated(key)), remedy, key
             )
         return value
 
@@ -123,8 +123,8 @@ class Reader:
         value = [value] if isinstance(value, dict) else value
         if not isinstance(value, list) or not all(isinstance(table, dict) for table in value):
             raise self.fail(
-                message("import.no-table", "'{key}' is no table", key=Verbatim(key)),
-                message("import.write-above-keys", "Write [{key}] or [[{key}]] above its keys.", key=Verbatim(key)),
+                message("import.no-table", "'{key}' is not a table", key=Untranslated(key)),
+                message("import.write-above-keys", "Write [{key}] or [[{key}]] above its keys.", key=Untranslated(key)),
                 key,
             )
         return value
@@ -151,7 +151,7 @@ class Reader:
                     message(
                         "import.column-header-number",
                         "Column '{role}' in {where} must be a header or a number",
-                        role=Verbatim(role),
+                        role=Untranslated(role),
                         where=where,
                     ),
                     message("import.correct-value", "Correct its value."),

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
-from geofit.io.parser_words import told_by
+from geofit.io.parser_errors import parser_message
 
 __all__ = [
     "decode",
@@ -22,7 +22,7 @@ __all__ = [
     "split_line",
 ]
 
-#: In order of preference where several fit equally well; " " stands for runs of blanks.
+#: In order of preference where several fit equally well; " " represents runs of blanks.
 SEPARATORS = (";", "\t", ",", "|", " ")
 
 _BOMS = (
@@ -68,7 +68,7 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
                 file=name,
             ) from None
         except UnicodeError as error:
-            what, _ = told_by(error)
+            what, _ = parser_message(error)
             raise InputError(
                 message(
                     "import.file-not-written",
@@ -91,7 +91,7 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
         except UnicodeError:
             continue
     raise InputError(
-        message("import.file-no-text-utf", "The file is no text in UTF-8, UTF-16, GB18030 or Windows-1252"),
+        message("import.file-no-text-utf", "The file is not text in UTF-8, UTF-16, GB18030 or Windows-1252"),
         message("import.save-csv-utf-state", "Save it as CSV UTF-8, or state its encoding."),
         file=name,
     )
@@ -172,7 +172,7 @@ def find_decimal(text: str, sep: str) -> str:
 
 
 def is_header(first: Sequence[str], following: Sequence[Sequence[str]]) -> bool:
-    """Whether the first row names the columns: words stand over numbers more often than numbers do."""
+    """Whether the first row names the columns: words are above numbers more often than numbers do."""
     numeric = [is_number(cell) for cell in first]
     if not any(numeric):
         return True

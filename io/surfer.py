@@ -64,7 +64,7 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
         raise InputError(
             message(
                 "import.grid-corners-no-area",
-                "The grid's corners are no area: x {west:g} to {east:g}, y {south:g} to {north:g}",
+                "The grid's corners enclose no area: x {west:g} to {east:g}, y {south:g} to {north:g}",
                 west=west,
                 east=east,
                 south=south,

@@ -16,7 +16,7 @@ from geofit.caves.shots import ShotList, polar
 from geofit.caves.survey import Survey
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
-from geofit.data.messages import EMPTY, Message, Verbatim, message
+from geofit.data.messages import EMPTY, Message, Untranslated, message
 from geofit.io.journal import Journal, Severity
 from geofit.io.source import Source, as_source
 from geofit.io.survex_settings import QUANTITIES, Settings, unit_of
@@ -83,7 +83,7 @@ class _Reader:
                 settings = self.command(word, rest, settings, source.name, row, line.strip())
         if stack:
             raise InputError(
-                message("import.begin-not-closed", "*begin {name} is not closed", name=Verbatim(stack[-1][0])),
+                message("import.begin-not-closed", "*begin {name} is not closed", name=Untranslated(stack[-1][0])),
                 message("import.end-lines-may", "Add *end: lines may be missing from the file."),
                 file=source.name,
             )
@@ -97,7 +97,9 @@ class _Reader:
         beside = path.resolve().is_relative_to(self.source.path.parent.resolve())
         if depth >= _DEEPEST or not beside or not is_file(path):
             raise InputError(
-                message("import.included-file-cannot", "The included file {name} cannot be read", name=Verbatim(name)),
+                message(
+                    "import.included-file-cannot", "The included file {name} cannot be read", name=Untranslated(name)
+                ),
                 message(
                     "import.put-folder-file",
                     "Put it into the folder of the file that includes it; files must not include each other.",
@@ -122,7 +124,7 @@ class _Reader:
                             message(
                                 "import.data-style-not",
                                 "Data of this style are not read: {style}",
-                                style=Verbatim(" ".join(rest)),
+                                style=Untranslated(" ".join(rest)),
                             ),
                             message(
                                 "import.write-data-normal",
@@ -162,7 +164,7 @@ class _Reader:
         except (ValueError, IndexError, KeyError):
             self.list_(
                 "error",
-                message("import.command-cannot-read", "The command *{word} cannot be read", word=Verbatim(word)),
+                message("import.command-cannot-read", "The command *{word} cannot be read", word=Untranslated(word)),
                 message("import.correct-arguments", "Correct its arguments."),
                 file,
                 row,
@@ -171,7 +173,7 @@ class _Reader:
             return settings
         self.list_(
             "warning",
-            message("import.command-not-read", "The command *{word} is not read", word=Verbatim(word)),
+            message("import.command-not-read", "The command *{word} is not read", word=Untranslated(word)),
             message("import.check-shots", "Check that it does not change the shots."),
             file,
             row,
@@ -212,7 +214,7 @@ class _Reader:
             message(
                 "import.line-not-data",
                 "The line is not data in the order {order}",
-                order=Verbatim(" ".join(order) or settings.style),
+                order=Untranslated(" ".join(order) or settings.style),
             ),
             message("import.correct-line-or-data", "Correct the line or the *data command."),
             file,
@@ -354,7 +356,7 @@ def read_survex(source: Source | str | Path, journal: Journal | None = None) -> 
             "note",
             source.name,
             message(
-                "import.commands-not-change", "Commands that do not change geometry: {names}", names=Verbatim(names)
+                "import.commands-not-change", "Commands that do not change geometry: {names}", names=Untranslated(names)
             ),
         )
     journal.count(source.name, reader.read, reader.read - reader.used)

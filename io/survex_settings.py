@@ -136,7 +136,7 @@ class Settings:
         return found
 
     def reading(self, name: str, cell: str) -> float:
-        """Return a reading in metres or degrees, calibrated; nan for "-" (omitted). ValueError if it is no number."""
+        """Return a reading in metres or degrees, calibrated; nan for "-" (omitted). ValueError if not a number."""
         if cell == "-":
             return float("nan")
         kind, factor = self.units.get(name, ("", 1.0))

@@ -137,7 +137,7 @@ def read_stations(
                 "depth",
                 message(
                     "import.hole-no-station-depth",
-                    "Hole {hole} has no station at depth 0; it is straight down to its first station",
+                    "Hole {hole} has no station at depth 0; it is taken as straight down to its first station",
                     hole=hole,
                 ),
                 message("import.add-attitude-collar", "Add the attitude at the collar."),
@@ -154,7 +154,9 @@ def read_stations(
             journal.add(
                 "warning",
                 rows.file,
-                message("import.hole-no-survey-vertical", "Hole {hole} has no survey; it is vertical", hole=hole),
+                message(
+                    "import.hole-no-survey-vertical", "Hole {hole} has no survey; it is taken as vertical", hole=hole
+                ),
                 message("import.add-stations-inclined", "Add its stations where it is inclined."),
                 value=hole,
             )

@@ -30,7 +30,7 @@ _SEPARATOR_NAMES = {"\t": "tab", " ": "blanks"}
 class Table:
     """Rows of one text file.
 
-    ``columns[j][i]`` is the cell of column j in row i as it stands in the file, ``lines[i]`` the line of
+    ``columns[j][i]`` is the cell of column j in row i as written in the file, ``lines[i]`` the line of
     row i counted from 1 (the feature's number in a map format). ``crs`` is the coordinate system that the file
     itself names. ``read`` counts the rows of the file; those that are not in ``columns`` have cells
     beyond the header's and are listed in the journal already. ``named``: the file has a header.
@@ -95,7 +95,11 @@ def read_table(source: Source, journal: Journal) -> Table:
         units = tuple(cell.strip() for cell in split_line(below[0], sep))
         body = lines.index(below[0], body) + 1
         journal.add(
-            "note", source.name, message("import.row-holds-units", "This row holds the units"), row=body, value=below[0]
+            "note",
+            source.name,
+            message("import.row-holds-units", "This row contains the units"),
+            row=body,
+            value=below[0],
         )
     columns, numbers, malformed = _columns(lines, body, width, sep, source.name, journal)
     if not len(numbers) and not malformed:
@@ -142,7 +146,7 @@ def _lines(data: bytes, source: Source) -> tuple[Sequence[str], str]:
 
 
 def _skip_comments(lines: Sequence[str], name: str, journal: Journal) -> int:
-    """Return the index of the first line that is no comment; later '#' are data (hole '#12')."""
+    """Return the index of the first line that is not a comment; later '#' are data (hole '#12')."""
     start = 0
     while start < len(lines) and (not lines[start].strip() or lines[start].lstrip().startswith("#")):
         start += 1
@@ -224,7 +228,7 @@ def _columns(
             name,
             message(
                 "import.lines-without-cell-filled",
-                "Lines without any cell filled, which are no rows: {count}",
+                "Lines without a filled cell, which are not rows: {count}",
                 count=blank,
             ),
         )
@@ -249,7 +253,7 @@ def _list_malformed(name: str, number: int, line: str, count: int, width: int, j
         ),
         message(
             "import.quote-cells-hold-separator",
-            "Quote cells that hold the separator, or use another separator than the decimal mark.",
+            "Quote cells that contain the separator, or use another separator than the decimal mark.",
         ),
         row=number,
         value=line[:120],
@@ -327,7 +331,7 @@ def _numbered(width: int) -> tuple[str, ...]:
 def parse_numbers(cells: Sequence[str], decimal: str) -> tuple[Floats, NDArray[np.int64]]:
     """Return the numbers of a column, nan where a cell holds none, and the indices of those cells.
 
-    "nan" and "inf" are no numbers here, nor is "1_000", which Python would read.
+    "nan" and "inf" are not numbers here, nor is "1_000", which Python would read.
     """
     return cells.numbers(decimal) if isinstance(cells, BigColumn) else _parse_cells(tuple(cells), decimal)
 

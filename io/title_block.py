@@ -25,7 +25,7 @@ def read_title_block(reader: Reader, top: Mapping[str, Any]) -> TitleBlock:
     Raises
     ------
     InputError
-        If a key is unknown, or a value is no text.
+        If a key is unknown, or a value is not a text.
     """
     table = reader.get(top, "report", dict, "the site file") or {}
     where = "[report]"

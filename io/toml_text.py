@@ -16,7 +16,7 @@ def toml_key(key: str) -> str:
 
 
 def toml_value(value: Any) -> str:
-    """Return a text, number, list or table as it stands in TOML.
+    """Return a text, number, list or table as written in TOML.
 
     Examples
     --------

@@ -67,7 +67,8 @@ def _from_dxf(
         if place != "inside":
             raise InputError(
                 message(
-                    "import.map-lies-far-outside", "The map lies far outside the study area, x and y look exchanged"
+                    "import.map-lies-far-outside",
+                    "The map lies far outside the study area; x and y appear to be exchanged",
                 )
                 if place == "exchanged"
                 else message("import.map-lies-far-outside-study", "The map lies far outside the study area"),
@@ -108,7 +109,7 @@ def _undraped(count: int, source: Source, row: int) -> InputError:
     return InputError(
         message(
             "import.site-no-ground-drape",
-            "The site has no ground to drape the points without an elevation on ({count})",
+            "The site has no ground on which to place the points without an elevation ({count})",
             count=count,
         ),
         message("import.add-column-ground-table", "Add a column z, or a [ground] table to the site file."),

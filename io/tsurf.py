@@ -79,7 +79,7 @@ def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:
         found[name] = one.surface(name)
     if not found:
         raise InputError(
-            message("import.file-holds-no-triangle", "The file holds no triangle of a TSurf"),
+            message("import.file-holds-no-triangle", "The file contains no triangle of a TSurf"),
             message("import.export-gocad-tsurf", "Export a GOCAD TSurf."),
             file=source.name,
         )

@@ -81,7 +81,7 @@ def read_features(source: Source, journal: Journal) -> Table:
             journal.add(
                 "error",
                 source.name,
-                message("import.feature-no-place", "The feature has no place"),
+                message("import.feature-no-place", "The feature has no location"),
                 message("import.draw-again", "Draw it again."),
                 row=i + 1,
             )
@@ -100,7 +100,7 @@ def _recognise(source: Source, data: bytes) -> None:
     """Refuse other contents: GDAL goes by them, not by the ending, and some formats name files elsewhere."""
     if not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_BEGINNINGS):
         raise InputError(
-            message("import.map-other-contents", "The file is no shapefile, GeoPackage or GeoJSON"),
+            message("import.map-other-contents", "The file is not a shapefile, GeoPackage or GeoJSON"),
             message("import.open-gis-save-geopackage", "Open it in a GIS and save it as GeoPackage."),
             file=source.name,
         )

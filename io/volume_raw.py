@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 
 __all__ = ["map_meta_image", "read_meta_image", "shape_and_type"]
 
@@ -160,7 +160,7 @@ def _beside(path: Path, name: str) -> Path:
     place = path.parent / name
     if re.search(r"[/\\:\0]", name) or not is_file(place):
         raise InputError(
-            message("import.header-names-file", "its header names the file '{name}'", name=Verbatim(name)),
+            message("import.header-names-file", "its header names the file '{name}'", name=Untranslated(name)),
             message("import.raw-file-beside", "Put the raw file into the header's folder, and name it without a path."),
             file=str(path),
         )

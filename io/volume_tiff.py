@@ -26,7 +26,7 @@ def read_tiff(source: Any, name: str) -> NDArray[Any]:
     """
     from PIL import Image
 
-    # A large slice is no attack: the size of a scan is what the user has asked for.
+    # A large slice is not an attack: the size of a scan is what the user has asked for.
     limit, Image.MAX_IMAGE_PIXELS = Image.MAX_IMAGE_PIXELS, None
     try:
         with Image.open(source) as image:

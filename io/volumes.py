@@ -208,7 +208,7 @@ def _one_of(names: list[str], wanted: str | None, path: Path) -> str:
         return names[0]
     if not names:
         raise InputError(
-            message("import.volume-read", "it has no volume that can be read"),
+            message("import.volume-read", "its volume cannot be read"),
             message("import.known-kinds-2", "Known kinds: {kinds}.", kinds=KINDS),
             file=str(path),
         )

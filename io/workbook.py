@@ -39,7 +39,7 @@ def read_sheet(source: Source, journal: Journal) -> Table:
     Raises
     ------
     InputError
-        If the file is no workbook, or has no such sheet.
+        If the file is not a workbook, or has no such sheet.
     """
     sheets = _open(source, journal.read(source))
     name = source.table or next((name for name, rows in sheets.items() if rows), "")
@@ -73,7 +73,7 @@ def read_sheet(source: Source, journal: Journal) -> Table:
     if named and body and is_units_row(body[0][1]):
         line, units = body[0]
         body = body[1:]
-        journal.add("note", source.name, message("import.row-holds-units", "This row holds the units"), row=line)
+        journal.add("note", source.name, message("import.row-holds-units", "This row contains the units"), row=line)
     journal.add(
         "note",
         source.name,

@@ -14,7 +14,7 @@ pytest.importorskip("PySide6", reason="the windows need PySide6 (extra gui)")
 import geofit
 from geofit.data.messages import message
 from geofit.data.points import PointSet
-from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
+from geofit.data.prediction import LeftOut, Outlier, PredictionResult, Suggestion, Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.site_file import read_site
@@ -63,13 +63,13 @@ def cloud(n: int) -> HorizonFit:
     return base.with_(points=points, core=np.arange(n) % 3 == 0, accuracy=a, model=None)
 
 
-def off_data(n: int) -> OffData:
+def prediction(n: int) -> PredictionResult:
     x, y = np.linspace(0, 100, 5), np.linspace(0, 200, 9)
     left = [
-        LeftOut(scheme, 12, np.full(n, ""), np.zeros(n), np.ones(n), 1.25, 0.9, -0.1, 4.0, 0.91, 0.74, peers)
-        for scheme, peers in (("hole", {"thin plate": 1.5, "kriging": 1.4}), ("section", {"thin plate": 2.5}))
+        LeftOut(scheme, 12, np.full(n, ""), np.zeros(n), np.ones(n), 1.25, 0.9, -0.1, 4.0, 0.91, 0.74, references)
+        for scheme, references in (("hole", {"thin plate": 1.5, "kriging": 1.4}), ("section", {"thin plate": 2.5}))
     ]
-    return OffData(
+    return PredictionResult(
         tuple(left),  # type: ignore[arg-type]
         Uncertainty(x, y, np.full((9, 5), 2.0), 1.62, 1.1, 6.2, np.full((9, 5), 1.62)),
         (Suggestion(10.0, 20.0, 1210.5, 6.2, 1.0, 5.9), Suggestion(30.0, 40.0, 1211.5, 5.8, 0.9, 5.2)),

@@ -10,7 +10,7 @@ from geofit import FitSettings, PointSet, Site
 from geofit.checks.storage import equal_accuracy
 from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, Partition, ReadBack, Seam
 from geofit.data.messages import message
-from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion, Uncertainty
+from geofit.data.prediction import LeftOut, Outlier, PredictionResult, Suggestion, Uncertainty
 from geofit.data.site import Hole, ImportIssue, Section, TableCount
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.result import HorizonResult
@@ -152,14 +152,14 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
 
 
 def examined(result: HorizonResult) -> HorizonResult:
-    """The same horizon with an examination off its data: every figure by hand."""
+    """The same horizon with an examination away from its data: every figure by hand."""
     n = result.accuracy.n
     hole = result.surface.points.hole
     error = np.where(hole != "", 0.25, np.nan)
 
     def left_out(scheme, inside, rms):
-        peers = {"thin plate": 0.456, "kriging": 0.321}
-        return LeftOut(scheme, 50, hole, error, np.full(n, 0.3), rms, 0.2, -0.015, 1.25, inside, 0.71, peers)
+        references = {"thin plate": 0.456, "kriging": 0.321}
+        return LeftOut(scheme, 50, hole, error, np.full(n, 0.3), rms, 0.2, -0.015, 1.25, inside, 0.71, references)
 
     x, y = np.linspace(499_300, 501_500, 30), np.linspace(3_099_400, 3_100_600, 20)
     sd = 0.1 + 0.4 * np.hypot(*np.meshgrid(np.linspace(-1, 1, 30), np.linspace(-1, 1, 20)))
@@ -168,7 +168,7 @@ def examined(result: HorizonResult) -> HorizonResult:
         Suggestion(500_100.25, 3_099_900.5, 1503.0, 0.61, 0.31, 0.5),
         Suggestion(500_900.75, 3_100_100.5, 1520.0, 0.52, 0.27, 0.45),
     )
-    found = OffData(
+    found = PredictionResult(
         (left_out("hole", 0.904, 0.287), left_out("section", 0.612, 0.777)),
         field,
         holes,
@@ -176,9 +176,9 @@ def examined(result: HorizonResult) -> HorizonResult:
         (
             message(
                 "prediction.without-sections-no-surface",
-                "without {failed} of the sections no surface can be laid",
+                "without {failed} of the sections no surface can be fitted",
                 failed=2,
             ),
         ),
     )
-    return replace(result, offdata=found)
+    return replace(result, prediction=found)

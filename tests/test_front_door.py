@@ -119,7 +119,7 @@ def test_short_forms():
     assert repr(fit.surface) == "<PatchSurface T2-T1: 1 patch>"
     assert re.match(r"<Accuracy PASS: sigma \S+ m < 0.2 m, 4 points, largest", repr(fit.accuracy))
     assert repr(Check("bias", False, 0.25, 0.1, "m", "")) == "<Check bias: FAIL, 0.25, limit 0.1 m>"
-    assert repr(geofit.examine(fit)).startswith("<OffData: ")
+    assert repr(geofit.examine(fit)).startswith("<PredictionResult: ")
     site = geofit.Site("Dam", {"T2-T1": points})
     assert repr(site) == "<Site Dam: horizons 1, points 4, holes 0, sections 0, rows not used 0>"
     assert repr(geofit.fit_site(site)) == "<SiteFit: T2-T1 PASS>"

@@ -27,7 +27,7 @@ def run(tests: str, **changes: str) -> subprocess.CompletedProcess[str]:
 
 
 def skipped(done: subprocess.CompletedProcess[str]) -> str:
-    """The one line that says why all tests were skipped."""
+    """The one line that states why all tests were skipped."""
     assert done.returncode in (0, 5), done.stdout + done.stderr
     assert "Aborted" not in done.stdout + done.stderr
     (line,) = [line for line in done.stdout.splitlines() if line.startswith("SKIPPED")]

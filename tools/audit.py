@@ -1,7 +1,7 @@
 """What is installed here: packages, versions, licences, and known advisories where they can be looked up.
 
 ``make audit`` runs it, with pip-audit where that can be installed. The run fails for a known advisory; it does not
-where advisories are out of reach, and says so.
+where advisories are out of reach, and reports it.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ class _Set:
         self.idle()
         for state in (
             self.start, self.wizard, self.site, self.fitted, self.residuals, self.plan, self.section, self.seams,
-            self.adjust, self.checks, self.offdata, self.export, self.report, self.small,
+            self.adjust, self.checks, self.prediction, self.export, self.report, self.small,
         ):  # fmt: skip
             state()
 
@@ -178,8 +178,8 @@ class _Set:
         self.trigger("check_order")
         self.shoot("12_checks", self.window)
 
-    def offdata(self) -> None:
-        self.window.panels.reveal("offdata")
+    def prediction(self) -> None:
+        self.window.panels.reveal("prediction")
         self.trigger("examine")
         self.layer("surface", colour_by="standard deviation")
         self.shoot("13_off_the_data", self.window)
@@ -197,7 +197,7 @@ class _Set:
     def report(self) -> None:
         document = self.window.session.document
         site = document.site_in_use()
-        results = [HorizonResult(s, site, offdata=document.offdata(n)) for n, s in document.surfaces().items()]
+        results = [HorizonResult(s, site, prediction=document.prediction(n)) for n, s in document.surfaces().items()]
         self.dialog("15_report", ReportDialog(site, results, self.window))
 
     def small(self) -> None:

@@ -20,7 +20,7 @@ __all__ = ["build", "missing", "names"]
 
 ROOT = Path(__file__).resolve().parents[1]
 DIST = ROOT / "dist"
-#: Files that are no modules, by their place in the sources.
+#: Files that are not modules, by their place in the sources.
 DATA = (
     "geofit/py.typed",
     "geofit/__init__.pyi",

@@ -1,4 +1,4 @@
-"""The error off the data of the real sets: holes left out by linear algebra, beside thin plate and kriging."""
+"""the prediction error of the real sets: holes left out by linear algebra, beside thin plate and kriging."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ from dataclasses import dataclass, replace
 from math import isfinite, nan
 
 from geofit import FitSettings, GeofitError, HorizonFit, PointSet, fit_horizon
-from geofit.data.prediction import OffData
+from geofit.data.prediction import PredictionResult
 from geofit.prediction.examine import examine
 
 from .why import metres
 
-__all__ = ["CLEARLY", "OFF_DATA", "Off", "field_alone", "lost", "off_cells", "off_data", "summary", "why_lost"]
+__all__ = ["CLEARLY", "OFF_DATA", "Off", "field_alone", "lost", "off_cells", "prediction", "summary", "why_lost"]
 
 OFF_DATA = (
     "set", "tolerance, m", "left out", "geofit, m", "thin plate, m", "kriging, m", "inside 90 %", "before", "factor",
@@ -51,7 +51,7 @@ class Off:
         return min(self.peers, key=lambda peer: peer[1])
 
 
-def off_data(surface: HorizonFit, found: OffData | None) -> Off | None:
+def prediction(surface: HorizonFit, found: PredictionResult | None) -> Off | None:
     """Take the figures of the page from an examination; None where there is nothing to show."""
     holes = next((one for one in found.left_out if one.scheme == "hole"), None) if found else None
     if found is None or holes is None:
@@ -76,7 +76,7 @@ def field_alone(off: Off, points: PointSet, settings: FitSettings, boundary: obj
         surface = fit_horizon(points, replace(settings, core="none", max_iterations=0), boundary)
     except GeofitError:
         return off
-    alone = off_data(surface, examine(surface))
+    alone = prediction(surface, examine(surface))
     return off if alone is None else replace(off, alone=alone.rms, alone_energy=alone.energy)
 
 

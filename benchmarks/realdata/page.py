@@ -8,7 +8,7 @@ from math import isfinite
 
 from geofit import FitSettings
 
-from .offdata import OFF_DATA, Off, off_cells, summary, why_lost
+from .prediction import OFF_DATA, Off, off_cells, summary, why_lost
 from .score import Errors, Score
 from .why import Trial, metres, why
 
@@ -27,7 +27,7 @@ CLASSES = (20, 120)
 
 @dataclass(frozen=True)
 class Fitted:
-    """Figures of the fit to all given points; ``holds_not`` says which checks fail, and why."""
+    """Figures of the fit to all given points; ``holds_not`` names which checks fail, and why."""
 
     core: int
     periphery: int
@@ -40,9 +40,9 @@ class Fitted:
 
 @dataclass(frozen=True)
 class Row:
-    """One horizon of one set with one choice of tolerances; ``fitted`` is None where ``failure`` says why.
+    """One horizon of one set with one choice of tolerances; ``fitted`` is None where ``failure`` states why.
 
-    ``off`` is its error off the data, None where nothing can be left out.
+    ``off`` is its error away from the data, None where nothing can be left out.
     """
 
     title: str

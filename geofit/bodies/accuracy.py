@@ -121,7 +121,7 @@ def examine(body: ImplicitBody) -> BodyAccuracy:
             "1",
             message(
                 "bodies.parts-body-hold",
-                "{count} parts of the body hold no contact and no inside sample",
+                "{count} parts of the body contain no contact and no inside sample",
                 count=unsupported,
             ),
         ),

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import column, places, refuse_far
 from geofit.data.errors import FitError, PointsError
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 
 __all__ = ["BodyData", "BodyIssue", "Prepared", "prepare"]
 
@@ -147,7 +147,7 @@ def _finite_places(name: str, given: ArrayLike) -> Floats:
                 "{count} of {total} {name} are not finite, the first at index {index}. Remove or complete them.",
                 count=bad.size,
                 total=len(xyz),
-                name=Verbatim(name),
+                name=Untranslated(name),
                 index=bad[0],
             )
         )
@@ -300,8 +300,8 @@ def _sides(
             holes = data.inside_hole[i], data.outside_hole[near[i]]
             text = message(
                 "bodies.inside-sample-hole",
-                "Inside sample {inside} (hole '{first}') and outside sample {outside} (hole '{second}') are one place: "
-                "intervals contradict each other, neither side is used",
+                "Inside sample {inside} (hole '{first}') and outside sample {outside} (hole "
+                "'{second}') coincide: the intervals contradict each other, and neither side is used",
                 inside=i,
                 outside=int(near[i]),
                 first=holes[0],

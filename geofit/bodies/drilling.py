@@ -46,7 +46,7 @@ def suggest_holes(
     """Choose the parallel holes that are expected to narrow the volume of a body most, one after the other.
 
     A candidate is taken to show how much of the body there is around it. Over the conditional simulations, a linear
-    regression of the volume on that says how much of the volume's variance the hole would explain; what is left is
+    regression of the volume on that states how much of the volume's variance the hole would explain; what is left is
     given to the next one. Only holes that meet the fitted body are candidates: a hole that misses it shows little.
 
     Parameters

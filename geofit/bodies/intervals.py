@@ -90,7 +90,7 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
         raise SettingsError(
             message(
                 "bodies.holds-logged-intervals",
-                "A {kind} holds no logged intervals. Give BodyData, or the boreholes with their interval tables.",
+                "A {kind} contains no logged intervals. Give BodyData, or the boreholes with their interval tables.",
                 kind=type(source).__name__,
             )
         )

@@ -66,7 +66,7 @@ def section_questions(outlines: Sequence[Outline], body: ImplicitBody | None = N
     outlines : sequence of Outline
         As given to :func:`geofit.bodies.outlines.from_outlines`.
     body : ImplicitBody, optional
-        The body fitted to them; with it, each question says what the body does there, and gaps of the body between
+        The body fitted to them; with it, each question states what the body does there, and gaps of the body between
         sections with the same number of parts are listed too.
     """
     planes = _ordered(section_planes(outlines))

@@ -98,7 +98,7 @@ def region_of(
         ).reshape(-1, 3)
         closing = nodes[cKDTree(own - origin).query(nodes - origin)[0] > reach]
         if len(outside) and len(closing):
-            # Where a logged interval is as near as a quarter of the reach, the log itself says what is there.
+            # Where a logged interval is as near as a quarter of the reach, the log itself states what is there.
             closing = closing[cKDTree(outside - origin).query(closing - origin)[0] > reach / 4]
     return Region(low, high, spacing, reach, BOUND * spacing, closing)
 

@@ -29,13 +29,13 @@ from numpy.typing import NDArray
 from geofit.cad.imported import existing
 from geofit.data.errors import GeofitError, InputError, MissingDependencyError
 from geofit.data.legible import legible
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.trimmed import TrimmedSurface
 
-__all__ = ["read_apart"]
+__all__ = ["read_in_child"]
 
 #: What reads a file within the child, by the name on its command line.
 READERS = {
@@ -52,7 +52,7 @@ MEMORY, MEMORY_BYTE = 6_000_000_000, 200
 _TOO_LONG = -int(getattr(signal, "SIGXCPU", 24))
 
 
-def read_apart(path: str | PathLike[str], reader: str) -> dict[str, Any]:
+def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
     """Read the surfaces, or the triangles of the solids, of a CAD file in a child process.
 
     Parameters
@@ -199,8 +199,8 @@ def _stored(value: Any) -> Any:
         return {"code": value.code, "template": value.template, "params": params, "plural": value.plural}
     if isinstance(value, tuple):
         return [_stored(item) for item in value]
-    if isinstance(value, Verbatim):
-        return {"verbatim": str(value)}
+    if isinstance(value, Untranslated):
+        return {"untranslated": str(value)}
     return value if isinstance(value, (str, int, float)) else str(value)
 
 
@@ -209,8 +209,8 @@ def _restored(value: Any) -> Any:
     if isinstance(value, list):
         return tuple(_restored(item) for item in value)
     if isinstance(value, dict):
-        if "verbatim" in value:
-            return Verbatim(value["verbatim"])
+        if "untranslated" in value:
+            return Untranslated(value["untranslated"])
         params = {name: _restored(param) for name, param in value["params"].items()}
         return Message(value["code"], value["template"], params, value["plural"])
     return value

@@ -13,7 +13,7 @@ from os import PathLike
 from typing import Any
 
 from geofit.cad.faces import faces_of
-from geofit.cad.foreign import read_apart
+from geofit.cad.foreign import read_in_child
 from geofit.cad.imported import FileShape, document, existing, no_faces, products, quiet, surface_of, unique_name
 from geofit.data.messages import message
 from geofit.surfaces.patch_surface import PatchSurface
@@ -34,9 +34,9 @@ def read_iges(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     Raises
     ------
     InputError
-        If the file does not exist, is no IGES file or holds no face.
+        If the file does not exist, is not an IGES file or holds no face.
     """
-    return read_apart(path, "iges")
+    return read_in_child(path, "iges")
 
 
 def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
@@ -70,9 +70,9 @@ def read_brep(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     Raises
     ------
     InputError
-        If the file does not exist, is no BREP file or holds no face.
+        If the file does not exist, is not a BREP file or holds no face.
     """
-    return read_apart(path, "brep")
+    return read_in_child(path, "brep")
 
 
 def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:

@@ -32,7 +32,7 @@ Floats = NDArray[np.float64]
 ALONG, AROUND = 24, 128
 #: A file's face that fills its parameter rectangle to this share is not cut down to it.
 FULL = 1e-9
-#: A face this near to upright (cosine) is not told from an overturned one.
+#: A face this near to upright (cosine) is not distinguished from an overturned one.
 STEEP = 1e-3
 #: Loops that leave less than this share of the parameter rectangle out do not trim.
 WHOLE = 1e-9
@@ -141,7 +141,7 @@ def _face_name(tool: Any, label: Any, face: Any, number: int) -> str:
 def surface_of(shape: FileShape, whole: bool = False) -> PatchSurface:
     """Return the faces of a shape as patches; where loops cut them, they are kept (unless ``whole``).
 
-    If the shape stands over every place once, the loop of its free edges becomes the surface's outline.
+    If the shape is single-valued, the loop of its free edges becomes the surface's outline.
     """
     named = zip(faces_of(shape.shape), shape.face_names, strict=True)
     faces = [_patch(name, face, whole) for face, name in named]
@@ -164,7 +164,7 @@ def surface_of(shape: FileShape, whole: bool = False) -> PatchSurface:
 
 
 def _looks_one_way(surface: PatchSurface) -> bool:
-    """Whether all normals point upwards, or all downwards: rounded control points are no exact height field."""
+    """Whether all normals point upwards, or all downwards: rounded control points are not exact height field."""
     share = np.linspace(0, 1, ALONG)
     heights = []
     for patch in surface.patches:
@@ -305,5 +305,5 @@ def existing(path: str | PathLike[str]) -> Path:
 
 def no_faces(file: Path, read: bool, unreadable: Message, remedy: Message) -> InputError:
     """Return the error of a file that OpenCASCADE could not read, or in which it found no face."""
-    reason = message("import.file-without-faces", "The file holds no face") if read else unreadable
+    reason = message("import.file-without-faces", "The file contains no face") if read else unreadable
     return InputError(reason, remedy, file=str(file))

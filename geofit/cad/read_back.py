@@ -32,7 +32,7 @@ MEASURED = 2000
 
 
 def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written: Any, path: Path) -> ReadBack:
-    """Check a horizon as it stands in the file against the one that was written.
+    """Check a horizon as written in the file against the one that was written.
 
     Parameters
     ----------
@@ -264,7 +264,7 @@ def _occ_lengths(shape: FileShape, xyz: Floats, ours: Projection, chosen: NDArra
             u, v = float(ours.u[chosen[row]]), float(ours.v[chosen[row]])
             witness = geometry.Value(bounds[0] + bounds[1] - u if turned else u, v)
             length[row] = min(length[row], point.Distance(witness))
-            # A foot on the edge of the face is no orthogonal projection.
+            # A foot on the edge of the face is not an orthogonal projection.
             if length[row] > abs(ours.distance[chosen[row]]) + 1e-8:
                 vertex = BRepBuilderAPI_MakeVertex(point).Vertex()
                 length[row] = min(length[row], BRepExtrema_DistShapeShape(vertex, whole).Value())

@@ -91,7 +91,7 @@ def shell(surface: Surface) -> Any:
         shells = [_shell_of(faces[0])]
     if len(shells) != 1 or len(faces_of(shells[0])) != len(faces):
         loose = len(faces) - sum(len(faces_of(part)) for part in shells)
-        raise StitchError(_why_loose(surface, len(shells) + loose))
+        raise StitchError(_why_open(surface, len(shells) + loose))
     result = shells[0]
     if (loops := free_loops(result)) != 1:
         raise StitchError(
@@ -101,7 +101,7 @@ def shell(surface: Surface) -> Any:
                 "one. {reason}",
                 name=surface.name,
                 loops=loops,
-                reason=_why_loose(surface, 1),
+                reason=_why_open(surface, 1),
             )
         )
     if not BRepCheck_Analyzer(result).IsValid():
@@ -126,12 +126,16 @@ def _shell_of(face: Any) -> Any:
     return result
 
 
-def _why_loose(surface: Surface, shells: int) -> Message:
+def _why_open(surface: Surface, shells: int) -> Message:
     open_seams = [seam for seam in seams(surface.patches) if seam.gap > SEWING]
     if open_seams:
         places = tuple(
             message(
-                "fit.seam-gap", "{first} and {second} gape by {gap:.3g} m", first=s.first, second=s.second, gap=s.gap
+                "fit.seam-gap",
+                "{first} and {second} have a gap of {gap:.3g} m",
+                first=s.first,
+                second=s.second,
+                gap=s.gap,
             )
             for s in open_seams
         )
@@ -183,8 +187,8 @@ def one_surface(surface: Surface) -> Patch:
         raise StitchError(
             message(
                 "fit.patches-no-full-grid",
-                "The patches of '{name}' make no full grid of parameter ranges with one degree: {names}. Use the "
-                "sewn shell instead.",
+                "The patches of '{name}' do not form a full grid of parameter ranges with one degree: "
+                "{names}. Use the sewn shell instead.",
                 name=surface.name,
                 names=names,
             )
@@ -231,7 +235,7 @@ def _join(strip: list[tuple[Floats, Floats, Floats]], degree: int) -> tuple[Floa
             raise StitchError(
                 message(
                     "fit.neighbouring-patches-gape-merged",
-                    "Neighbouring patches gape by {apart:.3g} m; at most {limit:g} m can be merged.",
+                    "Neighbouring patches have a gap of {apart:.3g} m; at most {limit:g} m can be merged.",
                     apart=apart,
                     limit=SEWING,
                 )

@@ -85,7 +85,7 @@ def write_body(
         Closed groups of NURBS patches, about the body's local origin; without them, or where they cannot be sewn, the
         overview's triangles are written.
     reason : str
-        Why there are no patches although they were wanted: the check "grade" says so.
+        Why there are no patches although they were wanted: the check "grade" reports it.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def write_body(
     if not len(body.overview.triangles):
         raise InputError(
             message("cad.body-empty", "The body '{name}' is empty", name=body.name),
-            message("bodies.look-at-data", "Look at its data."),
+            message("bodies.look-at-data", "Check its data."),
             file=str(target),
         )
     shape = None

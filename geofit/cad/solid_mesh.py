@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.cad.faces import explore, faces_of
-from geofit.cad.foreign import read_apart
+from geofit.cad.foreign import read_in_child
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
@@ -35,7 +35,7 @@ def read_solids(path: str | PathLike[str]) -> dict[str, TriangleMesh]:
     InputError
         If the file cannot be read, or holds no solid.
     """
-    return read_apart(path, "solid")
+    return read_in_child(path, "solid")
 
 
 def solid_meshes(path: str | PathLike[str]) -> dict[str, TriangleMesh]:

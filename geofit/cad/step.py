@@ -20,7 +20,7 @@ import numpy as np
 
 from geofit import __version__
 from geofit.cad.faces import faces_of, placement
-from geofit.cad.foreign import read_apart
+from geofit.cad.foreign import read_in_child
 from geofit.cad.imported import FileShape, document, existing, no_faces, products, quiet, surface_of
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
@@ -39,7 +39,7 @@ __all__ = ["UNITS", "Unit", "read_shapes", "read_step", "step_surfaces", "store_
 
 Unit = Literal["m", "mm"]
 #: Length units of a file, and OpenCASCADE's words for them. No feet: the writer gives 13 digits, and a placement in
-#: map coordinates that is no whole number of the unit would lose more than the core may miss its points by.
+#: map coordinates that is not a whole number of the unit would lose more than the core may miss its points by.
 UNITS: dict[Unit, str] = {"m": "M", "mm": "MM"}
 
 #: Fixed, so that the same surfaces give the same bytes.
@@ -70,7 +70,7 @@ def write_step(
     path : path
         The file, usually ``*.step``.
     unit : {"m", "mm"}
-        In which the file gives lengths. It says so, and CAD systems convert: the surfaces are the same.
+        In which the file gives lengths. It reports it, and CAD systems convert: the surfaces are the same.
 
     Returns
     -------
@@ -148,15 +148,15 @@ def read_step(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     Returns
     -------
     dict of str to PatchSurface
-        Without points. The origin is the product's placement, or for a product that stands in map coordinates
+        Without points. The origin is the product's placement, or for a product in map coordinates
         itself, a rounded corner near its first control point.
 
     Raises
     ------
     InputError
-        If the file does not exist, is no STEP file or holds no face.
+        If the file does not exist, is not a STEP file or holds no face.
     """
-    return read_apart(path, "step")
+    return read_in_child(path, "step")
 
 
 def step_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from geofit.caves.survey import Survey, SurveyError, named
 from geofit.data.errors import SettingsError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 
 __all__ = ["AdjustedSurvey", "Loop", "adjust"]
 
@@ -184,8 +184,8 @@ def _require_connected(survey: Survey, known: list[int]) -> None:
                 "Add the missing shot or equate, correct a misspelt station name, fix one station of each part, or use "
                 "survey.connected_to('{anchor}') to leave them out.",
                 count=len(lost),
-                survey=Verbatim(survey.name),
-                anchor=Verbatim(survey.stations[known[0]]),
+                survey=Untranslated(survey.name),
+                anchor=Untranslated(survey.stations[known[0]]),
                 names=named([survey.stations[i] for i in lost.tolist()]),
                 parts=parts,
             )

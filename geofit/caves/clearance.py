@@ -85,7 +85,7 @@ def clearance(
     Raises
     ------
     SettingsError
-        If the excavation is no array of points, or a length is out of its range.
+        If the excavation is not an array of points, or a length is out of its range.
     """
     corners = np.asarray(excavation, dtype=np.float64)
     if corners.ndim != 2 or corners.shape[1:] != (3,) or not len(corners) or not np.isfinite(corners).all():

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from geofit.caves.adjust import AdjustedSurvey
 from geofit.caves.survey import WALLS, SurveyError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 
 __all__ = ["FilledWall", "Sections", "sections"]
 
@@ -23,7 +23,7 @@ Ints = NDArray[np.int64]
 #: Shorter shots do not couple stations more strongly than this length does, metres.
 _SHORTEST = 0.1
 #: Draws walls that no measured wall is connected to towards the mean of the survey.
-_PULL = 1e-9
+_TIE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -90,8 +90,8 @@ def sections(adjusted: AdjustedSurvey, radius: float | None = None) -> Sections:
         raise SurveyError(
             message(
                 "caves.survey-shot-along",
-                "The survey {name} has no shot along a passage that could get a body.",
-                name=Verbatim(survey.name),
+                "The survey {name} has no shot along a passage that could form a body.",
+                name=Untranslated(survey.name),
             )
         )
     heading = vector[:, :2] / np.maximum(np.linalg.norm(vector[:, :2], axis=1), 1e-12)[:, None]
@@ -108,9 +108,9 @@ def sections(adjusted: AdjustedSurvey, radius: float | None = None) -> Sections:
         raise SurveyError(
             message(
                 "caves.survey-wall-any",
-                "The survey {name} has no wall at any station, so its passages have no size. Measure walls, or give "
-                "radius = ... in metres.",
-                name=Verbatim(survey.name),
+                "The survey {name} has no wall distance at any station, so its passages have no size. "
+                "Measure walls, or give radius = ... in metres.",
+                name=Untranslated(survey.name),
             )
         )
     both = [mean if mean is not None else other for mean, other in zip(means, means[::-1], strict=True)]
@@ -190,8 +190,8 @@ def _interpolated(
     if not len(missing):
         return value
     given = np.setdiff1d(np.arange(size), missing)
-    degree = np.asarray(links.sum(axis=1)).ravel()[missing] + _PULL
+    degree = np.asarray(links.sum(axis=1)).ravel()[missing] + _TIE
     matrix = (diags_array(degree) - links[missing][:, missing]).tocsc()
-    right = links[missing][:, given] @ flat[given] + _PULL * target.ravel()[missing]
+    right = links[missing][:, given] @ flat[given] + _TIE * target.ravel()[missing]
     flat[missing] = splu(matrix).solve(right)
     return np.asarray(np.maximum(flat, 0.0).reshape(value.shape))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import GeofitError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 from geofit.data.site import ImportIssue, TableCount
 
 __all__ = ["WALLS", "Survey", "SurveyError"]
@@ -102,8 +102,8 @@ class Survey:
             raise SurveyError(
                 message(
                     "caves.survey-shot-used",
-                    "The survey {name} has no shot that can be used. See its listed rows.",
-                    name=Verbatim(self.name),
+                    "The survey {name} has no usable shot. See its listed rows.",
+                    name=Untranslated(self.name),
                 )
             )
         unknown = [station for station in self.fixed if station not in self.stations]
@@ -113,7 +113,7 @@ class Survey:
                     "caves.fixed-stations-not",
                     "The fixed stations {names} are not in the survey {survey}. Correct their names.",
                     names=named(unknown),
-                    survey=Verbatim(self.name),
+                    survey=Untranslated(self.name),
                 )
             )
 
@@ -150,8 +150,8 @@ class Survey:
                 message(
                     "caves.survey-station",
                     "The survey {survey} has no station {station}. Give one of its names.",
-                    survey=Verbatim(self.name),
-                    station=Verbatim(station),
+                    survey=Untranslated(self.name),
+                    station=Untranslated(station),
                 )
             )
         part = self.part_of()
@@ -177,9 +177,9 @@ class Survey:
         )
 
 
-def named(stations: list[str]) -> tuple[Verbatim, ...]:
+def named(stations: list[str]) -> tuple[Untranslated, ...]:
     """Return station names for a message, the first few where there are many."""
-    shown = [Verbatim(name) for name in stations[:_SHOWN]]
+    shown = [Untranslated(name) for name in stations[:_SHOWN]]
     if len(stations) > _SHOWN:
-        shown.append(Verbatim("..."))
+        shown.append(Untranslated("..."))
     return tuple(shown)

@@ -65,7 +65,7 @@ def check(
         The fit; its ``core`` marks the points that it must meet exactly. Without patches (triangles of a file) the
         surface itself is not looked at.
     conflicts : sequence of Conflict
-        Points that gave way before the fit. Their residuals count in sigma like all others.
+        Points that were dropped before the fit. Their residuals count in sigma like all others.
     notes : sequence of str
         What the fit has to say.
     projection : Projection, optional
@@ -83,15 +83,15 @@ def check(
         name: Exceedance(limit, int((magnitude > limit).sum()))
         for name, limit in (("interior_tolerance", settings.interior_tolerance), ("epsilon", settings.epsilon))
     }
-    honoured = np.ones(len(d), bool)
-    honoured[[conflict.dropped for conflict in conflicts]] = False
-    exact = surface.core & honoured if len(surface.core) == len(d) else np.zeros(len(d), bool)
+    active = np.ones(len(d), bool)
+    active[[conflict.dropped for conflict in conflicts]] = False
+    exact = surface.core & active if len(surface.core) == len(d) else np.zeros(len(d), bool)
     examinations: tuple[Callable[[], Sequence[Check]], ...] = (
         lambda: _lost_core(surface),
         lambda: _tolerance_checks(surface, d, exact),
         lambda: _seam_checks(surface, found),
-        lambda: _residual_checks(surface, d, patch, honoured & ~exact),
-        *_surface_checks(surface, projection, honoured),
+        lambda: _residual_checks(surface, d, patch, active & ~exact),
+        *_surface_checks(surface, projection, active),
     )
     checks: list[Check] = []
     missing: list[Message] = []
@@ -156,9 +156,9 @@ def _trend_by(surface: FittedSurface, accuracy: Accuracy, former: Check) -> Chec
     if former.limit > accuracy.epsilon or epsilon >= former.limit:
         limit = max(epsilon, former.limit if former.limit > accuracy.epsilon else 0.0)
         return replace(former, limit=limit, passed=former.value <= limit)
-    honoured = np.ones(accuracy.n, bool)
-    honoured[[conflict.dropped for conflict in accuracy.conflicts]] = False
-    return trend(surface, lattices(surface), honoured) or former
+    active = np.ones(accuracy.n, bool)
+    active[[conflict.dropped for conflict in accuracy.conflicts]] = False
+    return trend(surface, lattices(surface), active) or former
 
 
 def _groups(d: Floats, labels: Labels) -> dict[str, Group]:
@@ -194,7 +194,7 @@ def _lost_core(surface: FittedSurface) -> list[Check]:
 
 
 def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_]) -> list[Check]:
-    """Ask whether the core's points are on the surface, and the other ones within the interior tolerance."""
+    """Check whether the core's points are on the surface, and the other ones within the interior tolerance."""
     checks, tolerance = [], surface.settings.interior_tolerance
     if exact.any():
         worst = float(np.abs(d[exact]).max())
@@ -257,7 +257,7 @@ def _residual_checks(surface: FittedSurface, d: Floats, patch: Labels, loose: ND
 
 
 def _surface_checks(
-    surface: FittedSurface, projection: Projection, honoured: NDArray[np.bool_]
+    surface: FittedSurface, projection: Projection, active: NDArray[np.bool_]
 ) -> tuple[Callable[[], Sequence[Check]], ...]:
     """Return what looks at the surface itself, at and between its points."""
     if not surface.patches:
@@ -270,6 +270,6 @@ def _surface_checks(
     return (
         lambda: shape_checks(surface, parts),
         lambda: asked(self_crossing(surface, parts)),
-        lambda: asked(oscillation(surface, parts, projection, honoured)),
-        lambda: asked(trend(surface, parts, honoured)),
+        lambda: asked(oscillation(surface, parts, projection, active)),
+        lambda: asked(trend(surface, parts, active)),
     )

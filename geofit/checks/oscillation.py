@@ -1,6 +1,6 @@
 """Swings of the surface between its points that the points do not support.
 
-The points say what is between them by a thin-plate spline of the nearest ones, laid over the surface's own tangent
+The points say what is between them by a thin-plate spline of the nearest ones, fitted over the surface's own tangent
 plane, so that steep and overturned surfaces are asked alike. How far that may be trusted they say too: each point
 is left out, with all others as near to it as the widest gap around is wide, and predicted. Where the surface
 departs from the spline by several times the worst of these errors nearby, it swings of its own accord.
@@ -42,13 +42,13 @@ OPEN = 5 * np.pi / 6
 RIM = 0.98 * np.pi
 #: Cosine between normals below which a point belongs to another limb of a fold.
 SAME_LIMB = 0.3
-#: Nugget of the spline: points at one place do no harm.
+#: Nugget of the spline: points at one location do no harm.
 NUGGET = 1e-3
 NAMED = 20
 
 
 def oscillation(
-    surface: FittedSurface, parts: Sequence[Lattice], projection: Projection, honoured: Bools
+    surface: FittedSurface, parts: Sequence[Lattice], projection: Projection, active: Bools
 ) -> Check | None:
     """Compare the surface between its points with what the points support.
 
@@ -60,7 +60,7 @@ def oscillation(
         Its places.
     projection : Projection
         Feet of its points.
-    honoured : (n,) array of bool
+    active : (n,) array of bool
         Points that conflicts left.
 
     Returns
@@ -68,7 +68,7 @@ def oscillation(
     Check or None
         The largest departure, metres, against what is allowed at that place; None with fewer than 20 points.
     """
-    chosen = np.flatnonzero(honoured)
+    chosen = np.flatnonzero(active)
     given = len(chosen)
     if given < FEWEST:
         return None
@@ -96,16 +96,16 @@ def oscillation(
     if not len(beyond):
         text = message(
             "check.points-surface-keeps-support",
-            "between the points the surface keeps to what they support; it departs by {value:.1f} m where {limit:.1f} "
-            "m are allowed, at {x:.0f}, {y:.0f}",
+            "between the points the surface follows what they support; it departs by {value:.1f} m "
+            "where {limit:.1f} m are allowed, at {x:.0f}, {y:.0f}",
             **figures,
         )
         return Check("oscillation", True, value, limit, "m", partly(text, len(chosen), given))
     text = message(
         "check.surface-swings-points-around",
-        "the surface swings between the points: at {x:.0f}, {y:.0f} by {value:.1f} m from what those around support "
-        "({limit:.1f} m allowed), and so at {count} of {n} places; a point there may be wrong, or the tolerance finer "
-        "than the data",
+        "the surface oscillates between the points: at {x:.0f}, {y:.0f} by {value:.1f} m from "
+        "what those around support ({limit:.1f} m allowed), and so at {count} of {n} places; a "
+        "point there may be wrong, or the tolerance finer than the data",
         count=len(beyond),
         n=len(off),
         **figures,

@@ -1,7 +1,7 @@
 """Residuals that are not noise: one-sided patches, patterns in space, and tails that a few blunders make.
 
 All three look at the approximated points only: a core's residuals are zero by construction. What they find is held
-against the interior tolerance as well as against chance, since a pattern of millimetres is no fault of a horizon.
+against the interior tolerance as well as against chance, since a pattern of millimetres is not a fault of a horizon.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ FEW, FEWEST = 8, 20
 MOST = 5_000
 #: Share of the interior tolerance below which neither a bias nor a pattern matters.
 SHARE = 0.1
-#: How many standard errors are no chance: one false alarm in 30,000 (two sides).
+#: How many standard errors are not chance: one false alarm in 30,000 (two sides).
 BEYOND = 4.0
 #: The same probability, for the sign test.
 CHANCE = 6e-5
@@ -66,7 +66,7 @@ def partly(text: Message, part: int, n: int) -> Message:
     return (
         text
         if part == n
-        else message("check.sample-of-points", "{text}; {part} of {n} points looked at", text=text, part=part, n=n)
+        else message("check.sample-of-points", "{text}; {part} of {n} points examined", text=text, part=part, n=n)
     )
 
 
@@ -159,7 +159,7 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
     z = (d - d.mean()) / spread
     near = np.asarray(cKDTree(xyz).query(xyz, k=NEIGHBOURS + 1)[1])
     own = near == np.arange(n)[:, None]
-    # Where several points share one place, the point itself need not come first.
+    # Where several points are coincident, the point itself need not come first.
     own[~own.any(axis=1), -1] = True
     near = near[~own].reshape(n, NEIGHBOURS)
     moran = float((z[:, None] * z[near]).mean())
@@ -245,8 +245,8 @@ def _normality(d: Floats, tolerance: float) -> Check:
         few = max(n // 50, 1)
         text = message(
             "check.residuals-not-noise-normal",
-            "the residuals are not noise: the normal plot leaves its line by {off:.0%}, with {share:.0%} of the "
-            "sum of squares from {few} of {n} points; look at the worst points first",
+            "the residuals are not noise: the normal plot departs from its line by {off:.0%}, with "
+            "{share:.0%} of the sum of squares from {few} of {n} points; check the worst points first",
             off=off,
             few=few,
             n=n,

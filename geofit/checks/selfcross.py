@@ -38,13 +38,13 @@ def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     if all(plan_map(patch) is not None for patch in surface.patches):
         text = message(
             "check.height-field-map-stands",
-            "a height field over the map stands once over each place: it cannot cross itself",
+            "a height field over the map has one value at each location: it cannot cross itself",
         )
         return Check("self-intersection", True, 0, 0, "places", text)
     if frame == "best-plane":
         text = message(
             "check.height-field-best-plane",
-            "a height field over its best plane stands once over each place: it cannot cross itself",
+            "a height field over its best plane has one value at each location: it cannot cross itself",
         )
         return Check("self-intersection", True, 0, 0, "places", text)
     triangles = _triangles(parts)

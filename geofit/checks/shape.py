@@ -62,8 +62,8 @@ def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     if count:
         text = message(
             "check.places-folded-degenerate-surface",
-            "{count} of {total} places folded or degenerate: the surface turns over there, or its normals look to the "
-            "other side",
+            "{count} of {total} places folded or degenerate: the surface turns over there, or its "
+            "normals point to the other side",
             count=count,
             total=len(normal),
         )
@@ -91,7 +91,7 @@ def _patches(surface: FittedSurface) -> Check:
     for patch, loops in zip(surface.patches, surface.loops, strict=True):
         faults += [(patch.name, place) for place in _collapsed(patch, loops)]
         if surface.frame != "best-plane" and plan_map(patch) is None:
-            # A height field's control points stand in order by construction.
+            # A height field's control points are in order by construction.
             faults += [(patch.name, place) for place in _out_of_order(patch, loops)]
     count = len(faults)
     if not count:

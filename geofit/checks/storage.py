@@ -24,7 +24,7 @@ UPRIGHT, GENTLE = 0.05, 0.64
 class Storage:
     """Points that a TIN and a square grid need to stay within ``tolerance`` metres of the surface.
 
-    None: more than the places that were compared, or the surface is no height over any plane.
+    None: more than the places that were compared, or the surface is not a height over any plane.
     """
 
     tolerance: float

@@ -33,7 +33,7 @@ HUBER = 1.5
 NAMED = 20
 
 
-def trend(surface: FittedSurface, parts: Sequence[Lattice], honoured: Bools) -> Check | None:
+def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Check | None:
     """Hold the surface where no point is near against the robust plane of the points.
 
     Parameters
@@ -42,7 +42,7 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], honoured: Bools) -> 
         The surface.
     parts : sequence of Lattice
         Its places.
-    honoured : (n,) array of bool
+    active : (n,) array of bool
         Points that conflicts left.
 
     Returns
@@ -52,7 +52,7 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], honoured: Bools) -> 
         with fewer than ten points or all in a line, for a fold (it has no plane), and where no place is away from
         the points.
     """
-    points = surface.points.xyz[honoured] - surface.origin
+    points = surface.points.xyz[active] - surface.origin
     if len(points) < FEWEST or surface.frame == "sections":
         return None
     where, normal = places(parts)
@@ -90,8 +90,9 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], honoured: Bools) -> 
         return Check("trend", True, value, limit, "m", partly(text, len(local), len(every)))
     text = message(
         "check.surface-runs-away-no",
-        "the surface runs away where no point holds it: {value:.1f} m off the regional trend at {x:.0f}, {y:.0f}, "
-        "where the points depart from it by {shown:.1f} m at most; do not use it there without further points",
+        "the surface runs away where no point constrains it: {value:.1f} m from the regional "
+        "trend at {x:.0f}, {y:.0f}, where the points depart from it by {shown:.1f} m at most; "
+        "do not use it there without further points",
         **figures,
     )
     named = tuple((float(a), float(b), float(c)) for a, b, c in place[off[worst] > limit][:NAMED])

@@ -28,7 +28,7 @@ def fit_cloud_file(
     """Fit one surface to a file of points that need not fit into the memory; return the exit code."""
     from geofit.io.boundary import read_boundary
     from geofit.io.clouds import open_cloud
-    from geofit.project.cloud_run import deliver_cloud
+    from geofit.project.cloud_run import run_cloud
 
     if refused or len(horizons or ()) > 1:
         raise InputError(
@@ -41,7 +41,7 @@ def fit_cloud_file(
     cloud = open_cloud(source, roles, name, columns.get("sep"), columns.get("decimal"))
     area = None if boundary is None else read_boundary(boundary)
     with listening() as progress:
-        done = deliver_cloud(cloud, out, changes, area, progress, scheduler=scheduler, workers=workers)
+        done = run_cloud(cloud, out, changes, area, progress, scheduler=scheduler, workers=workers)
     print_issues(cloud.issues, str(out / f"{done.files[0].stem}_import_issues.csv"))
     accuracy = done.accuracy
     if as_json:

@@ -82,7 +82,7 @@ def guarded(command: Callable[P, int]) -> Callable[P, None]:
             say(f"geofit: {error}")
             code = 2
         except OSError as error:
-            # A full disk, a folder that may not be written: the user's to mend.
+            # A full disk, a folder that may not be written: the user's to correct.
             if isinstance(error, BrokenPipeError):
                 raise
             say(f"geofit: {cannot_write(error, error.filename or 'a file')}")
@@ -259,7 +259,7 @@ def print_issues(issues: Sequence[ImportIssue], where: str = "") -> None:
 
 
 def _sentence(issue: ImportIssue) -> str:
-    told = InputError(
+    console_error = InputError(
         issue.reason,
         issue.remedy,
         file=issue.file,
@@ -267,7 +267,7 @@ def _sentence(issue: ImportIssue) -> str:
         column=issue.column or None,
         value=issue.value or None,
     )
-    return f"{issue.severity}: {told}"
+    return f"{issue.severity}: {console_error}"
 
 
 def print_counts(counts: Sequence[TableCount]) -> None:

@@ -88,10 +88,10 @@ def fit(
     ] = None,
     max_iterations: Annotated[int | None, typer.Option(help=_help("max_iterations", "20"))] = None,
     max_control_points: Annotated[int | None, typer.Option(help=_help("max_control_points", "automatic"))] = None,
-    conflict_distance: Annotated[float | None, typer.Option(help=_help("conflict_distance", "0.01"))] = None,
-    apart: Annotated[
+    coincidence_distance: Annotated[float | None, typer.Option(help=_help("coincidence_distance", "0.01"))] = None,
+    separate: Annotated[
         bool,
-        typer.Option("--repair", help="Push horizons of the site's order apart where they cross; exact points stay."),
+        typer.Option("--separate", help="Separate horizons of the site's order where they cross; exact points stay."),
     ] = False,
     bands: Annotated[
         bool,
@@ -121,18 +121,18 @@ def fit(
         "strict": strict,
         "max_iterations": max_iterations,
         "max_control_points": max_control_points,
-        "conflict_distance": conflict_distance,
+        "coincidence_distance": coincidence_distance,
     }
     changes: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "sep": sep, "decimal": decimal}
     columns["crs"] = crs
-    FitSettings(**changes)  # a bad value is told before files are read
+    FitSettings(**changes)  # a bad value is reported before files are read
     from geofit.io.clouds import is_cloud
 
     if source.suffix.casefold() != ".toml" and (stream or is_cloud(source)):
         from geofit.cli.cloud import fit_cloud_file
 
-        only = [word for word, given in (("--repair", apart), ("--bands", bands), ("--crs", crs)) if given]
+        only = [word for word, given in (("--separate", separate), ("--bands", bands), ("--crs", crs)) if given]
         return fit_cloud_file(
             source, out, columns, horizon, boundary, changes, only, scheduler or "local", workers, as_json
         )
@@ -141,7 +141,16 @@ def fit(
         where = scheduler or ("local" if workers else None)
         names = tuple(horizon or ())
         return run_site(
-            site, out, names, changes, as_json, progress, apart=apart, bands=bands, scheduler=where, workers=workers
+            site,
+            out,
+            names,
+            changes,
+            as_json,
+            progress,
+            separate=separate,
+            bands=bands,
+            scheduler=where,
+            workers=workers,
         )
 
 

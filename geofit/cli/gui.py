@@ -18,7 +18,7 @@ __all__ = ["gui"]
 def gui(
     file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="site.toml or project.geofit to open.")] = None,
 ) -> int:
-    """Open the desktop application. Exit code 2: it cannot start, and what is missing is said."""
+    """Open the desktop application. Exit code 2: it cannot start, and what is missing is reported."""
     from importlib.metadata import entry_points
 
     # The windows are found by their entry point: no module of a lower floor imports them.

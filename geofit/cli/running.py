@@ -25,7 +25,7 @@ def run_site(
     language: Language | None = None,
     *,
     pdf: bool = False,
-    apart: bool = False,
+    separate: bool = False,
     bands: bool = False,
     scheduler: str | None = None,
     workers: int | None = None,
@@ -33,31 +33,31 @@ def run_site(
 ) -> int:
     """Fit, write and report the horizons of a site; print what was found; return the exit code."""
     from geofit.data.languages import EN
-    from geofit.project.run import deliver
+    from geofit.project.run import run_horizons
     from geofit.project.side_by_side import available
     from geofit.report.schema import failed_document, report_document
 
     print_issues(site.issues, str(out / "import_issues.csv"))
     print_counts(site.counts)
-    delivery = deliver(
-        site, out, horizons, changes, progress, language=language or EN, pdf=pdf, apart=apart, bands=bands,
+    result = run_horizons(
+        site, out, horizons, changes, progress, language=language or EN, pdf=pdf, separate=separate, bands=bands,
         bodies=bodies, scheduler=scheduler, workers=workers or available(),
     )  # fmt: skip
     if as_json:
-        found = report_document(delivery.report) if delivery.report else failed_document(delivery.failures)
+        found = report_document(result.report) if result.report else failed_document(result.failures)
         print_json({**found, "out": str(out)})
-    elif delivery.results:
-        print_results(delivery.results)
-    for order in delivery.orders:
+    elif result.results:
+        print_results(result.results)
+    for order in result.orders:
         if order.check().passed is False:
             say(f"Order: {order.check().text}")
-    for sentence in (*(one.text for one in delivery.contradictions), *(cut.text for cut in delivery.cuts)):
+    for sentence in (*(one.text for one in result.contradictions), *(cut.text for cut in result.cuts)):
         say(sentence)
-    for warning in delivery.warnings:
+    for warning in result.warnings:
         say(warning)
-    for name, text in delivery.failures.items():
+    for name, text in result.failures.items():
         say(f"geofit: {name}: {text}")
-    if delivery.results:
+    if result.results:
         pages = f"{out / 'report.html'}{', .pdf' if pdf else ''}"
         say(f"Report: {pages} and .json; surfaces and tables beside it")
-    return delivery.exit_code
+    return result.exit_code

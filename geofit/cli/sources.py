@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geofit.data.errors import InputError
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 
 if TYPE_CHECKING:
     from geofit.data.site import Site
@@ -64,7 +64,7 @@ def pick(kind: str, found: Mapping[str, Any], wanted: str | None, file: Path) ->
     if wanted is not None and wanted in found:
         return wanted, found[wanted]
     if wanted:
-        reason = message("cli.not-in-file", "There is no {kind} '{name}'", kind=kind, name=Verbatim(wanted))
+        reason = message("cli.not-in-file", "There is no {kind} '{name}'", kind=kind, name=Untranslated(wanted))
     elif kind == "surface":
         reason = message("cli.surfaces-in-file", "The file has {count} surfaces; one is needed", count=len(found))
     else:

@@ -69,7 +69,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Conflict:
-    """Two points at one place with different elevations: indices into the points, and how it was settled."""
+    """Two points at one location with different elevations: indices into the points, and how it was resolved."""
 
     kept: int
     dropped: int
@@ -82,7 +82,7 @@ class Partition:
     """How the points were split into core and periphery, and why (paper, sec. 3.2; fig. 3a).
 
     ``corners`` are the core's four corners in map coordinates (None without a core), ``core`` and
-    ``periphery`` count points, ``reason`` says what was chosen. ``lost``: there
+    ``periphery`` count points, ``reason`` states what was chosen. ``lost``: there
     is a dense core, and its points are approximated all the same.
     """
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import PointsError
-from geofit.data.messages import Message, Verbatim, message, plural_message
+from geofit.data.messages import Message, Untranslated, message, plural_message
 
 __all__ = ["LARGEST", "column", "finite_places", "measurable_places", "places", "refuse_far", "wrong_shape"]
 
@@ -25,7 +25,7 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     Raises
     ------
     PointsError
-        If the values are no numbers or no (n, 3) array.
+        If the values are not numbers or no (n, 3) array.
     """
     if isinstance(given, np.ndarray) and _fixed(given, np.float64) and given.ndim == 2 and given.shape[1] == 3:
         return given
@@ -35,8 +35,8 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
         raise PointsError(
             message(
                 "points.places-not-numbers",
-                "{name} must hold numbers: {error}. Give an (n, 3) array of metres.",
-                name=Verbatim(name),
+                "{name} must contain numbers: {error}. Give an (n, 3) array of metres.",
+                name=Untranslated(name),
                 error=error,
             )
         ) from None
@@ -47,7 +47,7 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
             message(
                 "points.places-wrong-shape",
                 "{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.",
-                name=Verbatim(name),
+                name=Untranslated(name),
                 shape=xyz.shape,
             )
         )

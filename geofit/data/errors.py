@@ -4,7 +4,7 @@
 
     GeofitError                  catch this one to catch them all
     ├── InputError               a file or a table cannot be used: file, row, column, value, remedy
-    ├── PointsError              arrays that are no set of points (shape, NaN, infinities)
+    ├── PointsError              arrays that are not set of points (shape, NaN, infinities)
     ├── SettingsError            a setting out of its range
     ├── FitError                 these points cannot be fitted in this way
     │   └── ExactnessError       no control net within the cap passes through all of the core's points
@@ -12,7 +12,8 @@
     ├── MissingDependencyError   an optional package is not installed; the text holds the install line
     └── Cancelled                the caller's progress function asked to stop
 
-Each carries a :class:`~geofit.data.messages.Message` (``error.message``, ``error.code``) that says what was given, what
+Each carries a :class:`~geofit.data.messages.Message` (``error.message``, ``error.code``) that states what was given,
+what
 is needed, and what to do. ``str(error)`` is English; :func:`geofit.data.languages.translate` gives other languages.
 """
 
@@ -22,7 +23,7 @@ from functools import partial
 from typing import Any
 
 from geofit.data.legible import legible
-from geofit.data.messages import EMPTY, Message, Verbatim, folded, message
+from geofit.data.messages import EMPTY, Message, Untranslated, folded, message
 
 __all__ = [
     "Cancelled",
@@ -105,13 +106,13 @@ class InputError(GeofitError):
 
     def at_place(self, sentence: Message) -> Message:
         """Return a sentence with file, row, column and value in front, as far as they are known."""
-        place: list[Message | str] = [Verbatim(self.file)] if self.file else []
+        place: list[Message | str] = [Untranslated(self.file)] if self.file else []
         if self.row is not None:
             place.append(message("place.row", "row {row}", row=self.row))
         if self.column is not None:
-            place.append(message("place.column", "column '{column}'", column=Verbatim(self.column)))
+            place.append(message("place.column", "column '{column}'", column=Untranslated(self.column)))
         if self.value is not None:
-            place.append(message("place.value", "value '{value}'", value=Verbatim(folded(self.value))))
+            place.append(message("place.value", "value '{value}'", value=Untranslated(folded(self.value))))
         if not place:
             return sentence
         return message("error.at-place", "{place}: {sentence}", place=tuple(place), sentence=sentence)
@@ -134,7 +135,7 @@ def _sentence(reason: Message, remedy: Message) -> Message:
 
 
 class PointsError(GeofitError, ValueError):
-    """Arrays that are no set of points."""
+    """Arrays that are not set of points."""
 
 
 class SettingsError(GeofitError, ValueError):
@@ -157,5 +158,5 @@ class MissingDependencyError(GeofitError, ImportError):
     """An optional package is not installed."""
 
 
-class Cancelled(GeofitError):  # noqa: N818 - what happened is no error of anybody's
+class Cancelled(GeofitError):  # noqa: N818 - what happened is not an error of anybody's
     """The caller's progress function returned False."""

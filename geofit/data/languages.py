@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import ENGLISH, Message, Verbatim, message, render
+from geofit.data.messages import ENGLISH, Message, Untranslated, message, render
 
 __all__ = ["EN", "ZH", "Language", "catalogue", "language", "sentence", "together", "translate"]
 
@@ -67,7 +67,7 @@ def language(code: str) -> Language:
         if known.code == code:
             return known
     raise SettingsError(
-        message("report.language-choose-en-zh", "The language is '{code}'; choose en or zh.", code=Verbatim(code))
+        message("report.language-choose-en-zh", "The language is '{code}'; choose en or zh.", code=Untranslated(code))
     )
 
 
@@ -77,7 +77,7 @@ def translate(value: Message | str | BaseException, language: Language) -> str:
     Parameters
     ----------
     value : Message, str or exception
-        A string that is no term of :data:`geofit.data.terms.TERMS` is returned as it is.
+        A string that is not a term of :data:`geofit.data.terms.TERMS` is returned as it is.
     language : Language
         What the language lacks stays English.
     """

@@ -22,7 +22,7 @@ __all__ = [
     "ENGLISH",
     "Message",
     "Severity",
-    "Verbatim",
+    "Untranslated",
     "folded",
     "gravest_first",
     "message",
@@ -39,7 +39,7 @@ _GRAVEST_FIRST = ("error", "warning", "info")
 _ITEMS = "{first}, {second}"
 
 
-class Verbatim(str):
+class Untranslated(str):
     """A name that is the same in every language, such as a column or a borehole, even if it is also a term."""
 
     __slots__ = ()
@@ -57,7 +57,7 @@ class Message:
         English text with ``str.format`` fields; it is the key of the translations.
     params : mapping of str to object
         Values of the fields. Messages, and tuples of messages and strings, are translated with the sentence; a string
-        is translated if it is one of :data:`geofit.data.terms.TERMS`, unless it is :class:`Verbatim`.
+        is translated if it is one of :data:`geofit.data.terms.TERMS`, unless it is :class:`Untranslated`.
     plural : str or None
         English template for values of the parameter ``count`` other than 1.
     severity : {"info", "warning", "error"}
@@ -150,7 +150,7 @@ def render(value: Any, catalogue: NullTranslations) -> Any:
     if isinstance(value, tuple) and value and all(isinstance(item, (Message, str)) for item in value):
         return _joined([str(render(item, catalogue)) for item in value], catalogue)
     if isinstance(value, str):
-        return catalogue.gettext(value) if value in TERMS and not isinstance(value, Verbatim) else str(value)
+        return catalogue.gettext(value) if value in TERMS and not isinstance(value, Untranslated) else str(value)
     return value
 
 

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.columns import column, finite_places, wrong_shape
 from geofit.data.errors import PointsError
 from geofit.data.labels import Labels
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 
 __all__ = ["KINDS", "PointSet", "look_like_degrees"]
 
@@ -190,7 +190,7 @@ class PointSet:
         word = {label: self.labels[label].word(index) for label in _WORDS}
         name, kind = word["hole"] or word["section"], word["kind"]
         what = (
-            message("point.kind-name", "{kind} {name}", kind=kind, name=Verbatim(name))
+            message("point.kind-name", "{kind} {name}", kind=kind, name=Untranslated(name))
             if name
             else message("point.kind", "{kind}", kind=kind)
         )

@@ -1,4 +1,4 @@
-"""How far the rock may lie from the surface where nobody drilled: plain data of cross-validation and uncertainty."""
+"""The prediction error of a surface away from its data: plain data of cross-validation and uncertainty."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import Message
 
-__all__ = ["LeftOut", "OffData", "Outlier", "Suggestion", "Uncertainty"]
+__all__ = ["LeftOut", "Outlier", "PredictionResult", "Suggestion", "Uncertainty"]
 
 Floats = NDArray[np.float64]
 Scheme = Literal["hole", "section", "block"]
@@ -24,8 +24,8 @@ class LeftOut:
     ``group`` (n,) names the group of each point, empty for points that are never left out; ``error`` (n,) is the
     point minus the surface fitted without its group, metres, nan where never left out; ``sd`` (n,) its standard
     deviation as predicted, after calibration, the point's own accuracy included. ``inside`` is the share of
-    left-out points within the 90 % band, ``inside_raw`` the share before calibration. ``peers`` holds the root mean
-    square error of other methods on the same folds, by name ("thin plate", "kriging").
+    left-out points within the 90 % band, ``inside_raw`` the share before calibration. ``references`` holds the root
+    mean square error of other methods on the same folds, by name ("thin plate", "kriging").
     """
 
     scheme: Scheme
@@ -39,10 +39,10 @@ class LeftOut:
     max_abs: float
     inside: float
     inside_raw: float
-    peers: Mapping[str, float]
+    references: Mapping[str, float]
 
     def __repr__(self) -> str:
-        others = "".join(f", {name} {rms:.3g} m" for name, rms in self.peers.items())
+        others = "".join(f", {name} {rms:.3g} m" for name, rms in self.references.items())
         return (
             f"<LeftOut by {self.scheme}: {self.groups} groups, rms {self.rms:.3g} m{others}, "
             f"{self.inside:.0%} in the 90 % band>"
@@ -93,7 +93,7 @@ class Suggestion:
 
 @dataclass(frozen=True)
 class Outlier:
-    """A point that its neighbours do not bear out: left-out error, its standard deviation (m), and their ratio."""
+    """A point that its neighbours contradict: left-out error, its standard deviation (m), and their ratio."""
 
     index: int
     error: float
@@ -102,8 +102,8 @@ class Outlier:
 
 
 @dataclass(frozen=True, eq=False)
-class OffData:
-    """Everything said about a surface away from its data; ``notes`` say what could not be done, and why."""
+class PredictionResult:
+    """Everything said about a surface away from its data; ``notes`` state what could not be done, and why."""
 
     left_out: tuple[LeftOut, ...]
     uncertainty: Uncertainty | None
@@ -116,4 +116,4 @@ class OffData:
         if self.uncertainty is not None:
             parts.append(f"mean standard deviation {self.uncertainty.mean:.3g} m")
         parts += [f"{len(self.suggestions)} suggested boreholes", f"{len(self.outliers)} outliers"]
-        return f"<OffData: {', '.join(parts)}>"
+        return f"<PredictionResult: {', '.join(parts)}>"

@@ -19,7 +19,7 @@ class Progress(Protocol):
     """
 
     def __call__(self, stage: str | Message, fraction: float, /) -> bool | None:
-        """Hear that the task stands at ``fraction`` of its whole, in ``stage``."""
+        """Hear that the task is at ``fraction`` of its whole, in ``stage``."""
         ...
 
 

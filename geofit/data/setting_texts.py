@@ -169,7 +169,7 @@ SETTINGS: Mapping[str, SettingText] = {
         ),
         choices={None: _AUTO},
     ),
-    "conflict_distance": SettingText(
+    "coincidence_distance": SettingText(
         message("settings.coincidence-distance", "Coincidence distance"),
         message(
             "settings.coincidence-distance-about",

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.setting_texts import SETTINGS
 
@@ -35,7 +35,7 @@ class FitSettings:
     seam : {"tangent", "position"}
         Whether patches meet with one tangent plane, or at the edge only (a break is allowed).
     core : "auto", "all", "none" or (k, 2) polygon
-        Region that is interpolated exactly: found by density, unless its points do not bear each other out within
+        Region that is interpolated exactly: found by density, unless its points do not support each other within
         epsilon; every point; no point; or the rectangle around a polygon in map coordinates. A core is bounded by
         parameter lines, so the rectangle runs along the surface's frame (along the sections where most run one way,
         else east and north), whatever way the polygon's sides run; a side goes on to the edge of the study area where
@@ -47,7 +47,7 @@ class FitSettings:
         Weight of the bending energy in the periphery: restricted maximum likelihood, or the ratio of noise
         variance to field variance in m^2 per unit of energy.
     robust : bool
-        Whether peripheral points that their neighbours do not bear out (left-out error beyond 3.5 times its
+        Whether peripheral points that their neighbours contradict (left-out error beyond 3.5 times its
         standard deviation) take no part in the fit. They are named in the notes, and count in sigma.
     strict : bool
         Whether every peripheral point is brought within the interior tolerance where knots allow it, also those that
@@ -57,9 +57,9 @@ class FitSettings:
     max_control_points : int or None
         Cap of the number of control points; None: 40 a data point, 15 with a core, between 1,600 and 20,000, and as
         many as it takes to interpolate the core.
-    conflict_distance : float
-        Points nearer to each other in plan than this many metres count as one place: if their elevations
-        differ they are settled by accuracy, and listed.
+    coincidence_distance : float
+        Points nearer to each other in plan than this many metres are coincident: if their elevations
+        differ they are resolved by accuracy, and listed.
 
     Raises
     ------
@@ -84,14 +84,14 @@ class FitSettings:
     strict: bool = False
     max_iterations: int = 20
     max_control_points: int | None = None
-    conflict_distance: float = 0.01
+    coincidence_distance: float = 0.01
 
     def __repr__(self) -> str:
         changed = [f for f in fields(self) if getattr(self, f.name) != f.default]
         return f"FitSettings({', '.join(f'{f.name}={getattr(self, f.name)!r}' for f in changed)})"
 
     def __post_init__(self) -> None:
-        for name in ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance"):
+        for name in ("epsilon", "interior_tolerance", "boundary_tolerance", "coincidence_distance"):
             _positive(name, getattr(self, name), message("settings.unit-metres", "metres"))
         _one_of("across", self.across, ("cubic", "linear"))
         _one_of("seam", self.seam, ("tangent", "position"))
@@ -137,7 +137,7 @@ class FitSettings:
 
 def named(name: str) -> Message:
     """Return what a setting is called, with its keyword."""
-    return message("settings.label-keyword", "{label} ({name})", label=SETTINGS[name].label, name=Verbatim(name))
+    return message("settings.label-keyword", "{label} ({name})", label=SETTINGS[name].label, name=Untranslated(name))
 
 
 def _given(name: str, value: Any) -> dict[str, Any]:

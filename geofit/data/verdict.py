@@ -13,13 +13,13 @@ import numpy as np
 
 from geofit.data.accuracy import Accuracy, Check, ReadBack
 from geofit.data.messages import Message, message
-from geofit.data.prediction import LeftOut, OffData
+from geofit.data.prediction import LeftOut, PredictionResult
 
 __all__ = ["FAR", "LEAST_INSIDE", "Lamp", "Level", "Verdict", "verdict_of"]
 
 Level = Literal["none", "pass", "warning", "fail"]
 
-#: Share of left-out points that the 90 % band must contain, by the worst scheme; a wider band is no fault.
+#: Share of left-out points that the 90 % band must contain, by the worst scheme; a wider band is not a fault.
 LEAST_INSIDE = 0.85
 #: A left-out error from this many epsilons on turns the lamp red; above one epsilon it is amber.
 FAR = 10.0
@@ -79,7 +79,7 @@ class Verdict:
 
 def verdict_of(
     accuracy: Accuracy,
-    offdata: OffData | None = None,
+    prediction: PredictionResult | None = None,
     read_back: ReadBack | None = None,
     orders: Iterable[Check] = (),
 ) -> Verdict:
@@ -89,7 +89,7 @@ def verdict_of(
     ----------
     accuracy : Accuracy
         Sigma, epsilon (m) and the checks of the surface.
-    offdata : OffData or None
+    prediction : PredictionResult or None
         Left-out errors; None: not examined.
     read_back : ReadBack or None
         The checks of the file, where one was written.
@@ -97,7 +97,7 @@ def verdict_of(
         How the horizon lies to its neighbours.
     """
     checks = (*accuracy.checks, *(read_back.checks if read_back else ()), *orders)
-    return Verdict(_at_the_data(accuracy), _checks(checks), _away(offdata, accuracy.epsilon))
+    return Verdict(_at_the_data(accuracy), _checks(checks), _away(prediction, accuracy.epsilon))
 
 
 def _at_the_data(a: Accuracy) -> Lamp:
@@ -128,12 +128,12 @@ def _checks(checks: Sequence[Check]) -> Lamp:
     return Lamp(title, "pass", message("verdict.passed", "{passed} of {total} checks pass", **figures))
 
 
-def _away(offdata: OffData | None, epsilon: float) -> Lamp:
+def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
     title = message("verdict.away", "Away from the data")
-    known = () if offdata is None else tuple(one for one in offdata.left_out if np.isfinite(one.rms))
+    known = () if prediction is None else tuple(one for one in prediction.left_out if np.isfinite(one.rms))
     if not known:
         text = message("verdict.not-examined", "not examined away from the data")
-        if offdata is not None:
+        if prediction is not None:
             text = message("verdict.cannot-examine", "the error away from the data cannot be estimated")
         return Lamp(title, "none", text)
     farthest = max(known, key=lambda one: one.rms)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.fitting.net import Net
-from geofit.fitting.parametrize import Chart
-from geofit.fitting.skin import damped_change
+from geofit.fitting.parametrize import Parametrization
+from geofit.fitting.skin import regularized_correction
 
 __all__ = ["adjust"]
 
@@ -19,24 +19,24 @@ Floats = NDArray[np.float64]
 SHARE = 0.7
 
 
-def adjust(net: Net, chart: Chart, movable: NDArray[np.bool_], residuals: Floats) -> Net | None:
+def adjust(net: Net, parametrization: Parametrization, movable: NDArray[np.bool_], residuals: Floats) -> Net | None:
     """Pull the surface to the points that contribute most to sigma.
 
     Parameters
     ----------
     net : Net
         The surface.
-    chart : Chart
+    parametrization : Parametrization
         Places and values of all points.
     movable : (n,) array of bool
-        Points that the surface may be pulled to: honoured, and not in the core.
+        Points that the surface may be moved to: active, and not in the core.
     residuals : (n,) array
         Distances of all points, metres.
 
     Returns
     -------
     Net or None
-        The adjusted surface; the core's control points stay. None if no point can be pulled.
+        The adjusted surface; the core's control points stay. None if no point can be met.
     """
     candidates = np.flatnonzero(movable)
     squares = residuals[candidates] ** 2
@@ -45,7 +45,7 @@ def adjust(net: Net, chart: Chart, movable: NDArray[np.bool_], residuals: Floats
     worst = candidates[order[:enough]]
     if not squares.any():
         return None
-    matrix = net.space.matrix(chart.plane[worst] / net.unit)
-    misfit = chart.values[worst] - matrix @ net.coefficients
-    change = damped_change(matrix, misfit, ~net.frozen)
+    matrix = net.space.matrix(parametrization.plane[worst] / net.unit)
+    misfit = parametrization.values[worst] - matrix @ net.coefficients
+    change = regularized_correction(matrix, misfit, ~net.frozen)
     return replace(net, coefficients=net.coefficients + change)

@@ -1,4 +1,4 @@
-"""The periphery: approximated within the tolerance, its boundary borrowed from the core (paper, sec. 3.2, step 2).
+"""The periphery: approximated within the tolerance, its boundary fixed_by_core from the core (paper, sec. 3.2, step 2).
 
 The smoothest surface for the data's own noise comes first. Points that it leaves outside the tolerance are then
 met by the smallest change of the control points around them, as the core's points are: what lies between them
@@ -16,14 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
-from geofit.fitting.skin import damped_change
+from geofit.fitting.skin import regularized_correction
 from geofit.splines.tensor import Factor, TensorSpace, band_times
 
-__all__ = ["Approximation", "approximate", "borrowed", "solved_beside"]
+__all__ = ["Approximation", "approximate", "fixed_by_core", "solved_beside"]
 
 Floats = NDArray[np.float64]
 
-#: Where a pulled point comes to lie, as a share of the tolerance.
+#: Where a corrected point comes to lie, as a share of the tolerance.
 RIM = 0.9
 #: How many times the largest misfit around a point the control points there may move to meet it.
 SWING = 3.0
@@ -42,7 +42,7 @@ class Approximation:
     released: NDArray[np.bool_]
 
 
-def borrowed(space: TensorSpace, core: tuple[float, float, float, float]) -> NDArray[np.bool_]:
+def fixed_by_core(space: TensorSpace, core: tuple[float, float, float, float]) -> NDArray[np.bool_]:
     """Return (nu, nv) bool: the control points that act inside the core's rectangle."""
     p = space.degree
     masks = []
@@ -84,7 +84,7 @@ def approximate(
     tolerance : float
         How far from the surface a point may lie, metres.
     limit : float
-        How far beyond it must lie to be pulled at all: the tolerance, or more where the points' noise explains it.
+        How far beyond it must lie to be corrected at all: the tolerance, or more where the points' noise explains it.
     rounds : int
         Cap of the number of rounds; with none, points outside the tolerance stay there.
     strict : bool
@@ -99,20 +99,20 @@ def approximate(
     while done < rounds and (_size(misfit)[~released] > limit).any():
         done += 1
         held |= (_size(misfit) > limit) & ~released
-        # Points that are pulled once stay at the rim of their tolerance while their neighbours are pulled.
+        # Points that are corrected once stay at the rim of their tolerance while their neighbours are corrected.
         length = _size(misfit[held])
         share = (1 - RIM * tolerance / np.maximum(length, RIM * tolerance)).reshape(-1, *[1] * (misfit.ndim - 1))
-        pulled = best + damped_change(csr_array(matrix[held]), share * misfit[held], ~frozen)
-        swinging = np.zeros(len(plane), bool) if strict else _swinging(matrix, pulled - start, first, held)
+        corrected = best + regularized_correction(csr_array(matrix[held]), share * misfit[held], ~frozen)
+        swinging = np.zeros(len(plane), bool) if strict else _swinging(matrix, corrected - start, first, held)
         if swinging.any():
             released |= swinging
             best, misfit, held = start, height - matrix @ start, np.zeros(len(plane), bool)
             continue
-        after = height - matrix @ pulled
+        after = height - matrix @ corrected
         before, left = (np.maximum(_size(one)[~released] - limit, 0).sum() for one in (misfit, after))
         if left >= 0.98 * before:
             break
-        best, misfit = pulled, after
+        best, misfit = corrected, after
     return Approximation(best, _size(misfit), done, released)
 
 

@@ -61,7 +61,7 @@ FEWEST = 10
 
 @dataclass(frozen=True, eq=False)
 class LeftOutPoints:
-    """Left-out errors to calibrate by; a point may stand here once for each scheme that left it out.
+    """Left-out errors to calibrate by; a point may be given here once for each scheme that left it out.
 
     ``point`` (m,) numbers of the points, ``error`` (m,) metres, ``variance`` (m,) of the surface as predicted, and
     ``noise`` (m,) variance of the point's own height, m^2.

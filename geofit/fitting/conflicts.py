@@ -1,4 +1,4 @@
-"""Points that cannot both lie on one surface: found before the fit, settled by accuracy, listed."""
+"""Points that cannot both lie on one surface: found before the fit, resolved by accuracy, listed."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from geofit.data.accuracy import Conflict
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 
-__all__ = ["near_pairs", "settle"]
+__all__ = ["near_pairs", "resolve_conflicts"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -24,7 +24,7 @@ NARROWEST = 16
 _TRUST = {"borehole": 0, "adit": 1, "outcrop": 2, "point": 3, "map": 4, "section": 5, "geophysics": 6}
 
 
-def settle(
+def resolve_conflicts(
     points: PointSet, place: Floats, height: Floats, distance: float
 ) -> tuple[NDArray[np.bool_], tuple[Conflict, ...]]:
     """Choose one point at each place.
@@ -38,14 +38,14 @@ def settle(
     height : (n,) array
         What the surface must take there.
     distance : float
-        Points nearer than this many metres stand at one place.
+        Points nearer than this many metres are coincident.
 
     Returns
     -------
     kept : (n,) array of bool
         The points that the fit honours.
     conflicts : tuple of Conflict
-        One for each point that gives way, exact duplicates included.
+        One for each point that is dropped, exact duplicates included.
     """
     kept = np.ones(len(points), dtype=bool)
     pairs = near_pairs(place, distance)
@@ -77,7 +77,7 @@ def near_pairs(place: Floats, distance: float) -> Ints:
     extent = np.ptp(columns, axis=1)
     longest, across = np.argsort(-extent, kind="stable")[:2]
     width = max(float(extent[across]) / np.sqrt(len(place)), NARROWEST * distance)
-    # Half a strip more: the outermost places are no borders.
+    # Half a strip more: the outermost places are not borders.
     strips = (columns[across] - columns[across].min()) / width + 0.5
     number = np.floor(strips)
     key = columns[longest] - columns[longest].min() + number * (float(extent[longest]) + 4 * distance)
@@ -125,7 +125,7 @@ def _describe(points: PointSet, winner: int, loser: int, difference: float) -> C
             reason = message("conflict.kept-first", "the first")
         text = message(
             "conflict.different-elevation",
-            "{dropped} differs by {difference:+.3f} m from {kept} at one place; kept: {reason}",
+            "{dropped} differs by {difference:+.3f} m from {kept} at the same location; used: {reason}",
             dropped=names[1],
             difference=difference,
             kept=names[0],

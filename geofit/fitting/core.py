@@ -15,14 +15,14 @@ from geofit.data.errors import ExactnessError
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
-from geofit.fitting.approximate import borrowed
+from geofit.fitting.approximate import fixed_by_core
 from geofit.fitting.assemble import multiply_knots
 from geofit.fitting.field import Field, Smoothed
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
 from geofit.fitting.net import Data, Net, Periphery, cap_for, choose_field, degree_for, gather, in_patches, smoothed
-from geofit.fitting.parametrize import Chart
+from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.partition import Split
-from geofit.fitting.skin import Lines, across_curves, least_change, ruled, section_lines, separate
+from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -41,7 +41,7 @@ ALONG, ACROSS = 1.8, 1.0
 HUG, HUGGED = 1 / 8, 1
 #: Lines nearer to the core's edge or to each other than this share of their mean distance get one knot.
 NARROW = 0.2
-#: Noise above this share of the values' spread: points that do not bear each other out. It does not follow the
+#: Noise above this share of the values' spread: points that do not support each other. It does not follow the
 #: tolerances, which may be raised beyond all relief.
 RESOLVED = 0.03
 #: The same for noise within the interior tolerance.
@@ -50,7 +50,7 @@ LITTLE = 0.05
 
 def fit_with_core(
     points: PointSet,
-    chart: Chart,
+    parametrization: Parametrization,
     split: Split,
     kept: NDArray[np.bool_],
     settings: FitSettings,
@@ -64,27 +64,27 @@ def fit_with_core(
         If no control net within the cap passes through them without swinging between them.
     """
     assert split.core is not None
-    data = gather(points, chart, kept, split)
+    data = gather(points, parametrization, kept, split)
     inside = split.inside[kept]
     scaled = [x / data.unit for x in split.core]
     core = (scaled[0], scaled[1], scaled[2], scaled[3])
     degree, most = degree_for(len(data.plane)), cap_for(settings, len(data.plane), A_POINT)
     stage("field", 0.25)
     field, coarse = choose_field(data, settings, most)
-    chosen = settings.core == "auto" and settings.smoothing == "auto" and not chart.parametric
+    chosen = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
     little = min(settings.interior_tolerance, LITTLE * field.spread)
     if chosen and field.noise > max(RESOLVED * field.spread, little):
         raise ExactnessError(
             message(
                 "fitting.points-bear-each-other",
-                "its points bear each other out to about {noise:.3g} m only, where their relief is about "
-                "{spread:.3g} m",
+                "its points support each other to about {noise:.3g} m only, where their height varies "
+                "by about {spread:.3g} m",
                 noise=field.noise,
                 spread=field.spread,
             )
         )
     stage("core", 0.4)
-    lines = section_lines(data.plane[inside], chart.section[kept][inside], 0.5 * (core[1] - core[0]))
+    lines = section_lines(data.plane[inside], parametrization.section[kept][inside], 0.5 * (core[1] - core[0]))
     linear = settings.across == "linear" and degree == 3
     notes: tuple[Message, ...] = ()
     if linear and not lines.straight:
@@ -98,7 +98,7 @@ def fit_with_core(
     while True:
         try:
             base, space, coefficients, plane, rule = _through_points(
-                data, core, inside, field, coarse, lines, linear, chart.parametric, most, settings
+                data, core, inside, field, coarse, lines, linear, parametrization.parametric, most, settings
             )
             break
         except ExactnessError:
@@ -124,7 +124,7 @@ def fit_with_core(
         notes = (*notes, words)
     stage("periphery", 0.6)
     outer = ~inside
-    frozen = borrowed(space, core).ravel()
+    frozen = fixed_by_core(space, core).ravel()
     if not outer.any():
         total = coefficients + data.over_trend(space)
         return Net(space, base, total, frozen, None, rule, data.unit, field, 0, settings.interior_tolerance, notes)
@@ -166,7 +166,7 @@ def _through_points(
     start = smoothed(data, base, field)
     if linear:
         within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
-        rule = _apart(within, (core[0], core[1]), NARROW * (core[1] - core[0]) / len(lines.u))
+        rule = _thinned(within, (core[0], core[1]), NARROW * (core[1] - core[0]) / len(lines.u))
         try:
             space, coefficients = _skinned(base, start.coefficients, core, data, inside, settings, rule)
             return base, space, coefficients, start.plane, rule
@@ -198,7 +198,7 @@ def _breaks(
     pairs = neighbour_pairs(plane)
     within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
     narrow = NARROW * (core[1] - core[0]) / max(len(lines.u), 1)
-    required_u = _apart(within, (area[0], core[0], core[1], area[1]), narrow)
+    required_u = _thinned(within, (area[0], core[0], core[1], area[1]), narrow)
     required_v = np.array([area[2], core[2], core[3], area[3]])
     sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
     sizes_v = pair_sizes(plane, pairs, 1, ALONG if lines.straight else ACROSS)
@@ -217,7 +217,7 @@ def _breaks(
     def counted(shape: tuple[int, int]) -> bool:
         return in_patches(shape, core, space) <= most
 
-    return separate(breaks_u, breaks_v, plane, misfit, degree, counted, rounds)
+    return refine_knots(breaks_u, breaks_v, plane, misfit, degree, counted, rounds)
 
 
 def _beside_lines(lines: Lines) -> Floats:
@@ -227,7 +227,7 @@ def _beside_lines(lines: Lines) -> Floats:
     return np.column_stack([lines.u - lines.stray - HUGGED * size, lines.u + lines.stray + HUGGED * size, size])
 
 
-def _apart(values: Floats, fixed: tuple[float, ...], least: float) -> Floats:
+def _thinned(values: Floats, fixed: tuple[float, ...], least: float) -> Floats:
     """Return ascending values without those that all but repeat a fixed one or each other."""
     result = np.unique(fixed)
     for value in np.unique(values):
@@ -260,9 +260,9 @@ def _skinned(
     space, coefficients = multiply_knots(space, coefficients, at_u, at_v)
     matrix, value = space.matrix(data.plane[inside]), data.value[inside]
     if rule is None:
-        return space, coefficients + least_change(matrix, value - matrix @ coefficients)
+        return space, coefficients + minimum_norm_correction(matrix, value - matrix @ coefficients)
     # The unknowns are the section curves; the rows of control points between them lie on straight lines.
-    held = borrowed(space, core)
+    held = fixed_by_core(space, core)
     rows = np.flatnonzero(held.any(axis=1))
     nv = space.shape[1]
     net = coefficients.reshape(*space.shape, -1)
@@ -272,7 +272,7 @@ def _skinned(
     spread = ruled(space, rule, rows)
     columns = (rows[:, None] * nv + np.arange(nv)).ravel()
     acting = matrix[:, columns] @ spread
-    start = start + least_change(acting, value - acting @ start)
+    start = start + minimum_norm_correction(acting, value - acting @ start)
     result = coefficients.copy()
     mine = held[rows].ravel()
     result[columns[mine]] = (spread @ start)[mine]
@@ -288,10 +288,10 @@ def _lofted(space: TensorSpace, coefficients: Floats, data: Data, inside: NDArra
     through = bspline.collocation(space.knots_u, space.degree, lines)
     net = coefficients.reshape(*space.shape, -1)
     start = np.einsum("ki,ijc->kjc", through, net).reshape(len(lines) * space.shape[1], *coefficients.shape[1:])
-    spread = across_curves(space, lines)
+    spread = lofted(space, lines)
     value = data.value[inside]
     acting = space.matrix(data.plane[inside]) @ spread
-    return np.asarray(spread @ (start + least_change(acting, value - acting @ start)))
+    return np.asarray(spread @ (start + minimum_norm_correction(acting, value - acting @ start)))
 
 
 def _inner(edges: tuple[float, float], knots: Floats) -> list[float]:

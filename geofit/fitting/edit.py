@@ -1,4 +1,4 @@
-"""Changes by hand: one control point moved or weighed, the surface pulled to one point (paper, sec. 3.3).
+"""Manual edits: one control point moved or weighed, the surface moved to one point (paper, sec. 3.3).
 
 The patches are parts of one tensor-product surface, so a coefficient of the whole net is moved, never a row of one
 patch: neighbours move with it, and seams stay as closed and as smooth as they were. Nothing outside the support of
@@ -20,14 +20,14 @@ from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite, shown
 from geofit.fitting.assemble import Part, divide
 from geofit.fitting.model import Model
-from geofit.fitting.skin import least_change
+from geofit.fitting.skin import minimum_norm_correction
 from geofit.geometry.projection import project
 from geofit.splines.patch import Patch
 
 if TYPE_CHECKING:
     from geofit.fitting.horizon_fit import HorizonFit
 
-__all__ = ["acted_on", "adjust", "pull_to", "support", "weigh"]
+__all__ = ["acted_on", "adjust", "move_to", "support", "weigh"]
 
 Floats = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
     Raises
     ------
     FitError
-        If there is no such control point, or the surface is no fit of this session.
+        If there is no such control point, or the surface is not a fit of this session.
     ExactnessError
         If the control point acts on points that the surface must meet exactly.
 
@@ -80,7 +80,7 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
         model.with_net(replace(model.net, coefficients=coefficients)),
         message(
             "edit.hand-control-point-patch",
-            "by hand: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m",
+            "manual edit: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m",
             i=i,
             j=j,
             patch=patch,
@@ -89,7 +89,7 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
     )
 
 
-def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
+def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
     """Pull the surface to a point, by the smallest change of the control points that act there.
 
     Parameters
@@ -138,7 +138,7 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     exact = np.flatnonzero(surface.core)
     if isinstance(point, (int, np.integer)):
         exact = exact[exact != point]
-    fixed = csr_array(net.space.matrix(given.chart.plane[exact] / net.unit))
+    fixed = csr_array(net.space.matrix(given.parametrization.plane[exact] / net.unit))
     if len(exact):
         # Points that the acting control points hardly reach must stay all the same: their rows count alike.
         reached = np.sqrt(np.asarray((fixed * acting.astype(float)).power(2).sum(axis=1)).ravel())
@@ -146,13 +146,13 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     system = csr_array(vstack([csr_array(row), fixed])) if fixed.shape[0] else csr_array(row)
     wanted = np.concatenate([misfit, np.zeros((fixed.shape[0], *misfit.shape[1:]))])
     try:
-        change = least_change(system, wanted, acting)
+        change = minimum_norm_correction(system, wanted, acting)
     except ExactnessError:
         raise ExactnessError(
             message(
                 "edit.surface-cannot-pulled-points",
-                "The surface cannot be pulled to {name}: the points around it that are met exactly ({count}) leave "
-                "no freedom. Exclude the one that is wrong, or fit with core='none'.",
+                "The surface cannot be moved to {name}: the exactly interpolated points around it "
+                "({count}) leave no freedom. Exclude the one that is wrong, or fit with core='none'.",
                 name=name,
                 count=fixed.shape[0],
             )
@@ -162,7 +162,7 @@ def pull_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
         model.with_net(replace(net, coefficients=net.coefficients + change)),
         message(
             "edit.hand-pulled-distance",
-            "by hand: pulled by {share:.0%} of the distance to {name}",
+            "manual edit: moved by {share:.0%} of the distance to {name}",
             share=share,
             name=name,
         ),
@@ -192,7 +192,7 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
     ------
     FitError
         If there is no such control point, the weight is out of its range, the control point fixes the tangent plane of
-        a seam, or the surface is no fit of this session.
+        a seam, or the surface is not a fit of this session.
     ExactnessError
         If the control point acts on points that the surface must meet exactly.
 
@@ -216,8 +216,8 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
         if (k < TANGENT_ROWS and knots[0] != ends[0]) or (k >= count - TANGENT_ROWS and knots[-1] != ends[-1]):
             text = message(
                 "edit.control-point-patch-holds",
-                "Control point ({i}, {j}) of patch '{patch}' holds the tangent plane of a seam; its weight stays 1. "
-                "Choose one at least {rows} rows away from the seam.",
+                "Control point ({i}, {j}) of patch '{patch}' defines the tangent plane of a seam; its "
+                "weight stays 1. Choose one at least {rows} rows away from the seam.",
                 i=i,
                 j=j,
                 patch=patch,
@@ -234,7 +234,7 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
         replace(model, weights=weights),
         message(
             "edit.hand-control-point-patch-weight",
-            "by hand: control point ({i}, {j}) of patch '{patch}' has weight {weight:g}",
+            "manual edit: control point ({i}, {j}) of patch '{patch}' has weight {weight:g}",
             i=i,
             j=j,
             patch=patch,
@@ -316,7 +316,7 @@ def _straight() -> FitError:
 
 def _part(model: Model, patch: str) -> Part:
     given, net = model.problem, model.net
-    parts = divide(net.space, net.core, given.chart.frame, given.split.core is not None).parts
+    parts = divide(net.space, net.core, given.parametrization.frame, given.split.core is not None).parts
     for part in parts:
         if part.name == patch:
             return part
@@ -351,7 +351,7 @@ def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
             )
         )
     given, net = model.problem, model.net
-    division = divide(net.space, net.core, given.chart.frame, given.split.core is not None)
+    division = divide(net.space, net.core, given.parametrization.frame, given.split.core is not None)
     in_u, in_v = division.refine_u[part.rows.start + i], division.refine_v[part.columns.start + j]
     a, b = int(in_u.argmax()), int(in_v.argmax())
     return a * net.space.shape[1] + b, float(in_u[a] * in_v[b])
@@ -367,7 +367,7 @@ def _support(model: Model, index: int) -> tuple[float, float, float, float]:
 
 def _acting(model: Model, index: int) -> NDArray[np.bool_]:
     """Return which points a coefficient acts on, (n,)."""
-    plane, net = model.problem.chart.plane, model.net
+    plane, net = model.problem.parametrization.plane, model.net
     u0, u1, v0, v1 = _support(model, index)
     # Inside it acts; on its edge it does at the surface's own edge only.
     acting = (plane[:, 0] >= u0) & (plane[:, 0] <= u1) & (plane[:, 1] >= v0) & (plane[:, 1] <= v1)
@@ -396,8 +396,8 @@ def _names(surface: HorizonFit, which: NDArray[np.bool_]) -> tuple[Message | str
 
 
 def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[Floats, Floats, Message]:
-    """Return the place (1, 2) on the chart, the value (1,) or (1, 3) wanted there, and what to call it."""
-    chart = model.problem.chart
+    """Return the place (1, 2) on the parametrization, the value (1,) or (1, 3) wanted there, and what to call it."""
+    parametrization = model.problem.parametrization
     if isinstance(point, (int, np.integer)):
         if not 0 <= point < len(surface.points):
             raise FitError(
@@ -410,7 +410,7 @@ def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[
                 )
             )
         only = np.array([point])
-        return chart.plane[only], chart.values[only], surface.points.describe(int(point))
+        return parametrization.plane[only], parametrization.values[only], surface.points.describe(int(point))
     try:
         xyz = np.asarray(point, float)
     except (TypeError, ValueError, OverflowError):
@@ -427,15 +427,15 @@ def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[
         )
     x, y, z = xyz
     name = message("edit.x-y-z", "({x:.2f}, {y:.2f}, {z:.2f})", x=x, y=y, z=z)
-    if chart.parametric:
+    if parametrization.parametric:
         foot = project(_plain(surface.patches), xyz[None] - surface.origin)
         return np.column_stack([foot.u, foot.v]), xyz[None] - surface.origin, name
-    local = chart.frame.to_local(xyz[None])
-    u0, u1, v0, v1 = chart.area
+    local = parametrization.frame.to_local(xyz[None])
+    u0, u1, v0, v1 = parametrization.area
     if not (u0 <= local[0, 0] <= u1 and v0 <= local[0, 1] <= v1):
         text = message(
             "edit.point-lies-beside-surface",
-            "The point {point} lies beside the surface '{name}'. Choose a place above or below it.",
+            "The point {point} is not above or below the surface '{name}'. Choose a place above or below it.",
             point=name,
             name=surface.name,
         )

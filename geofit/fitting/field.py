@@ -65,7 +65,7 @@ class Field:
 
     ``alpha`` is the exponent of the operator (smoothness nu = alpha - 1), ``kappa`` its inverse range per unit,
     ``rho`` the noise's variance relative to the field's, ``stretch`` its direction (see
-    :func:`geofit.splines.matern.metric`). ``contradictory`` says that the data are little else than noise;
+    :func:`geofit.splines.matern.metric`). ``contradictory`` states that the data are little else than noise;
     ``spread`` is the standard deviation of the data about their trend, metres. ``hold`` is the precision with which the
     plane's slope is held to zero, in units of the noise's (:class:`geofit.fitting.likelihood.Slope`).
     """
@@ -231,7 +231,7 @@ def choose(
         text = message(
             "fit.no-smoothing-system-points",
             "No smoothing makes the system of {points} points and {size} control points solvable: the points lie on "
-            "too few places. Give more points, or a larger conflict_distance.",
+            "too few places. Give more points, or a larger coincidence_distance.",
             points=len(plane),
             size=space.size,
         )

@@ -46,7 +46,7 @@ def backtracking(points: PointSet, frame: Frame) -> float:
     """Return the share of the sections' length in the frame's plane that runs backwards.
 
     Each section's points are taken in their order and projected on their principal direction in the plane. Zero
-    for sections that go one way, whatever their direction, and for those whose points stand in no order along a
+    for sections that go one way, whatever their direction, and for those whose points are in no order along a
     line: joined in their order they are longer than joined from one side to the other.
     """
     back = total = 0.0

@@ -155,9 +155,9 @@ class HorizonFit:
         """Return the fit with one control point moved; see :func:`geofit.fitting.edit.adjust`."""
         return edit.adjust(self, patch, i, j, dz)
 
-    def pull_to(self, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
-        """Return the fit pulled to one of its points, or to a place; see :func:`geofit.fitting.edit.pull_to`."""
-        return edit.pull_to(self, point, share)
+    def move_to(self, point: int | ArrayLike, share: float = 1.0) -> HorizonFit:
+        """Return the fit moved to one of its points, or to a place; see :func:`geofit.fitting.edit.move_to`."""
+        return edit.move_to(self, point, share)
 
     def weigh(self, patch: str, i: int, j: int, weight: float) -> HorizonFit:
         """Return the fit with another weight of one control point; see :func:`geofit.fitting.edit.weigh`."""
@@ -192,7 +192,7 @@ class HorizonFit:
         remade = replace(self, surface=model.patch_surface(), model=model)
         figures = {**self.diagnostics, **model.figures(), "control_points": remade.control_points}
         remade = replace(remade, diagnostics=figures)
-        return remade.checked(given.conflicts, (*given.chart.notes, *net.notes))
+        return remade.checked(given.conflicts, (*given.parametrization.notes, *net.notes))
 
     def ended_at(self, outline: Floats) -> HorizonFit:
         """Return a fit that ends at an outline (k, 2), map coordinates, checked anew within it.

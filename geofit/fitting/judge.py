@@ -93,8 +93,8 @@ def _with_beyond(accuracy: Accuracy, points: PointSet, found: Projection) -> Acc
                 count=beside.size - NAMED,
             )
         )
-    told = [note.with_severity("warning") for note in (text, *named)] if beside.size else []
-    return replace(accuracy, checks=(*accuracy.checks, added), notes=(*accuracy.notes, *told))
+    warned = [note.with_severity("warning") for note in (text, *named)] if beside.size else []
+    return replace(accuracy, checks=(*accuracy.checks, added), notes=(*accuracy.notes, *warned))
 
 
 def _mesh_checks(mesh: Mesh, points: PointSet) -> tuple[Check, ...]:

@@ -8,7 +8,7 @@ A' W A, A' W z and z' W z (F is A times the plane's coefficients):
 
 (D. A. Harville, J. Am. Stat. Assoc. 72, 1977, 320-338). The plane's slope has a Cauchy prior about zero, as a normal
 one whose variance is found with the others: few points far apart say little of a slope, and beyond them it is all that
-is left of the field. Waves shorter than the spans are no part of the space, and count as noise: spans of half the
+is left of the field. Waves shorter than the spans are not part of the space, and count as noise: spans of half the
 points' spacing leave out what the points themselves could not tell from it.
 """
 

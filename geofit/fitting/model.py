@@ -1,4 +1,4 @@
-"""What stands behind a surface's patches: what was given to the fit, and the control net that it found."""
+"""The model behind a surface's patches: what was given to the fit, and the control net that it found."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.assemble import patches_of
 from geofit.fitting.core import fit_with_core
 from geofit.fitting.net import Net, approximate_all
-from geofit.fitting.parametrize import Chart
+from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.partition import Split
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
@@ -36,26 +36,26 @@ class Problem:
     points: PointSet
     settings: FitSettings
     boundary: Floats | None
-    chart: Chart
+    parametrization: Parametrization
     split: Split
     kept: NDArray[np.bool_]
     conflicts: tuple[Conflict, ...]
     name: str
     outline: Floats | None = None
 
-    def fit(self, honoured: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
-        """Return the control net that meets the core's points and approximates the other honoured ones."""
+    def fit(self, active: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
+        """Return the control net that meets the core's points and approximates the other active ones."""
         if self.split.core is None:
-            return Model(self, approximate_all(self.points, self.chart, honoured, self.settings, stage))
-        return Model(self, fit_with_core(self.points, self.chart, self.split, honoured, self.settings, stage))
+            return Model(self, approximate_all(self.points, self.parametrization, active, self.settings, stage))
+        return Model(self, fit_with_core(self.points, self.parametrization, self.split, active, self.settings, stage))
 
     def partition(self) -> Partition:
         """Return the split in map coordinates."""
         corners = None
-        if self.split.core is not None and not self.chart.parametric:
+        if self.split.core is not None and not self.parametrization.parametric:
             u0, u1, v0, v1 = self.split.core
             local = np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]])
-            xyz = self.chart.frame.turn_back(local) + self.chart.frame.origin
+            xyz = self.parametrization.frame.turn_back(local) + self.parametrization.frame.origin
             corners = tuple((float(x), float(y)) for x, y in xyz[:, :2])
         inside = int((self.split.inside & self.kept).sum())
         return Partition(corners, inside, len(self.kept) - inside, self.split.reason, self.split.lost)
@@ -65,7 +65,7 @@ class Problem:
 class Model:
     """A problem with one control net for the whole surface, of which the patches are parts.
 
-    ``weights`` holds the weights of the control points of patches that were weighed by hand, by name.
+    ``weights`` holds the weights of the control points of patches that were weighted manually, by name.
     """
 
     problem: Problem
@@ -79,13 +79,13 @@ class Model:
     def patches(self) -> tuple[Patch, ...]:
         """Cut the surface into patches along the core's edges."""
         net, interpolated = self.net, self.problem.split.core is not None
-        frame = self.problem.chart.frame
+        frame = self.problem.parametrization.frame
         patches = patches_of(net.space, net.coefficients, net.core, frame, net.unit, net.lines, interpolated)
         return tuple(replace(patch, weights=self.weights.get(patch.name)) for patch in patches)
 
     def patch_surface(self) -> PatchSurface:
         """Return the surface of the control net."""
-        given, frame = self.problem, self.problem.chart.frame
+        given, frame = self.problem, self.problem.parametrization.frame
         outline = given.boundary if given.outline is None and frame.kind == "map" else given.outline
         return PatchSurface(self.patches(), frame.origin, given.name, outline, frame.kind)
 
@@ -93,7 +93,7 @@ class Model:
         """Return the figures of the fit for the report."""
         net = self.net
         return {
-            "frame": self.problem.chart.frame.kind,
+            "frame": self.problem.parametrization.frame.kind,
             "energy": net.field.energy,
             "smoothing": net.field.smoothing,
             "noise": net.field.noise,

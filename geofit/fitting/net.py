@@ -1,4 +1,4 @@
-"""The control net: from points on a chart to the coefficients of one tensor-product surface.
+"""The control net: from points on a parametrization to the coefficients of one tensor-product surface.
 
 Here stand what every fit needs (the points in units, the spaces, the caps) and the approximation: all points, or
 those beside a core, whose net :mod:`geofit.fitting.core` makes.
@@ -18,11 +18,11 @@ from geofit.data.long_arrays import inverse_squares
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
-from geofit.fitting.approximate import approximate, borrowed, solved_beside
+from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.fitting.assemble import multiply_knots
 from geofit.fitting.field import ENOUGH, Field, Smoothed, choose, plane_trend, precision_band, relative_noise, smooth
 from geofit.fitting.likelihood import plane_coefficients
-from geofit.fitting.parametrize import Chart
+from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.partition import CLOUD, Split
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -55,7 +55,7 @@ GAIN = 10.0
 NARROW = 0.15
 #: Shortest span that is still halved for a point outside its tolerance.
 FINEST = 0.05
-#: Noise beyond this many times the interior tolerance is no noise, but relief between sparse points.
+#: Noise beyond this many times the interior tolerance is not noise, but relief between sparse points.
 BENT = 3.0
 #: Where points scatter by this share of their noise about the field, they are so many that it shows.
 SHOWN = 0.8
@@ -105,16 +105,16 @@ class Data:
         return np.asarray(plane_coefficients(space) @ self.trend)
 
 
-def gather(points: PointSet, chart: Chart, kept: NDArray[np.bool_], split: Split | None) -> Data:
+def gather(points: PointSet, parametrization: Parametrization, kept: NDArray[np.bool_], split: Split | None) -> Data:
     """Return the points that the fit honours, in units of the spacing of the sparse ones, about their trend."""
-    area = chart.area
+    area = parametrization.area
     size, n = (area[1] - area[0]) * (area[3] - area[2]), int(kept.sum())
     sparse = int((~split.inside & kept).sum()) if split is not None else 0
     if split is not None and split.core is not None and sparse >= 10:
         c = split.core
         size, n = size - (c[1] - c[0]) * (c[3] - c[2]), sparse
     unit = float(np.sqrt(size / n))
-    plane, value = chart.plane[kept] / unit, chart.values[kept]
+    plane, value = parametrization.plane[kept] / unit, parametrization.values[kept]
     trend = plane_trend(plane, value, np.ones(len(plane)))
     base = trend[0] + plane @ trend[1:]
     scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
@@ -192,10 +192,10 @@ def smoothed(data: Data, space: TensorSpace, field: Field) -> Smoothed:
 
 
 def approximate_all(
-    points: PointSet, chart: Chart, kept: NDArray[np.bool_], settings: FitSettings, stage: Stage
+    points: PointSet, parametrization: Parametrization, kept: NDArray[np.bool_], settings: FitSettings, stage: Stage
 ) -> Net:
     """Fit a surface without a core: the field, brought within the interior tolerance of sparse points."""
-    data = gather(points, chart, kept, None)
+    data = gather(points, parametrization, kept, None)
     n = len(data.plane)
     most = cap_for(settings, n)
     stage("field", 0.25)
@@ -277,7 +277,7 @@ class Periphery:
         return self.settings.strict or (sound and len(self.data.plane) <= CLOUD)
 
     def _frozen(self, space: TensorSpace) -> NDArray[np.bool_]:
-        return np.zeros(space.size, bool) if self.core is None else borrowed(space, self.core).ravel()
+        return np.zeros(space.size, bool) if self.core is None else fixed_by_core(space, self.core).ravel()
 
     def _refitted(self, space: TensorSpace, start: Smoothed) -> Floats:
         """Solve for the control points beside the core again, in a space that may break at its edge."""
@@ -301,7 +301,7 @@ class Periphery:
             return tolerance
         return max(tolerance, noise * float(ndtri(1 - UNLIKELY / (2 * len(misfit)))))
 
-    def _narrowed(self, space: TensorSpace, coefficients: Floats, pulled: Floats) -> tuple[TensorSpace, Floats]:
+    def _narrowed(self, space: TensorSpace, coefficients: Floats, corrected: Floats) -> tuple[TensorSpace, Floats]:
         """Shorten the spans around the points to pull, as far as the cap allows."""
         ranges = [(np.inf, -np.inf)] * 2 if self.core is None else [self.core[:2], self.core[2:]]
         narrow = NARROW
@@ -309,7 +309,7 @@ class Periphery:
             new = []
             for axis, knots in enumerate((space.knots_u, space.knots_v)):
                 low, high = ranges[axis]
-                x = pulled[(pulled[:, axis] < low) | (pulled[:, axis] > high), axis]
+                x = corrected[(corrected[:, axis] < low) | (corrected[:, axis] > high), axis]
                 added = finer_breaks(np.unique(knots), x, narrow)
                 new.append(dict.fromkeys(added[(added < low) | (added > high)].tolist(), 1))
             shape = (space.shape[0] + len(new[0]), space.shape[1] + len(new[1]))
@@ -358,7 +358,7 @@ class Periphery:
             return ()
         note = message(
             "fitting.points-beyond-noise-predicts",
-            "{count} points beyond {tolerance:g} m, as noise of {noise:.3g} m predicts; they are listed, not chased",
+            "{count} points beyond {tolerance:g} m, as noise of {noise:.3g} m predicts; they are listed, not fitted",
             count=count,
             tolerance=self.settings.interior_tolerance,
             noise=self.field.noise,
@@ -396,7 +396,7 @@ class Periphery:
             noise = self.field.noise
             reason = message(
                 "fit.data-contradict-not-chased",
-                "the data contradict each other by about {noise:.2f} m, which is not chased",
+                "the data contradict each other by about {noise:.2f} m, which is not fitted",
                 noise=noise,
             )
         elif len(self.data.plane) > CLOUD:

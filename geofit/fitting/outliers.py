@@ -1,4 +1,4 @@
-"""Points that their neighbours do not bear out: shown, never dropped by themselves.
+"""Points that their neighbours contradict: shown, never dropped by themselves.
 
 A point's left-out error is set against its own standard deviation, which holds the field's without the point and the
 noise, both as large as the other points find them: S_(i) = S - w_i r_i^2 / (1 - h_i) (externally studentised residuals;
@@ -39,7 +39,7 @@ def find_outliers(fit: LinearFit, factor: Floats, judged: NDArray[np.bool_] | No
     Returns
     -------
     tuple of Outlier
-        ``index`` counts all points of the horizon, those that gave way to others included.
+        ``index`` counts all points of the horizon, those that were dropped to others included.
     """
     given = fit.posterior
     covariance, residual, square = fit.covariance.copy(), given.residual.copy(), given.square

@@ -1,7 +1,7 @@
 """Charts: where each point stands on the surface (u, v in metres) and what the surface must take there.
 
-A height field over the map or over the best plane takes heights (n,). An overturned fold is no height field in
-any frame: its chart is laid through the section curves, and it takes coordinates (n, 3).
+A height field over the map or over the best plane takes heights (n,). An overturned fold is not a height field in
+any frame: its parametrization is fitted through the section curves, and it takes coordinates (n, 3).
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from geofit.fitting.fold import Loft, backtracking, loft
 from geofit.fitting.sections import section_labels
 from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
 
-__all__ = ["STEEP", "Chart", "box_of", "choose_chart", "direction_of"]
+__all__ = ["STEEP", "Parametrization", "box_of", "direction_of", "parametrize"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
 
 #: A surface steeper than this, degrees, is fitted over its best plane.
 STEEP = 55.0
-#: Points within this distance of each other are at one place, metres.
+#: Points within this distance of each other are at one location, metres.
 SAME = 1e-6
 #: Thickness of the points across their best plane, relative to either extent in it, that still counts as a plane.
 PLANAR = 0.3
@@ -36,7 +36,7 @@ OVERTURNED = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Chart:
+class Parametrization:
     """Places and values of all points.
 
     Parameters
@@ -51,7 +51,7 @@ class Chart:
         The rectangle that the surface covers.
     notes : tuple of str
         What was chosen, and why.
-    placed : (n,) array of bool
+    parametrized : (n,) array of bool
         Points whose place is known; the others are projected on the surface of these.
     section : (n,) array of str
         Section of each point, as named or as found; empty for the others.
@@ -62,7 +62,7 @@ class Chart:
     values: Floats
     area: Rectangle
     notes: tuple[Message, ...]
-    placed: NDArray[np.bool_]
+    parametrized: NDArray[np.bool_]
     section: NDArray[np.str_]
 
     @property
@@ -70,12 +70,12 @@ class Chart:
         """Whether the values are coordinates instead of heights."""
         return self.values.ndim == 2
 
-    def with_plane(self, plane: Floats) -> Chart:
-        """Return the chart with corrected parameters."""
+    def with_plane(self, plane: Floats) -> Parametrization:
+        """Return the parametrization with corrected parameters."""
         return replace(self, plane=plane)
 
 
-def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | None) -> Chart:
+def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None) -> Parametrization:
     """Choose the frame (METHOD, sec. 8) and place the points in it.
 
     Raises
@@ -85,7 +85,7 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
     """
     kind, reason = _choose_kind(points, settings)
     if kind == "sections":
-        return _section_chart(points, reason)
+        return _parametrize_over_sections(points, reason)
     section = section_labels(points)
     upright = kind == "best-plane"
     frame = best_plane_frame(points) if upright else map_frame(points, direction_of(section, points, boundary))
@@ -106,18 +106,20 @@ def choose_chart(points: PointSet, settings: FitSettings, boundary: Floats | Non
             notes.append(
                 message(
                     "fit.points-beyond-study-area",
-                    "points beyond the study area: {count}; the surface is widened to hold them",
+                    "points beyond the study area: {count}; the surface is widened to contain them",
                     count=count,
                 ).with_severity("warning")
             )
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)
-    return Chart(frame, local[:, :2], local[:, 2], box_of(np.concatenate(places)), tuple(notes), placed, section)
+    return Parametrization(
+        frame, local[:, :2], local[:, 2], box_of(np.concatenate(places)), tuple(notes), placed, section
+    )
 
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]:
     if settings.frame != "auto":
-        return settings.frame, message("fit.frame-asked", "frame '{frame}' as asked", frame=settings.frame)
+        return settings.frame, message("fit.frame-asked", "frame '{frame}' as requested", frame=settings.frame)
     plane = best_plane_frame(points)
     dip = _dip(points, plane)
     over_map = backtracking(points, map_frame(points))
@@ -139,7 +141,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
             message(
                 "fit.parametric-surface-through-sections",
                 "parametric surface through its sections: {share:.0f} % of their length runs backwards "
-                "(overturned), so it is no height field",
+                "(overturned), so it is not a height field",
                 share=100 * over_map,
             ),
         )
@@ -157,7 +159,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
         return "best-plane", steep
     return "map", message(
         "fit.height-field-map-some",
-        "height field over the map; some section lines run backwards, look at the residuals there",
+        "height field over the map; some section lines run backwards, check the residuals there",
     )
 
 
@@ -193,7 +195,7 @@ def direction_of(section: NDArray[np.str_], points: PointSet, boundary: Floats |
     return angle
 
 
-def _section_chart(points: PointSet, reason: Message) -> Chart:
+def _parametrize_over_sections(points: PointSet, reason: Message) -> Parametrization:
     surface: Loft = loft(points)
     lines = len(surface.u)
     if lines < 2:
@@ -207,7 +209,7 @@ def _section_chart(points: PointSet, reason: Message) -> Chart:
     frame = replace(map_frame(points), kind="sections")
     local = frame.to_local(points.xyz)
     area = box_of(surface.plane[surface.on_line])
-    return Chart(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
+    return Parametrization(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
 
 
 def box_of(plane: Floats) -> Rectangle:

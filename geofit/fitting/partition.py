@@ -35,7 +35,7 @@ class Split:
     """Core and periphery in the plane of the surface.
 
     ``core`` is the rectangle (u0, u1, v0, v1), or None without a core; ``inside`` (n,) marks its points;
-    ``reason`` says in words what was chosen and why; ``lost`` that a core was found and could not be kept.
+    ``reason`` states what was chosen and why; ``lost`` that a core was found and could not be kept.
     """
 
     core: Rectangle | None
@@ -94,7 +94,7 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     if n < 2 * FEWEST:
         words = message(
             "fit.points-too-few-tell",
-            "{n} points are too few to tell a dense core from a periphery (40 are needed)",
+            "{n} points are too few to distinguish a dense core from a periphery (40 are needed)",
             n=n,
         )
         return split_none(plane, words)
@@ -109,7 +109,7 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     cluster = dense[_largest_cluster(plane[dense], limit)]
     if len(cluster) < FEWEST:
         return _uniform(
-            plane, area, message("fit.dense-places-hold-fewer", "the dense places hold fewer than 20 points each")
+            plane, area, message("fit.dense-places-hold-fewer", "the dense places contain fewer than 20 points each")
         )
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
     # The points of the box, not of the cluster: the edges may be drawn in to one section.

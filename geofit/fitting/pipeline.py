@@ -17,10 +17,10 @@ from geofit.data.points import PointSet, look_like_degrees
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.fitting.adjust import adjust
-from geofit.fitting.conflicts import settle
+from geofit.fitting.conflicts import resolve_conflicts
 from geofit.fitting.horizon_fit import HorizonFit, fit_of
 from geofit.fitting.model import Model, Problem
-from geofit.fitting.parametrize import Chart, choose_chart
+from geofit.fitting.parametrize import Parametrization, parametrize
 from geofit.fitting.partition import Split, split_all, split_auto, split_none, split_rectangle
 from geofit.fitting.robust import fit_robustly
 from geofit.geometry.area import fault_of_area
@@ -77,7 +77,7 @@ def fit_horizon(
     Returns
     -------
     HorizonFit
-        Patches, partition and accuracy. ``surface.accuracy.passed`` says whether sigma < epsilon.
+        Patches, partition and accuracy. ``surface.accuracy.passed`` shows whether sigma < epsilon.
 
     Raises
     ------
@@ -104,18 +104,18 @@ def _fit_horizon(
     points: PointSet, settings: FitSettings, corners: Floats | None, clock: _Clock, name: str
 ) -> HorizonFit:
     clock.stage("conflicts", 0.0)
-    chart = choose_chart(points, settings, corners)
-    place = chart.values if chart.parametric else chart.plane
-    height = chart.values[:, 2] if chart.parametric else chart.values
-    kept, conflicts = settle(points, place, height, settings.conflict_distance)
+    parametrization = parametrize(points, settings, corners)
+    place = parametrization.values if parametrization.parametric else parametrization.plane
+    height = parametrization.values[:, 2] if parametrization.parametric else parametrization.values
+    kept, conflicts = resolve_conflicts(points, place, height, settings.coincidence_distance)
 
     clock.stage("partition", 0.1)
-    split = _partition(chart, settings, kept)
-    problem = Problem(points, settings, corners, chart, split, kept, conflicts, name)
+    split = _partition(parametrization, settings, kept)
+    problem = Problem(points, settings, corners, parametrization, split, kept, conflicts, name)
 
     clock.stage("fit", 0.2)
     try:
-        model = problem.fit(kept & chart.placed, clock.stage)
+        model = problem.fit(kept & parametrization.parametrized, clock.stage)
     except ExactnessError as error:
         if settings.core != "auto":
             raise
@@ -127,11 +127,11 @@ def _fit_horizon(
             error=error.message,
         )
         model = replace(problem, split=Split(None, inside, reason.with_severity("warning"), lost=True)).fit(
-            kept & chart.placed, clock.stage
+            kept & parametrization.parametrized, clock.stage
         )
-    if not chart.placed.all():
+    if not parametrization.parametrized.all():
         model = _corrected(model, clock)
-    if settings.robust and not chart.parametric:
+    if settings.robust and not parametrization.parametric:
         clock.stage("robust", 0.7)
         model = fit_robustly(model, clock.stage)
 
@@ -140,7 +140,7 @@ def _fit_horizon(
 
     clock.stage("adjust", 0.9)
     surface = _adjusted(model, surface)
-    if chart.parametric:
+    if parametrization.parametric:
         surface = _exact_or_not(surface)
     clock.stage("done", 1.0)
     return surface.with_(diagnostics={**surface.diagnostics, "seconds": dict(clock.seconds)})
@@ -148,14 +148,14 @@ def _fit_horizon(
 
 def _corrected(model: Model, clock: _Clock) -> Model:
     """Project the points between the sections on the surface, and fit again with the parameters found."""
-    between = ~model.problem.chart.placed
+    between = ~model.problem.parametrization.parametrized
     for _ in range(CORRECTIONS):
-        problem, chart = model.problem, model.problem.chart
-        foot = project(model.patches(), chart.frame.turn_back(chart.values[between]))
-        plane = chart.plane.copy()
+        problem, parametrization = model.problem, model.problem.parametrization
+        foot = project(model.patches(), parametrization.frame.turn_back(parametrization.values[between]))
+        plane = parametrization.plane.copy()
         moved = np.abs(plane[between] - np.column_stack([foot.u, foot.v])).max()
         plane[between] = np.column_stack([foot.u, foot.v])
-        model = replace(problem, chart=chart.with_plane(plane)).fit(problem.kept, clock.stage)
+        model = replace(problem, parametrization=parametrization.with_plane(plane)).fit(problem.kept, clock.stage)
         if moved < 1e-3:
             break
     return model
@@ -178,7 +178,7 @@ def _adjusted(model: Model, surface: HorizonFit) -> HorizonFit:
                     ),
                 )
             break
-        better = adjust(model.net, given.chart, given.kept & ~surface.core, accuracy.residuals)
+        better = adjust(model.net, given.parametrization, given.kept & ~surface.core, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
         candidate = None if tried is None else fit_of(tried)
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
@@ -213,8 +213,8 @@ def _exact_or_not(surface: HorizonFit) -> HorizonFit:
     known = replace(model.problem, split=Split(split.core, split.inside & ~missed, reason))
     found = fit_of(replace(model, problem=known))
     assert found.accuracy is not None
-    said_before = tuple(note for note in accuracy.notes if note not in found.accuracy.notes)
-    return found.with_(accuracy=replace(found.accuracy, notes=(*found.accuracy.notes, *said_before)))
+    noted_before = tuple(note for note in accuracy.notes if note not in found.accuracy.notes)
+    return found.with_(accuracy=replace(found.accuracy, notes=(*found.accuracy.notes, *noted_before)))
 
 
 def _with_note(surface: HorizonFit, note: Message) -> HorizonFit:
@@ -227,7 +227,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         given = plural_message("fit.given-points", "{count} point given", "{count} points given", count=len(points))
         text = message(
             "fit.least-needed-lay-surface",
-            "{given}; at least 3 are needed to lay a surface. Check the horizon's name and the filters of the import.",
+            "{given}; at least 3 are needed to fit a surface. Check the horizon's name and the filters of the import.",
             given=given,
         )
         raise PointsError(text)
@@ -235,7 +235,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         raise PointsError(
             message(
                 "fit.points-stand-place-least",
-                "All {count} points stand at one place; at least 3 places are needed.",
+                "All {count} points are at one location; at least 3 locations are needed.",
                 count=len(points),
             )
         )
@@ -259,7 +259,7 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         raise PointsError(
             message(
                 "fit.no-corners",
-                "The boundary is no list of corners; at least three pairs of easting and northing are needed.",
+                "The boundary is not a list of corners; at least three pairs of easting and northing are needed.",
             )
         ) from None
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
@@ -290,33 +290,37 @@ def _require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     return corners
 
 
-def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> Split:
-    """Split the points that are honoured; one that gave way is in no core."""
-    plane = chart.plane[kept]
-    if chart.parametric:
+def _partition(parametrization: Parametrization, settings: FitSettings, kept: NDArray[np.bool_]) -> Split:
+    """Split the points that are active; one that were dropped is in no core."""
+    plane = parametrization.plane[kept]
+    if parametrization.parametric:
         found = split_all(
-            plane, chart.area, message("fit.section-curves-span-whole", "the section curves span the whole surface")
+            plane,
+            parametrization.area,
+            message("fit.section-curves-span-whole", "the section curves span the whole surface"),
         )
     elif settings.core == "all":
         found = split_all(
-            plane, chart.area, message("fit.core-every-point-interpolated", "core='all': every point is interpolated")
+            plane,
+            parametrization.area,
+            message("fit.core-every-point-interpolated", "core='all': every point is interpolated"),
         )
     elif settings.core == "none":
         found = split_none(plane, message("fit.core-none-every-point", "core='none': every point is approximated"))
     elif settings.core == "auto":
-        found = split_auto(plane, chart.area)
-    elif chart.frame.kind != "map":
+        found = split_auto(plane, parametrization.area)
+    elif parametrization.frame.kind != "map":
         text = message(
             "fit.core-polygon-map-coordinates",
             "core is a polygon of map coordinates, but the surface is fitted in the frame '{frame}'. Choose "
             "core='auto', 'all' or 'none', or frame='map'.",
-            frame=chart.frame.kind,
+            frame=parametrization.frame.kind,
         )
         raise FitError(text)
     else:
-        corners = chart.frame.plan(np.array(settings.core))
-        low = np.maximum(corners.min(axis=0), (chart.area[0], chart.area[2]))
-        high = np.minimum(corners.max(axis=0), (chart.area[1], chart.area[3]))
+        corners = parametrization.frame.plan(np.array(settings.core))
+        low = np.maximum(corners.min(axis=0), (parametrization.area[0], parametrization.area[2]))
+        high = np.minimum(corners.max(axis=0), (parametrization.area[1], parametrization.area[3]))
         if (high <= low).any():
             raise FitError(
                 message(
@@ -326,7 +330,7 @@ def _partition(chart: Chart, settings: FitSettings, kept: NDArray[np.bool_]) -> 
             )
         rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = split_rectangle(
-            plane, rectangle, chart.area, message("fit.core-polygon-drawn", "the core's polygon as drawn")
+            plane, rectangle, parametrization.area, message("fit.core-polygon-drawn", "the core's polygon as drawn")
         )
     inside = np.zeros(len(kept), bool)
     inside[kept] = found.inside

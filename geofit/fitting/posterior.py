@@ -47,7 +47,7 @@ class Posterior:
     plane, value, weight : (n, 2) and (n,) arrays
         Their places, heights about the trend (m), and weights: 1 for a point of the field's own noise.
     space : TensorSpace
-        Space of the field, wider than the area; ``turned`` says that its u runs along the net's v, for a narrower
+        Space of the field, wider than the area; ``turned`` states that its u runs along the net's v, for a narrower
         band.
     factor : BlockFactor
         Factor of P.
@@ -150,16 +150,16 @@ def posterior(model: Model) -> Posterior:
         If the surface is parametric, or its system has no solution.
     """
     given, net = model.problem, model.net
-    if given.chart.parametric:
+    if given.parametrization.parametric:
         raise FitError(
             message(
                 "prediction.parametric-surface-no-height",
-                "A parametric surface is no height field, and has no posterior. Leave out its sections instead.",
+                "A parametric surface is not a height field, and has no posterior. Leave out its sections instead.",
             )
         )
-    kept = given.kept & given.chart.placed
+    kept = given.kept & given.parametrization.parametrized
     split = given.split if given.split.core is not None else None
-    data = gather(given.points, given.chart, kept, split)
+    data = gather(given.points, given.parametrization, kept, split)
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
     space, field = widened(space), net.field
     turned = space.shape[1] > space.shape[0]

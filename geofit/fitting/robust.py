@@ -1,4 +1,4 @@
-"""Robust weights: peripheral points that their neighbours do not bear out take no part in the fit, and are named.
+"""Robust weights: peripheral points that their neighbours contradict take no part in the fit, and are named.
 
 The weight of a point is 1 while its left-out error is within :data:`geofit.fitting.outliers.LIMIT` times its
 standard deviation, and 0 beyond (Huber's skipped mean; Hampel et al. 1986, Robust Statistics, sec. 2.6). Weights and
@@ -63,8 +63,8 @@ def fit_robustly(model: Model, stage: Callable[[str, float], None]) -> Model:
     names = [given.points.describe(int(k)) for k in np.flatnonzero(rejected)[:5]]
     text = message(
         "prediction.robust-peripheral-points-neighbours",
-        "robust: peripheral points that their neighbours do not bear out take no part in the fit ({count}: "
-        "{names}); sigma counts them all the same",
+        "robust: peripheral points that their neighbours contradict are not used in the fit "
+        "({count}: {names}); sigma counts them all the same",
         count=int(rejected.sum()),
         names=tuple([*names, "..."] if rejected.sum() > 5 else names),
     )
@@ -75,7 +75,7 @@ def _judge(model: Model, rejected: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return which points are outliers of the fit, those that took no part in it included."""
     given = posterior(model)
     fit = linear_fit(model, given)
-    chart, unit = model.problem.chart, model.net.unit
+    parametrization, unit = model.problem.parametrization, model.net.unit
     loose = ~model.problem.split.inside[given.kept]
     factor = common_factor(fit, loose)
     found = find_outliers(fit, np.full(len(given.value), factor), loose)
@@ -83,8 +83,8 @@ def _judge(model: Model, rejected: NDArray[np.bool_]) -> NDArray[np.bool_]:
     result[[outlier.index for outlier in found]] = True
     out = np.flatnonzero(rejected)
     if len(out):
-        plane = chart.plane[out] / unit
-        error = chart.values[out] - given.height(plane)
+        plane = parametrization.plane[out] / unit
+        error = parametrization.values[out] - given.height(plane)
         sd = np.sqrt(factor**2 * given.variance(plane) + given.noise**2)
         result[out] = np.abs(error) > LIMIT * sd
     return result

@@ -2,7 +2,7 @@
 
 The regional field passes the core's points at the distance of their noise. The skin adds the smallest change of
 control points, in the sense of least squares, that makes it pass exactly: X = X0 + A' (A A')^-1 (B - A X0).
-A is the collocation matrix of the core's points, so sections and holes between them are honoured alike, and
+A is the collocation matrix of the core's points, so sections and holes between them are active alike, and
 the system has no more unknowns than points. What is between the points stays the field's: measured on ten
 sites, half the error of the exact thin-plate spline of the same points, where the interpolant of least
 bending energy has 1.2 times it.
@@ -28,7 +28,15 @@ from geofit.fitting.knots import neighbour_pairs
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["Lines", "across_curves", "damped_change", "least_change", "ruled", "section_lines", "separate"]
+__all__ = [
+    "Lines",
+    "lofted",
+    "minimum_norm_correction",
+    "refine_knots",
+    "regularized_correction",
+    "ruled",
+    "section_lines",
+]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -59,7 +67,7 @@ def section_lines(plane: Floats, section: NDArray[np.str_], spacing: float) -> L
     """Find the lines of constant u that the core's sections run along.
 
     Named sections give their mean u. Sections that stray by more than a tenth of ``spacing`` are not straight:
-    their points are honoured all the same, but no knot line follows them.
+    their points are active all the same, but no knot line follows them.
     """
     named = np.unique(section[section != ""])
     means, strays = [], []
@@ -77,7 +85,7 @@ def section_lines(plane: Floats, section: NDArray[np.str_], spacing: float) -> L
     return Lines(lines[keep], stray[keep], len(lines) >= 2)
 
 
-def least_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | None = None) -> Floats:
+def minimum_norm_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | None = None) -> Floats:
     """Return the smallest change x of the free control points with matrix @ x = misfit.
 
     Parameters
@@ -129,11 +137,11 @@ def least_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_] | No
     return np.asarray(change)
 
 
-def damped_change(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_]) -> Floats:
+def regularized_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.bool_]) -> Floats:
     """Return a small change of the free control points that takes most of a misfit away.
 
-    Unlike :func:`least_change` it does not force points apart that share their control points: what they
-    contradict each other by is left, and so is what only the fringes of the free control points could mend.
+    Unlike :func:`minimum_norm_correction` it does not force points apart that share their control points: what they
+    contradict each other by is left, and so is what only the fringes of the free control points could correct.
     Parameters as there.
     """
     acting = csr_array(matrix * free.astype(float))
@@ -147,12 +155,12 @@ def _unmet(what: Message) -> Message:
     return message(
         "fit.core-cannot-interpolated-points",
         "The core cannot be interpolated: {what}. Points lie nearer to each other than the allowed control points. "
-        "Raise max_control_points or conflict_distance, or approximate (core='none').",
+        "Raise max_control_points or coincidence_distance, or approximate (core='none').",
         what=what,
     )
 
 
-def separate(
+def refine_knots(
     breaks_u: Floats,
     breaks_v: Floats,
     plane: Floats,
@@ -178,7 +186,7 @@ def separate(
     rounds : int
         Cap of the number of rounds.
     """
-    # Ties are settled by place, not by the order of the points.
+    # Ties are broken by place, not by the order of the points.
     order = np.lexsort(plane.T)
     plane, misfit = plane[order], misfit[order]
     pairs = neighbour_pairs(plane)
@@ -270,7 +278,7 @@ def ruled(space: TensorSpace, lines: Floats, rows: Ints) -> csr_array:
     return csr_array(kron(csr_array(weights), eye_array(space.shape[1])))
 
 
-def across_curves(space: TensorSpace, lines: Floats) -> csr_array:
+def lofted(space: TensorSpace, lines: Floats) -> csr_array:
     """Return the matrix from section curves to the control points of the smoothest surface through them.
 
     Parameters

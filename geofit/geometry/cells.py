@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
 
-__all__ = ["Cells", "Place", "descend", "tabulate"]
+__all__ = ["Cells", "Place", "refine_foot_points", "tabulate"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -175,7 +175,7 @@ def tabulate(patches: Sequence[Patch], axes: tuple[int, ...] = (0, 1, 2)) -> Cel
     )
 
 
-def descend(cells: Cells, start: Place, target: Floats) -> Place:
+def refine_foot_points(cells: Cells, start: Place, target: Floats) -> Place:
     """Walk from places down to the nearest point of the surface, a local minimum of |S - target|.
 
     Newton's method on half the squared distance, with analytic second derivatives; where the Hessian is not
@@ -199,11 +199,11 @@ def descend(cells: Cells, start: Place, target: Floats) -> Place:
         Feet, with ``converged``.
     """
     batches = [slice(k, k + BATCH) for k in range(0, max(target.shape[1], 1), BATCH)]
-    end = Place.join([_descend(cells, start[batch], target[:, batch]) for batch in batches])
+    end = Place.join([_refine_foot_points(cells, start[batch], target[:, batch]) for batch in batches])
     return _look_behind_walls(cells, end, target)
 
 
-def _descend(cells: Cells, start: Place, target: Floats) -> Place:
+def _refine_foot_points(cells: Cells, start: Place, target: Floats) -> Place:
     cell, local = start.cell.copy(), start.local.copy()
     done = np.zeros(len(cell), bool)
     # State of the points still walking: what they came from, to step back to if the distance rose.
@@ -322,7 +322,7 @@ def _look_behind_walls(cells: Cells, end: Place, target: Floats) -> Place:
             if not index.size:
                 continue
             start = Place(others[index], end.local[:, index] * np.array(flip)[:, None])
-            trial = _descend(cells, start, target[:, index])
+            trial = _refine_foot_points(cells, start, target[:, index])
             old = np.linalg.norm(cells.points(end[index]) - target[:, index], axis=0)
             new = np.linalg.norm(cells.points(trial) - target[:, index], axis=0)
             better = new < old - 1e-12

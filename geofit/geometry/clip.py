@@ -27,7 +27,7 @@ def clip(points: Floats, triangles: Ints, uv: Floats, *outlines: Floats) -> tupl
     points : (n, 3) array
         Vertices, metres.
     triangles : (m, 3) array of int
-        Their numbers; several may stand over one place (an overturned fold).
+        Their numbers; several may cover one location (an overturned fold).
     uv : (m, 3, 2) array
         Anything linear on each triangle, at its corners.
     outlines : (k, 2) arrays

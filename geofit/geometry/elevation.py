@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.geometry.cells import Cells, Place, descend, tabulate
+from geofit.geometry.cells import Cells, Place, refine_foot_points, tabulate
 from geofit.splines import bspline
 from geofit.splines.patch import Patch, Patches
 
@@ -45,7 +45,7 @@ def elevation(patches: Sequence[Patch], origin: Floats, outline: Floats | None, 
     -------
     array
         Elevation in metres; nan outside all patches or outside the outline. The boundary is inside.
-        Where the surface stands over a place more than once, the highest.
+        Where the surface is not single-valued, the highest.
     """
     x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
     plan = np.stack([x.ravel() - origin[0], y.ravel() - origin[1]])
@@ -131,7 +131,7 @@ def _over_folds(patches: Patches, plan: Floats, height: Floats) -> None:
             continue
         target = np.zeros((3, len(point)))
         target[:2] = plan[:, batch][:, point]
-        end = descend(flat, pieces.place[piece], target)
+        end = refine_foot_points(flat, pieces.place[piece], target)
         off = np.linalg.norm(flat.points(end) - target, axis=0)
         hit = off <= RIM * size
         np.maximum.at(height, batch[point[hit]], cells.points(end[hit])[2])

@@ -20,7 +20,7 @@ from geofit.geometry.elevation import plan_map
 from geofit.splines import bspline
 from geofit.splines.patch import Patch, Patches
 
-__all__ = ["Projection", "feet_over_plan"]
+__all__ = ["Projection", "foot_points_over_plan"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -66,7 +66,7 @@ class Projection:
                 getattr(self, name)[rows] = values
 
 
-def feet_over_plan(patches: Sequence[Patch], target: Floats) -> Projection:
+def foot_points_over_plan(patches: Sequence[Patch], target: Floats) -> Projection:
     """Find the feet of (n, 3) points on a height field; those that are not proven are left ``converged`` False.
 
     That is a point by the surface's edge or a seam (nearer than h), or beyond the radius of curvature; and every

@@ -1,7 +1,8 @@
 """Orthogonal distance from points to a surface of many patches (the d_i of eq. 3).
 
 Points near to a height field have foot points that need no search (:mod:`geofit.geometry.foot_points`). For the
-others a KD-tree of places on the surface gives the starts, :func:`geofit.geometry.cells.descend` walks down from them.
+others a KD-tree of places on the surface gives the starts, :func:`geofit.geometry.cells.refine_foot_points` walks
+down from them.
 The nearest place of the tree need not lie in the basin of the nearest foot point: a foot point at distance d with a
 tree place e metres from it has that place within sqrt(d^2 + e^2 (1 + d kappa)) of the point, kappa the curvature there.
 So every tree place within that reach, and not near a foot point that is known already, starts another walk.
@@ -16,9 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from geofit.geometry.cells import Cells, Place, descend, tabulate
+from geofit.geometry.cells import Cells, Place, refine_foot_points, tabulate
 from geofit.geometry.elevation import plan_map
-from geofit.geometry.foot_points import Projection, feet_over_plan
+from geofit.geometry.foot_points import Projection, foot_points_over_plan
 from geofit.splines.patch import Patch, Patches
 
 __all__ = ["Projection", "project"]
@@ -66,7 +67,7 @@ def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
     some millimetres farther may be returned (3 of 100,000 points at three times that radius).
     """
     target = np.asarray(xyz, float).reshape(-1, 3)
-    found = feet_over_plan(patches, target)
+    found = foot_points_over_plan(patches, target)
     rest = np.flatnonzero(~found.converged)
     if len(rest):
         found.fill(rest, _searched(patches, target[rest]))
@@ -112,7 +113,7 @@ def _no_farther_than_below(patches: Sequence[Patch], cells: Cells, target: Float
         below = cells.locate(index, u[over], v[over])
         nearer = np.abs(target[over, 2] - cells.points(below)[2]) < found[over] - 1e-12
         if nearer.any():
-            again = descend(cells, below[nearer], target[over[nearer]].T)
+            again = refine_foot_points(cells, below[nearer], target[over[nearer]].T)
             cell, local, converged = feet.cell.copy(), feet.local.copy(), feet.converged.copy()
             cell[over[nearer]], local[:, over[nearer]] = again.cell, again.local
             converged[over[nearer]] = again.converged
@@ -358,5 +359,5 @@ class _Walks:
 
 
 def _walk(surface: _Searchable, start: Ints, target: Floats) -> _Walks:
-    place = descend(surface.cells, surface.place[start], np.ascontiguousarray(target.T))
+    place = refine_foot_points(surface.cells, surface.place[start], np.ascontiguousarray(target.T))
     return _Walks(place, np.linalg.norm(surface.cells.points(place).T - target, axis=1))

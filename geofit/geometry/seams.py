@@ -1,4 +1,4 @@
-"""Seams: where the edges of patches meet, how far they gape and at what angle. No OpenCASCADE."""
+"""Seams: where the edges of patches meet, how wide the gaps are and at what angle. No OpenCASCADE."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from geofit.geometry.cells import Cells, Place, descend, tabulate
+from geofit.geometry.cells import Cells, Place, refine_foot_points, tabulate
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.geometry.mesh import WELD, Mesh
@@ -67,7 +67,10 @@ def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Proj
             within[own] = inside(patches[k], loops[k], found.u[own], found.v[own])
         again = np.flatnonzero(~within)
         if again.size:
-            rim, face = _rim_feet(patches, loops, target[again]), _inner_feet(patches, loops, target[again])
+            rim, face = (
+                _rim_foot_points(patches, loops, target[again]),
+                _inner_foot_points(patches, loops, target[again]),
+            )
             on_rim = rim.distance <= face.distance
             found.u[again], found.v[again] = np.where(on_rim, rim.u, face.u), np.where(on_rim, rim.v, face.v)
             found.foot[again] = np.where(on_rim[:, None], rim.foot, face.foot)
@@ -123,7 +126,7 @@ def inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Boo
     return np.asarray(shapely.intersects_xy(region, (u - u0) / (u1 - u0), (v - v0) / (v1 - v0)))
 
 
-def _rim_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
+def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
     """Return the nearest places on the loops: a golden section along the pieces beside the nearest samples."""
     starts, ways, places, owner = [], [], [], []
     for k, patch in enumerate(patches):
@@ -176,13 +179,13 @@ def _golden(value: Any, count: int) -> Floats:
     return np.asarray(np.take_along_axis(ends, values.argmin(axis=0)[None], axis=0)[0])
 
 
-def _inner_feet(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
+def _inner_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
     """Return the nearest feet inside the loops, infinitely far where there is none."""
     cells, tree, place = _lattice(patches, loops)
     count = min(STARTS, tree.n)
     start = np.asarray(tree.query(target, k=np.arange(1, count + 1))[1]).ravel()
     point = np.repeat(np.arange(len(target)), count)
-    end = descend(cells, place[start], np.ascontiguousarray(target[point].T))
+    end = refine_foot_points(cells, place[start], np.ascontiguousarray(target[point].T))
     (u, v), part = cells.parameters(end), cells.patch[end.cell]
     foot = np.ascontiguousarray(cells.points(end).T)
     distance = np.linalg.norm(foot - target[point], axis=1)
@@ -212,7 +215,7 @@ def _lattice(patches: Sequence[Patch], loops: Loops) -> tuple[Cells, cKDTree, Pl
 def trim(mesh: Mesh, patches: Sequence[Patch], loops: Loops) -> Mesh:
     """Return the part of the patches' triangles that the loops enclose; new vertices lie on the patches.
 
-    The triangles are cut in the parameters, where the loops are. New vertices of two patches at one place are one.
+    The triangles are cut in the parameters, where the loops are. New vertices of two patches at one location are one.
     Where parameters run so unevenly that a sliver would turn over, its vertices stay on the triangle that was cut.
     """
     points, triangles, uvs, owner = [mesh.points], [], [], []

@@ -162,7 +162,7 @@ class Quadric:
         if largest == 0:
             raise FitError(
                 message(
-                    "implicit.quadric-quadratic-terms", "the quadric has no quadratic terms: it is a plane or nothing"
+                    "implicit.quadric-quadratic-terms", "the quadric has no quadratic terms: it is a plane or empty"
                 )
             )
         p, n = int((eigenvalues > ZERO * largest).sum()), int((eigenvalues < -ZERO * largest).sum())

@@ -14,7 +14,7 @@ __all__ = ["covering", "farthest_squares", "paint_union", "paint_widest"]
 @njit(cache=True)
 def _half_width(rest: float, square: float) -> int:
     """Return the largest w with square * w² < rest, or -1."""
-    # Rock at exactly F² is outside; rounding of edges that are no whole numbers must not let it in.
+    # Rock at exactly F² is outside; rounding of edges that are not whole numbers must not let it in.
     rest -= 1e-9
     if rest <= 0.0:
         return -1

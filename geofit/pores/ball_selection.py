@@ -25,7 +25,7 @@ def exact(reach2: NDArray[Any]) -> NDArray[np.int64]:
 
 
 class BallSearch:
-    """The search for maximal balls in a volume, of which a slab is at hand at a time.
+    """The search for maximal balls in a volume, of which a slab is available at a time.
 
     Parameters
     ----------

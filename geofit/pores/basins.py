@@ -98,7 +98,7 @@ def _mixed(value: int) -> np.uint64:
 
 
 @njit(cache=True)
-def _surroundings(space: PackedSpace, levels: NDArray[np.int32], here: Any, reach: int) -> np.uint64:
+def _neighbourhood(space: PackedSpace, levels: NDArray[np.int32], here: Any, reach: int) -> np.uint64:
     """Return a number made from the levels round a voxel and its place, the same after a rotation of the volume."""
     n0, n1, n2 = space.shape
     i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
@@ -232,9 +232,9 @@ def _middle(space: PackedSpace, levels: NDArray[np.int32], members: NDArray[Any]
         i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
         gap = (size * i - si) ** 2 + (size * j - sj) ** 2 + (size * k - sk) ** 2
         if nearest < 0 or gap < nearest:
-            best, nearest, key = here, gap, _surroundings(space, levels, here, 2)
+            best, nearest, key = here, gap, _neighbourhood(space, levels, here, 2)
         elif gap == nearest:
-            other = _surroundings(space, levels, here, 2)
+            other = _neighbourhood(space, levels, here, 2)
             if other < key:
                 best, key = here, other
     return int(best)
@@ -255,7 +255,7 @@ def _rank_peaks(
     """Give the basins ``first`` ... ``last`` of one level numbers by the surroundings of their peaks."""
     keys = np.empty(last - first, np.uint64)
     for index in range(first, last):
-        keys[index - first] = _surroundings(space, levels, peaks[index], 2)
+        keys[index - first] = _neighbourhood(space, levels, peaks[index], 2)
     order = np.argsort(keys)
     sorted_peaks = peaks[first:last][order].copy()
     peaks[first:last] = sorted_peaks

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 __all__ = ["OUTSIDE", "PORE", "ROCK", "duct_conductance"]
 
-#: Cells of a section. What lies outside the sample is no wall: the flow is mirrored there.
+#: Cells of a section. What lies outside the sample is not a wall: the flow is mirrored there.
 ROCK, PORE, OUTSIDE = 0, 1, 2
 
 _TOLERANCE = 1e-4

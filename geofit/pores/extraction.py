@@ -27,7 +27,7 @@ DEFAULT_R_MIN = 1.25
 DEFAULT_TAU = 0.85
 
 #: Memory of a network: bytes for each pore voxel (distances, basins, order of flooding, windows), for each voxel of the
-#: bits, for each voxel of the basins that a whole volume hands on, and for each voxel of the slab at hand.
+#: bits, for each voxel of the basins that a whole volume hands on, and for each voxel of the slab available.
 _PORE, _VOXEL, _WHOLE, _SLAB = 32, 0.2, 4, 6
 
 

@@ -159,7 +159,7 @@ def _perimeter(cell: NDArray[np.uint8], h0: float, h1: float) -> float:
             diagonal += (cell[i - 1, j - 1] == ROCK) + (cell[i + 1, j + 1] == ROCK)
             diagonal += (cell[i - 1, j + 1] == ROCK) + (cell[i + 1, j - 1] == ROCK)
     slant = np.hypot(h0, h1)
-    # Each direction stands for the angles nearer to it than to its neighbours.
+    # Each direction represents the angles nearer to it than to its neighbours.
     theta = np.arctan2(h1, h0)
     return float(
         0.5 * (along0 * h1 * theta + along1 * h0 * (np.pi / 2 - theta) + diagonal * h0 * h1 / slant * (np.pi / 4))

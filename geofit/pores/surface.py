@@ -248,8 +248,8 @@ def pore_surface(
         raise VolumeError(
             message(
                 "pores.network-voxels-volume",
-                "The network has no voxels of a volume of shape {shape}. Compute it from this volume with "
-                "pore_network.",
+                "The network stores no voxels of a volume of shape {shape}. Compute it from this "
+                "volume with pore_network.",
                 shape=volume.shape,
             )
         )

@@ -1,1 +1,1 @@
-"""How well a surface predicts rock that nobody drilled: points left out, bands, next holes, outliers."""
+"""How well a surface predicts away from its data: points left out, bands, next holes, outliers."""

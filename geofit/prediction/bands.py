@@ -15,7 +15,7 @@ from geofit.data.columns import measurable_places
 from geofit.data.errors import FitError, SettingsError
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
-from geofit.data.prediction import OffData, Uncertainty
+from geofit.data.prediction import PredictionResult, Uncertainty
 from geofit.fitting.calibration import Calibration, uncalibrated
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
@@ -24,7 +24,7 @@ from geofit.geometry.clip import inside
 from geofit.geometry.hull import within_hull
 from geofit.splines import bspline
 
-__all__ = ["Grid", "Spread", "band", "grid_over", "prediction_sd", "uncertainty_on"]
+__all__ = ["Grid", "PredictionError", "band", "grid_over", "prediction_sd", "uncertainty_on"]
 
 Floats = NDArray[np.float64]
 #: What a standard deviation is of: the surface, or the contact that a new hole finds there.
@@ -35,7 +35,7 @@ NODES = 100
 
 
 @dataclass(frozen=True, eq=False)
-class Spread:
+class PredictionError:
     """Mean square error of a surface about the rock.
 
     The surface meets points that the field takes for noisy, and departs from the field by t to do so. Given the data,
@@ -66,7 +66,7 @@ class Grid:
     within: NDArray[np.bool_]
     plane: Floats
 
-    def spread_out(self, values: Floats) -> Floats:
+    def at_nodes(self, values: Floats) -> Floats:
         """Return (k,) values at the nodes of the surface as (ny, nx), nan elsewhere."""
         full = np.full(self.within.shape, np.nan)
         full[self.within] = values
@@ -74,7 +74,7 @@ class Grid:
 
     def places(self, model: Model) -> Floats:
         """Return the map coordinates (k, 3) of the surface at the nodes on it."""
-        net, frame = model.net, model.problem.chart.frame
+        net, frame = model.net, model.problem.parametrization.frame
         local = np.column_stack([self.plane * net.unit, net.space.matrix(self.plane) @ net.coefficients])
         return frame.turn_back(local) + frame.origin
 
@@ -82,11 +82,11 @@ class Grid:
 def grid_over(surface: HorizonFit) -> Grid:
     """Lay a grid over the study area; over the hull of its points, where a steep surface lies over its best plane."""
     model = _model(surface)
-    chart, unit = model.problem.chart, model.net.unit
-    u0, u1, v0, v1 = chart.area
-    if chart.frame.kind == "map":
+    parametrization, unit = model.problem.parametrization, model.net.unit
+    u0, u1, v0, v1 = parametrization.area
+    if parametrization.frame.kind == "map":
         local = np.array([[u0, v0, 0], [u1, v0, 0], [u1, v1, 0], [u0, v1, 0]])
-        corners = (chart.frame.turn_back(local) + chart.frame.origin)[:, :2]
+        corners = (parametrization.frame.turn_back(local) + parametrization.frame.origin)[:, :2]
         if surface.outline is not None:
             corners = surface.outline
     else:
@@ -95,12 +95,12 @@ def grid_over(surface: HorizonFit) -> Grid:
     step = float((high - low).max()) / (NODES - 1)
     x, y = (np.linspace(low[k], high[k], max(round((high[k] - low[k]) / step) + 1, 2)) for k in (0, 1))
     nodes = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2)
-    plane = chart.frame.plan(nodes) if chart.frame.kind == "map" else nodes
+    plane = parametrization.frame.plan(nodes) if parametrization.frame.kind == "map" else nodes
     edge = 1e-9 * max(u1 - u0, v1 - v0)
     within = (plane >= (u0 - edge, v0 - edge)).all(axis=1) & (plane <= (u1 + edge, v1 + edge)).all(axis=1)
     plane = np.clip(plane, (u0, v0), (u1, v1))
-    if chart.frame.kind != "map":
-        within &= within_hull(chart.plane, plane)
+    if parametrization.frame.kind != "map":
+        within &= within_hull(parametrization.plane, plane)
     if surface.outline is not None:
         # The outline itself counts as inside.
         middle = (low + high) / 2
@@ -108,14 +108,16 @@ def grid_over(surface: HorizonFit) -> Grid:
     return Grid(x, y, within.reshape(len(y), len(x)), plane[within] / unit)
 
 
-def uncertainty_on(grid: Grid, spread: Spread) -> Uncertainty:
+def uncertainty_on(grid: Grid, error_model: PredictionError) -> Uncertainty:
     """Return the standard deviation on the nodes of a grid."""
-    factors = spread.calibration.at(grid.plane)
-    sd = factors * np.sqrt(spread.variance(grid.plane))
-    frame: Literal["map", "best-plane"] = "map" if spread.model.problem.chart.frame.kind == "map" else "best-plane"
+    factors = error_model.calibration.at(grid.plane)
+    sd = factors * np.sqrt(error_model.variance(grid.plane))
+    frame: Literal["map", "best-plane"] = (
+        "map" if error_model.model.problem.parametrization.frame.kind == "map" else "best-plane"
+    )
     return Uncertainty(
-        grid.x, grid.y, grid.spread_out(sd), float(np.median(factors)), float(sd.mean()), float(sd.max()),
-        grid.spread_out(factors), frame, spread.posterior.noise,
+        grid.x, grid.y, grid.at_nodes(sd), float(np.median(factors)), float(sd.mean()), float(sd.max()),
+        grid.at_nodes(factors), frame, error_model.posterior.noise,
     )  # fmt: skip
 
 
@@ -149,7 +151,7 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
     of the grid.
     """
     model = _model(surface)
-    frame = model.problem.chart.frame
+    frame = model.problem.parametrization.frame
     flat = np.ndim(xyz) > 0 and np.shape(xyz)[-1] == 2
     if flat:
         xyz = np.insert(np.atleast_2d(np.asarray(xyz)), 2, 0.0, axis=1)
@@ -170,7 +172,7 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
 
 
 def band(
-    surface: HorizonFit, found: OffData | Uncertainty, share: float = 0.9, of: Of = "contact"
+    surface: HorizonFit, found: PredictionResult | Uncertainty, share: float = 0.9, of: Of = "contact"
 ) -> tuple[HorizonFit, HorizonFit]:
     """Return the upper and the lower surface between which a new hole finds the rock with the given probability.
 
@@ -178,7 +180,7 @@ def band(
     ----------
     surface : HorizonFit
         A fitted height field.
-    found : OffData or Uncertainty
+    found : PredictionResult or Uncertainty
         What :func:`geofit.prediction.examine.examine` found.
     share : float
         Probability, above 0 and below 1.
@@ -194,7 +196,7 @@ def band(
     Raises
     ------
     SettingsError
-        If ``share`` is no probability.
+        If ``share`` is not a probability.
     FitError
         If nothing is known about how the surface was fitted.
 
@@ -211,7 +213,7 @@ def band(
                 share=shown(share),
             )
         )
-    uncertainty = found.uncertainty if isinstance(found, OffData) else found
+    uncertainty = found.uncertainty if isinstance(found, PredictionResult) else found
     if uncertainty is None:
         raise FitError(
             message(
@@ -243,7 +245,7 @@ def band(
 
 def _sd(model: Model, uncertainty: Uncertainty, plane: Floats, of: Of) -> Floats:
     """Return the standard deviation at places in units, with the factors of a grid."""
-    frame = model.problem.chart.frame
+    frame = model.problem.parametrization.frame
     x, y = np.meshgrid(uncertainty.x, uncertainty.y)
     known = np.isfinite(uncertainty.factors)
     nodes = np.column_stack([x[known], y[known]])
@@ -251,7 +253,7 @@ def _sd(model: Model, uncertainty: Uncertainty, plane: Floats, of: Of) -> Floats
     if uncertainty.frame == "map":
         metres = (frame.turn_back(np.column_stack([metres, np.zeros(len(metres))])) + frame.origin)[:, :2]
     factor = NearestNDInterpolator(nodes - nodes[0], uncertainty.factors[known])(metres - nodes[0])
-    sd = factor * Spread(model, posterior(model), uncalibrated()).sd(plane)
+    sd = factor * PredictionError(model, posterior(model), uncalibrated()).sd(plane)
     return np.asarray(np.hypot(sd, uncertainty.noise) if of == "contact" else sd)
 
 

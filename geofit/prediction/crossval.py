@@ -20,7 +20,7 @@ from geofit.prediction.kriging import krige_left_out
 from geofit.prediction.small_sets import Refits
 from geofit.prediction.thinplate import thin_plate_left_out
 
-__all__ = ["BLOCK", "Fold", "about_the_hull", "calibrated", "folds_of", "left_out", "one_by_one"]
+__all__ = ["BLOCK", "Fold", "about_the_hull", "calibrated", "cross_validation_folds", "left_out", "one_by_one"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -31,7 +31,7 @@ BLOCK, SMALL_BLOCK = 3.0, 1.5
 
 @dataclass(frozen=True, eq=False)
 class Fold:
-    """One scheme: the (n,) label of each honoured point, the groups, and what the fit predicts without each."""
+    """One scheme: the (n,) label of each active point, the groups, and what the fit predicts without each."""
 
     scheme: Scheme
     label: NDArray[np.str_]
@@ -39,13 +39,13 @@ class Fold:
     predicted: Prediction
 
 
-def folds_of(model: Model, fit: LinearFit | Refits) -> list[Fold]:
+def cross_validation_folds(model: Model, fit: LinearFit | Refits) -> list[Fold]:
     """Leave out every hole, every section and every block of a height field in turn."""
     given = fit.posterior
     points = model.problem.points[given.kept]
     labels: list[tuple[Scheme, NDArray[np.str_]]] = [
         ("hole", hole_labels(points)),
-        ("section", model.problem.chart.section[given.kept]),
+        ("section", model.problem.parametrization.section[given.kept]),
         ("block", block_labels(given.plane, BLOCK)),
     ]
     folds = []
@@ -116,7 +116,7 @@ def left_out(
     known = np.isfinite(error)
     others: dict[str, float] = {}
     if plate is not None and known.any():
-        z = model.problem.chart.values[given.kept]
+        z = model.problem.parametrization.values[given.kept]
         methods: dict[str, Callable[[], Floats]] = {
             "thin plate": lambda: thin_plate_left_out(given.plane, z, fold.groups, plate),
             "kriging": lambda: krige_left_out(given.plane, z, fold.groups),
@@ -151,7 +151,7 @@ def left_out(
         max_abs=float(np.abs(error[known]).max()) if known.any() else float("nan"),
         inside=share_inside(error, widened),
         inside_raw=share_inside(error, variance + noise),
-        peers=others,
+        references=others,
     )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.prediction import Suggestion
-from geofit.prediction.bands import Grid, Spread
+from geofit.prediction.bands import Grid, PredictionError
 
 __all__ = ["Plan", "greedy_holes", "suggest_holes"]
 
@@ -68,14 +68,14 @@ def greedy_holes(covariance: Floats, rest: Floats, noise: float, count: int) -> 
     return Plan(np.array(chosen, dtype=np.int64), np.array(means))
 
 
-def suggest_holes(grid: Grid, spread: Spread, count: int = 10) -> tuple[Suggestion, ...]:
+def suggest_holes(grid: Grid, error_model: PredictionError, count: int = 10) -> tuple[Suggestion, ...]:
     """Return the next holes over the study area, with what they leave on all nodes of the grid."""
-    model, posterior = spread.model, spread.posterior
+    model, posterior = error_model.model, error_model.posterior
     index = _thinned(grid)
-    factors = spread.calibration.at(grid.plane)
+    factors = error_model.calibration.at(grid.plane)
     noise = posterior.noise**2
     variance = posterior.variance(grid.plane)
-    rest = factors**2 * np.maximum(spread.variance(grid.plane) - variance, 0.0)
+    rest = factors**2 * np.maximum(error_model.variance(grid.plane) - variance, 0.0)
     scale = factors[index]
     among = posterior.covariance(grid.plane[index]) * np.outer(scale, scale)
     chosen = index[greedy_holes(among, rest[index], noise, count).chosen]

@@ -1,4 +1,4 @@
-"""examine: how far the rock may lie from the surface where nobody drilled."""
+"""examine: the prediction error away from the data."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
-from geofit.data.prediction import LeftOut, OffData, Outlier, Suggestion
+from geofit.data.prediction import LeftOut, Outlier, PredictionResult, Suggestion
 from geofit.data.progress import Progress, tell
 from geofit.data.verdict import LEAST_INSIDE
 from geofit.fitting.calibration import Calibration, common_factor, uncalibrated
@@ -19,8 +19,8 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.outliers import LIMIT, find_outliers
 from geofit.fitting.posterior import Posterior, posterior
-from geofit.prediction.bands import Grid, Spread, grid_over, uncertainty_on
-from geofit.prediction.crossval import Fold, about_the_hull, calibrated, folds_of, left_out, one_by_one
+from geofit.prediction.bands import Grid, PredictionError, grid_over, uncertainty_on
+from geofit.prediction.crossval import Fold, about_the_hull, calibrated, cross_validation_folds, left_out, one_by_one
 from geofit.prediction.drilling import suggest_holes
 from geofit.prediction.refits import sections_by_refit
 from geofit.prediction.small_sets import SMALL, Refits
@@ -36,19 +36,19 @@ MOST = 4_000
 ROUNDS = 2
 
 
-def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
+def examine(surface: HorizonFit, progress: Progress | None = None) -> PredictionResult:
     """Examine a fit away from its data.
 
     Parameters
     ----------
     surface : HorizonFit
-        A fit; of an imported surface nothing can be said, and the notes say so.
+        A fit; of an imported surface nothing can be said, and the notes report it.
     progress : callable, optional
         Called as ``progress(stage, fraction)``; returning False stops.
 
     Returns
     -------
-    OffData
+    PredictionResult
         Errors at holes, sections and blocks left out (no refit: :mod:`geofit.fitting.deletion`; of fewer than
         30 points by true refits: :mod:`geofit.prediction.small_sets`) beside the
         thin-plate spline and kriging on the same folds; standard deviation on a grid, held to those errors; the next
@@ -79,16 +79,16 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> OffData:
         def missing(reason: Message) -> None:
             notes.append(
                 message(
-                    "prediction.error-off-data-cannot", "the error off the data cannot be told: {reason}", reason=reason
+                    "prediction.error-off-data-cannot", "the prediction error cannot be found: {reason}", reason=reason
                 )
             )
 
-        look = sections_by_refit if model.problem.chart.parametric else _examine
+        look = sections_by_refit if model.problem.parametrization.parametric else _examine
         found = guarded(lambda: look(surface, model, progress), None, missing)
         return _nothing(notes[0]) if found is None else found
 
 
-def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> OffData:
+def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> PredictionResult:
     notes: list[Message] = []
     tell(progress, "uncertainty", 0.0)
     given = posterior(model)
@@ -129,28 +129,28 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Of
         notes += [beyond] if beyond else []
         notes += _not_held(results[-1])
     tell(progress, "next holes", 0.8)
-    spread = Spread(model, given, calibration)
+    error_model = PredictionError(model, given, calibration)
     if not len(grid.plane):
         notes.append(
             message("prediction.no-area", "the points have no area: there is no standard deviation between them")
         )
     none: tuple[Suggestion, ...] = ()
     suggestions = guarded(
-        lambda: suggest_holes(grid, spread) if len(grid.plane) else none,
+        lambda: suggest_holes(grid, error_model) if len(grid.plane) else none,
         none,
         lambda reason: notes.append(
             message("prediction.no-holes-suggested", "no holes are suggested: {reason}", reason=reason)
         ),
     )
     uncertainty = guarded(
-        lambda: uncertainty_on(grid, spread) if len(grid.plane) else None,
+        lambda: uncertainty_on(grid, error_model) if len(grid.plane) else None,
         None,
         lambda reason: notes.append(
             message("prediction.no-standard-deviation", "the standard deviation is not known: {reason}", reason=reason)
         ),
     )
     tell(progress, "done", 1.0)
-    return OffData(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
+    return PredictionResult(tuple(results), uncertainty, suggestions, outliers, tuple(notes))
 
 
 def _left_out(
@@ -172,9 +172,11 @@ def _left_out(
     else:
         fit = linear_fit(model, given)
         judged = Refits(model, given) if len(given.value) < SMALL else fit
-        folds = folds_of(model, judged)
+        folds = cross_validation_folds(model, judged)
         tell(progress, "calibration", 0.5)
-        calibration = calibrated(judged, folds, grid.plane, Spread(model, given, uncalibrated()).variance(grid.plane))
+        calibration = calibrated(
+            judged, folds, grid.plane, PredictionError(model, given, uncalibrated()).variance(grid.plane)
+        )
         outliers = _outliers(model, fit, calibration.at(given.plane))
     return folds, calibration, outliers
 
@@ -193,9 +195,9 @@ def _outliers(model: Model, fit: LinearFit, factor: Floats) -> tuple[Outlier, ..
         without = linear_fit(clean, given)
         # Never narrower than the posterior: many points are near their neighbours, which says little of the far ones.
         common = max(common_factor(without, np.ones(len(given.value), bool)), 1.0)
-        chart = model.problem.chart
-        plane = chart.plane[out] / clean.net.unit
-        error = chart.values[out] - given.height(plane)
+        parametrization = model.problem.parametrization
+        plane = parametrization.plane[out] / clean.net.unit
+        error = parametrization.values[out] - given.height(plane)
         sd = np.sqrt(common**2 * given.variance(plane) + given.noise**2)
         again = [Outlier(int(k), float(e), float(s), float(abs(e) / s)) for k, e, s in zip(out, error, sd, strict=True)]
         again = [outlier for outlier in again if outlier.ratio > LIMIT]
@@ -221,5 +223,5 @@ def _not_held(found: LeftOut) -> list[Message]:
     ]
 
 
-def _nothing(note: Message) -> OffData:
-    return OffData((), None, (), (), (note,))
+def _nothing(note: Message) -> PredictionResult:
+    return PredictionResult((), None, (), (), (note,))

@@ -20,7 +20,7 @@ Strings = NDArray[np.str_]
 def hole_labels(points: PointSet) -> Strings:
     """Return the (n,) hole of each point; a point of neither hole nor section is a hole of its own.
 
-    Points of a section that no hole stands behind have none: they are left out with their section.
+    Points of a section that no hole supports have none: they are left out with their section.
     """
     alone = np.array([f"#{k + 1}" for k in range(len(points))], dtype=np.str_)
     return np.where((points.hole == "") & (points.section == ""), alone, points.hole)
@@ -33,7 +33,7 @@ def block_labels(plane: Floats, size: float) -> Strings:
 
 
 def groups_of(labels: Strings) -> list[Ints]:
-    """Return the numbers of the points of each label, labels in order; the empty label is no group."""
+    """Return the numbers of the points of each label, labels in order; the empty label is not a group."""
     names, index = np.unique(labels, return_inverse=True)
     order = np.argsort(index, kind="stable")
     parts = np.split(order, np.cumsum(np.bincount(index, minlength=len(names)))[:-1])

@@ -1,4 +1,4 @@
-"""Sections of a folded surface left out by new fits: it is no height field, and no linear algebra spares them."""
+"""Sections of a folded surface left out by new fits: it is not a height field, and no linear algebra spares them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from geofit.data.errors import GeofitError
 from geofit.data.messages import message
-from geofit.data.prediction import LeftOut, OffData
+from geofit.data.prediction import LeftOut, PredictionResult
 from geofit.data.progress import Progress, tell
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
@@ -19,20 +19,20 @@ __all__ = ["sections_by_refit"]
 MOST_SECTIONS = 40
 
 
-def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | None) -> OffData:
+def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | None) -> PredictionResult:
     """Leave out each inner section of a parametric surface, and measure its orthogonal distance from the rest's fit.
 
     The first and the last section are never left out: no surface reaches them without their points.
     """
-    points, chart = surface.points, model.problem.chart
-    groups = [group for group in groups_of(chart.section) if model.problem.kept[group].any()]
-    groups.sort(key=lambda group: float(np.median(chart.plane[group, 0])))
+    points, parametrization = surface.points, model.problem.parametrization
+    groups = [group for group in groups_of(parametrization.section) if model.problem.kept[group].any()]
+    groups.sort(key=lambda group: float(np.median(parametrization.plane[group, 0])))
     error = np.full(len(points), np.nan)
-    label = np.zeros(len(points), dtype=chart.section.dtype)
+    label = np.zeros(len(points), dtype=parametrization.section.dtype)
     notes = [
         message(
             "prediction.folded-surface-no-standard",
-            "a folded surface has no standard deviation: leaving out its sections is all that can be said",
+            "a folded surface has no standard deviation: only leaving out its sections is possible",
         )
     ]
     inner = groups[1:-1]
@@ -55,19 +55,19 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
             failed += 1
             continue
         error[group] = without.distance(points.xyz[group])
-        label[group] = chart.section[group]
+        label[group] = parametrization.section[group]
     tell(progress, "done", 1.0)
     if failed:
         notes.append(
             message(
                 "prediction.without-sections-no-surface",
-                "without {failed} of the sections no surface can be laid",
+                "without {failed} of the sections no surface can be fitted",
                 failed=failed,
             ).with_severity("warning")
         )
     known = error[np.isfinite(error)]
     if not len(known):
-        return OffData((), None, (), (), tuple(notes))
+        return PredictionResult((), None, (), (), tuple(notes))
     notes.append(
         message(
             "prediction.errors-distances-surface-through",
@@ -86,6 +86,6 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
         max_abs=float(np.abs(known).max()),
         inside=float("nan"),
         inside_raw=float("nan"),
-        peers={},
+        references={},
     )
-    return OffData((found,), None, (), (), tuple(notes))
+    return PredictionResult((found,), None, (), (), tuple(notes))

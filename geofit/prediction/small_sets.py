@@ -56,7 +56,7 @@ class Refits:
     def _predicted(self, group: Ints) -> tuple[Floats, Floats, Floats]:
         """Return errors of the surface and of the field, and the field's variance, at the points of one group."""
         problem, out = self.model.problem, self.posterior.kept[group]
-        kept = problem.kept & problem.chart.placed
+        kept = problem.kept & problem.parametrization.parametrized
         kept[out] = False
         unknown = np.full(len(group), np.nan)
         if kept.sum() < _LEAST:
@@ -66,7 +66,7 @@ class Refits:
             given = posterior(without)
         except GeofitError:
             return unknown, unknown, unknown
-        net, value = without.net, problem.chart.values[out]
-        plane = problem.chart.plane[out] / net.unit
+        net, value = without.net, problem.parametrization.values[out]
+        plane = problem.parametrization.plane[out] / net.unit
         surface = net.space.matrix(plane) @ net.coefficients
         return value - surface, value - given.height(plane), given.variance(plane)

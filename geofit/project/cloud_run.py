@@ -24,14 +24,14 @@ if TYPE_CHECKING:
     from geofit.streaming.fit import CloudFit
     from geofit.streaming.residuals import CloudAccuracy
 
-__all__ = ["CloudDelivery", "deliver_cloud"]
+__all__ = ["CloudResult", "run_cloud"]
 
 #: Shares of a run after which the points are read, and the surface is fitted.
 READ, FITTED = 0.3, 0.6
 
 
 @dataclass(frozen=True, eq=False)
-class CloudDelivery:
+class CloudResult:
     """What a run over a cloud made: the fit, how far the points lie from it, the figures of its JSON, and the files."""
 
     fit: CloudFit
@@ -46,7 +46,7 @@ class CloudDelivery:
         return 0 if self.accuracy.passed else 1
 
 
-def deliver_cloud(
+def run_cloud(
     cloud: Cloud,
     out: Path,
     changes: Mapping[str, Any] | None = None,
@@ -55,7 +55,7 @@ def deliver_cloud(
     *,
     scheduler: str = "local",
     workers: int | None = None,
-) -> CloudDelivery:
+) -> CloudResult:
     """Fit a cloud and write its surface, its figures and its distances.
 
     Leaves ``NAME.step``, ``NAME.json``, ``NAME_deviations.csv`` (a grid), ``NAME_worst.csv``,
@@ -131,7 +131,7 @@ def deliver_cloud(
         (state / file).unlink(missing_ok=True)
     state.rmdir()
     tell(progress, "done", 1.0)
-    return CloudDelivery(fit, accuracy, readback, found, (step, *tables, *sorted(distances.glob("*.parquet"))))
+    return CloudResult(fit, accuracy, readback, found, (step, *tables, *sorted(distances.glob("*.parquet"))))
 
 
 def _within(progress: Progress | None, low: float, high: float) -> Progress:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
-from geofit.project.provenance import DocumentError, Part, Recipe, Row
+from geofit.project.provenance import DocumentError, Part, Provenance, Row
 from geofit.project.state import State
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ def known(state: State, horizon: str) -> None:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, (Recipe, Part)):
+    if isinstance(value, (Provenance, Part)):
         return value.to_data()
     if isinstance(value, dict):
         return {name: _plain(one) for name, one in value.items()}

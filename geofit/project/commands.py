@@ -1,4 +1,4 @@
-"""The changes of a document: one class a command. Each makes a new state from the former one, and can be told as data.
+"""The changes of a document: one class a command. Each makes a new state from the former one, and plain data.
 
 A command is checked by :meth:`Command.on` before anything changes; the document changes in :meth:`Command.redo` only.
 """
@@ -14,14 +14,14 @@ from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
 from geofit.project.command import Command, known
 from geofit.project.provenance import (
-    Apart,
     DocumentError,
-    HandEdit,
+    ManualEdit,
     Move,
+    MoveToPointEdit,
     Part,
-    Pull,
-    Recipe,
+    Provenance,
     Row,
+    SeparationEdit,
     Weigh,
     settings_from,
 )
@@ -35,14 +35,14 @@ __all__ = [
     "Command",
     "ExcludeRows",
     "IncludeRows",
-    "PartAtFaults",
-    "PullToPoint",
-    "PushApart",
+    "MoveToPoint",
     "RenameSite",
+    "SeparateHorizons",
     "SetCore",
     "SetOrder",
     "SetSettings",
     "SetSurface",
+    "SplitAtFaults",
     "command_from",
 ]
 
@@ -99,23 +99,23 @@ class SetSurface(Command):
     """A surface that a fit has made; the document's shelf holds it."""
 
     kind = "surface"
-    recipe: Recipe
+    provenance: Provenance
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.fit", "Fit {name}", name=self.recipe.horizon)
+        return message("step.fit", "Fit {name}", name=self.provenance.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
-        known(state, self.recipe.horizon)
-        return replace(state, recipes={**state.recipes, self.recipe.horizon: self.recipe})
+        known(state, self.provenance.horizon)
+        return replace(state, provenances={**state.provenances, self.provenance.horizon: self.provenance})
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
-        return cls(Recipe.from_data(data["recipe"]))
+        return cls(Provenance.from_data(data["provenance"]))
 
 
 @dataclass
-class PartAtFaults(Command):
+class SplitAtFaults(Command):
     """Blocks take the place of a horizon that faults cut, or of its former blocks."""
 
     kind = "part"
@@ -151,7 +151,7 @@ class PartAtFaults(Command):
             order=tuple(order),
             settings={**state.settings, **{name: state.settings.get(name, model) for name in self.blocks}},
             excluded=_without(state.excluded, former) | {name: rows for name in self.blocks if rows},
-            recipes=_without(state.recipes, former),
+            provenances=_without(state.provenances, former),
             parts=_without(state.parts, former) | self.blocks,
         )
 
@@ -161,17 +161,17 @@ class PartAtFaults(Command):
 
 
 @dataclass
-class _HandCommand(Command):
+class _ManualCommand(Command):
     horizon: str
 
     @property
     @abstractmethod
-    def edit(self) -> HandEdit:
-        """The change as the recipe has it."""
+    def edit(self) -> ManualEdit:
+        """The change as the provenance has it."""
 
     def on(self, state: State) -> State:
-        recipe = state.recipes.get(self.horizon)
-        if recipe is None:
+        provenance = state.provenances.get(self.horizon)
+        if provenance is None:
             raise DocumentError(
                 message(
                     "project.no-surface-adjust-fit",
@@ -179,13 +179,13 @@ class _HandCommand(Command):
                     name=self.horizon,
                 )
             )
-        changed = replace(recipe, edits=(*recipe.edits, self.edit))
-        return replace(state, recipes={**state.recipes, self.horizon: changed})
+        changed = replace(provenance, edits=(*provenance.edits, self.edit))
+        return replace(state, provenances={**state.provenances, self.horizon: changed})
 
 
 @dataclass
-class AdjustControlPoint(_HandCommand):
-    """A control point raised or lowered by hand, metres."""
+class AdjustControlPoint(_ManualCommand):
+    """A control point raised or lowered manually, metres."""
 
     kind = "adjust"
     patch: str
@@ -201,12 +201,12 @@ class AdjustControlPoint(_HandCommand):
         )  # fmt: skip
 
     @property
-    def edit(self) -> HandEdit:  # noqa: D102
+    def edit(self) -> ManualEdit:  # noqa: D102
         return Move(self.patch, self.i, self.j, self.dz)
 
 
 @dataclass
-class ChangeWeight(_HandCommand):
+class ChangeWeight(_ManualCommand):
     """Another weight for a control point of the periphery."""
 
     kind = "weigh"
@@ -223,13 +223,13 @@ class ChangeWeight(_HandCommand):
         )  # fmt: skip
 
     @property
-    def edit(self) -> HandEdit:  # noqa: D102
+    def edit(self) -> ManualEdit:  # noqa: D102
         return Weigh(self.patch, self.i, self.j, self.weight)
 
 
 @dataclass
-class PullToPoint(_HandCommand):
-    """The surface pulled to one of its data points."""
+class MoveToPoint(_ManualCommand):
+    """The surface moved to one of its data points."""
 
     kind = "pull"
     index: int
@@ -237,29 +237,29 @@ class PullToPoint(_HandCommand):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.pull", "Pull {name} to point {number}", name=self.horizon, number=self.index + 1)
+        return message("step.pull", "Move {name} to point {number}", name=self.horizon, number=self.index + 1)
 
     @property
-    def edit(self) -> HandEdit:  # noqa: D102
-        return Pull(self.index, self.share)
+    def edit(self) -> ManualEdit:  # noqa: D102
+        return MoveToPointEdit(self.index, self.share)
 
 
 @dataclass
-class PushApart(Command):
-    """Horizons of a sequence pushed apart where they crossed; ``moved`` names those that had to move."""
+class SeparateHorizons(Command):
+    """Horizons of a sequence separated where they crossed; ``moved`` names those that had to move."""
 
-    kind = "apart"
+    kind = "separate"
     moved: tuple[str, ...]
     sequence: tuple[str, ...]
     minimum: float
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.separate", "Push apart {names}", names=", ".join(self.moved))
+        return message("step.separate", "Separate {names}", names=", ".join(self.moved))
 
-    def recipes(self, state: State) -> dict[str, Recipe]:
-        """Return the new recipes of the horizons that move."""
-        missing = [name for name in self.sequence if name not in state.recipes]
+    def provenances(self, state: State) -> dict[str, Provenance]:
+        """Return the new provenances of the horizons that move."""
+        missing = [name for name in self.sequence if name not in state.provenances]
         if missing:
             raise DocumentError(
                 message(
@@ -269,14 +269,14 @@ class PushApart(Command):
                 )
             )
         return {
-            name: replace(former, edits=(*former.edits, Apart(self.sequence, self.minimum, others)))
+            name: replace(former, edits=(*former.edits, SeparationEdit(self.sequence, self.minimum, others)))
             for name in self.moved
-            for former in (state.recipes[name],)
-            for others in (tuple(state.recipes[other] for other in self.sequence if other != name),)
+            for former in (state.provenances[name],)
+            for others in (tuple(state.provenances[other] for other in self.sequence if other != name),)
         }
 
     def on(self, state: State) -> State:  # noqa: D102
-        return replace(state, recipes={**state.recipes, **self.recipes(state)})
+        return replace(state, provenances={**state.provenances, **self.provenances(state)})
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> Command:  # noqa: D102
@@ -331,8 +331,8 @@ class RenameSite(Command):
 COMMANDS: dict[str, type[Command]] = {
     command.kind: command
     for command in (
-        SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, PartAtFaults, AdjustControlPoint, ChangeWeight,
-        PullToPoint, PushApart, SetOrder, RenameSite,
+        SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, SplitAtFaults, AdjustControlPoint, ChangeWeight,
+        MoveToPoint, SeparateHorizons, SetOrder, RenameSite,
     )
 }  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The document: a site, the work on it, and the surfaces at hand. Plain Python; windows listen to its signals."""
+"""The document: a site, the work on it, and the surfaces available. Plain Python; windows listen to its signals."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from pathlib import Path
 
 from geofit.data.messages import message
 from geofit.data.points import PointSet
-from geofit.data.prediction import OffData
+from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.building import Given
-from geofit.project.fault_blocks import Blocks, parted_site
+from geofit.project.fault_blocks import Blocks, site_with_blocks
 from geofit.project.listing import Listing, listing
-from geofit.project.provenance import DocumentError, Recipe, Row, fingerprint, without_rows
+from geofit.project.provenance import DocumentError, Provenance, Row, fingerprint, without_rows
 from geofit.project.shelf import Shelf
 from geofit.project.signal import Signal
 from geofit.project.state import State
@@ -36,15 +36,15 @@ class Selection:
 class Document:
     """A site with the work on it.
 
-    The state is changed by commands alone (:mod:`geofit.project.commands`). Surfaces belong to recipes: the
-    state says which are wanted, the shelf has those that were made.
+    The state is changed by commands alone (:mod:`geofit.project.commands`). Surfaces belong to provenances: the
+    state names which are wanted, the shelf has those that were made.
 
     Signals
     -------
     site_changed()
-        Another site was opened, or a horizon was parted into blocks: look at everything anew.
+        Another site was opened, or a horizon was split into blocks: look at everything anew.
     settings_changed(horizon), points_changed(horizon), result_changed(horizon)
-        Settings; rows that take part; the surface, its check or what is known off the data.
+        Settings; rows that take part; the surface, its check or what is known away from the data.
     order_changed(), name_changed()
         The order of the horizons; the site's title.
     selection_changed(selection)
@@ -85,7 +85,7 @@ class Document:
         self._state = self._saved = state or State.of_site(site)
         self._read = site
         self._take_parts()
-        worked_on = [name for name in self._state.order if name in self._state.recipes]
+        worked_on = [name for name in self._state.order if name in self._state.provenances]
         self.selection = Selection(next(iter((*worked_on, *self._state.order)), None))
         self.site_changed.emit()
         self.saved_changed.emit()
@@ -98,7 +98,7 @@ class Document:
 
     @property
     def site(self) -> Site:
-        """The site, blocks in the place of horizons that were parted at their faults."""
+        """The site, blocks in the place of horizons that were is_block at their faults."""
         return self._site
 
     @property
@@ -130,7 +130,7 @@ class Document:
                 self.settings_changed.emit(name)
             if former.excluded.get(name, frozenset()) != state.excluded.get(name, frozenset()):
                 self.points_changed.emit(name)
-            if former.recipes.get(name) != state.recipes.get(name):
+            if former.provenances.get(name) != state.provenances.get(name):
                 self.result_changed.emit(name)
         if former.order != state.order:
             self.order_changed.emit()
@@ -169,32 +169,32 @@ class Document:
         self._given(name)
         return self._state.settings[name]
 
-    def recipe(self, name: str) -> Recipe:
+    def provenance(self, name: str) -> Provenance:
         """Return from what the next fit of a horizon will be made."""
         excluded = tuple(sorted(self._state.excluded.get(name, ())))
-        return Recipe(name, self.settings(name), self.given(name), excluded, part=self._state.parts.get(name))
+        return Provenance(name, self.settings(name), self.given(name), excluded, part=self._state.parts.get(name))
 
     def given(self, name: str) -> str:
-        """Return the fingerprint of the site for a horizon, or for the whole of one that was parted."""
+        """Return the fingerprint of the site for a horizon, or for the whole of one that was is_block."""
         if name not in self._fingerprints:
             points = self._given(name) if name in self._site.horizons else self._read.horizons.get(name)
             self._fingerprints[name] = "" if points is None else fingerprint(points, self._read)
         return self._fingerprints[name]
 
     def whole(self, name: str) -> str:
-        """Return the horizon that a block is a part of; a horizon that was not parted is its own whole."""
+        """Return the horizon that a block is a part of; a horizon that was not is_block is its own whole."""
         part = self._state.parts.get(name)
         return name if part is None else part.horizon
 
-    def faults(self, name: str) -> tuple[Recipe, ...]:
+    def faults(self, name: str) -> tuple[Provenance, ...]:
         """Return from what the faults are made that cut a horizon or the whole of a block, as they are now."""
         whole = self.whole(name)
         cutting = [fault for fault, cut in self._read.faults.items() if whole in cut and fault in self._state.settings]
-        known = self._state.recipes
-        return tuple(known[f] if f in known and not self.stale(f) else self.recipe(f) for f in cutting)
+        known = self._state.provenances
+        return tuple(known[f] if f in known and not self.stale(f) else self.provenance(f) for f in cutting)
 
-    def unparted(self, name: str) -> bool:
-        """Whether faults cut a horizon that was not parted at them, or not as they are now."""
+    def needs_split(self, name: str) -> bool:
+        """Whether faults cut a horizon that was not is_block at them, or not as they are now."""
         faults, part = self.faults(name), self._state.parts.get(name)
         if part is None:
             return bool(faults)
@@ -205,7 +205,7 @@ class Document:
 
         It is judged by the control error that the horizon has now: that needs no other fit.
         """
-        made = self.shelf.surface(self._state.recipes.get(name))
+        made = self.shelf.surface(self._state.provenances.get(name))
         if made is None or name not in self._state.settings:
             return made
         epsilon = self._state.settings[name].epsilon
@@ -228,69 +228,71 @@ class Document:
         return known[1]
 
     def waiting(self, name: str) -> bool:
-        """Whether a horizon's surface is wanted and not at hand: it may still be read or made."""
-        recipe = self._state.recipes.get(name)
-        return recipe is not None and self.shelf.surface(recipe) is None
+        """Whether a horizon's surface is wanted and not available: it may still be read or made."""
+        provenance = self._state.provenances.get(name)
+        return provenance is not None and self.shelf.surface(provenance) is None
 
     def surfaces(self) -> Mapping[str, HorizonFit]:
-        """Return the surfaces at hand, the highest first."""
+        """Return the surfaces available, the highest first."""
         found = {name: self.surface(name) for name in self.horizons}
         return {name: surface for name, surface in found.items() if surface is not None}
 
-    def offdata(self, name: str) -> OffData | None:
-        """Return what is known about a surface off its data."""
-        return self.shelf.offdata(self._state.recipes.get(name))
+    def prediction(self, name: str) -> PredictionResult | None:
+        """Return what is known about a surface away from its data."""
+        return self.shelf.prediction(self._state.provenances.get(name))
 
-    def put(self, recipe: Recipe, surface: HorizonFit) -> None:
-        """Lay a surface on the shelf; it is shown as soon as the state has its recipe."""
-        self.shelf.put(recipe, surface, set(self._state.recipes.values()))
-        self._tell_of(recipe)
+    def put(self, provenance: Provenance, surface: HorizonFit) -> None:
+        """Lay a surface on the shelf; it is shown as soon as the state has its provenance."""
+        self.shelf.put(provenance, surface, set(self._state.provenances.values()))
+        self._tell_of(provenance)
 
-    def put_offdata(self, recipe: Recipe, offdata: OffData) -> None:
-        """Keep what was found out about a surface off its data."""
-        self.shelf.examined(recipe, offdata)
-        self._tell_of(recipe)
+    def put_prediction(self, provenance: Provenance, prediction: PredictionResult) -> None:
+        """Keep what was found out about a surface away from its data."""
+        self.shelf.examined(provenance, prediction)
+        self._tell_of(provenance)
 
     def stale(self, name: str) -> bool:
         """Whether the surface was made from other settings, rows or files than the horizon has now."""
-        recipe = self._state.recipes.get(name)
-        if recipe is None:
+        provenance = self._state.provenances.get(name)
+        if provenance is None:
             return False
-        parted = recipe.part is not None
+        is_block = provenance.part is not None
         # The control error judges a surface and does not shape it: see surface().
-        settings = replace(recipe.settings, epsilon=self._state.settings[name].epsilon)
-        return replace(recipe, edits=(), settings=settings) != self.recipe(name) or (parted and self.unparted(name))
+        settings = replace(provenance.settings, epsilon=self._state.settings[name].epsilon)
+        return replace(provenance, edits=(), settings=settings) != self.provenance(name) or (
+            is_block and self.needs_split(name)
+        )
 
-    def missing(self) -> tuple[Recipe, ...]:
-        """Return recipes whose surfaces are wanted, not at hand, and can be made from the site as it is."""
+    def missing(self) -> tuple[Provenance, ...]:
+        """Return provenances whose surfaces are wanted, not available, and can be made from the site as it is."""
         return tuple(
-            recipe
-            for recipe in self._state.recipes.values()
-            if self.shelf.surface(recipe) is None and self.holds(recipe)
+            provenance
+            for provenance in self._state.provenances.values()
+            if self.shelf.surface(provenance) is None and self.holds(provenance)
         )
 
     def lost(self) -> tuple[str, ...]:
-        """Return horizons whose surfaces are not at hand and cannot be made: the files have changed since."""
+        """Return horizons whose surfaces are not available and cannot be made: the files have changed since."""
         return tuple(
             name
-            for name, recipe in self._state.recipes.items()
-            if self.shelf.surface(recipe) is None and not self.holds(recipe)
+            for name, provenance in self._state.provenances.items()
+            if self.shelf.surface(provenance) is None and not self.holds(provenance)
         )
 
-    def holds(self, recipe: Recipe) -> bool:
-        """Whether a surface can be made again as it was: the site has the data that the recipe was for."""
-        return all(one.given == self.given(one.horizon) for one in recipe.ingredients())
+    def holds(self, provenance: Provenance) -> bool:
+        """Whether a surface can be made again as it was: the site has the data that the provenance was for."""
+        return all(one.given == self.given(one.horizon) for one in provenance.ancestors())
 
-    def given_for(self, *recipes: Recipe) -> Given:
-        """Return all that surfaces are made from: of the site what the recipes name, and faults at hand."""
-        named = [one for recipe in recipes for one in recipe.ingredients()]
+    def given_for(self, *provenances: Provenance) -> Given:
+        """Return all that surfaces are made from: of the site what the provenances name, and faults available."""
+        named = [one for provenance in provenances for one in provenance.ancestors()]
         faults = [fault for one in named if one.part is not None for fault in one.part.faults]
         return self._give({one.horizon: self._given(one.horizon) for one in named}, faults)
 
-    def given_for_parting(self, whole: str) -> tuple[Given, tuple[int, ...]]:
-        """Return what a horizon is parted from, and the numbers of its points whose rows were excluded."""
+    def inputs_for_blocks(self, whole: str) -> tuple[Given, tuple[int, ...]]:
+        """Return what a horizon is is_block from, and the numbers of its points whose rows were excluded."""
         points, faults = self._read.horizons[whole], self.faults(whole)
-        named = {one.horizon for fault in faults for one in fault.ingredients()}
+        named = {one.horizon for fault in faults for one in fault.ancestors()}
         out = {
             index
             for name, rows in self._state.excluded.items()
@@ -301,14 +303,14 @@ class Document:
         return self._give({whole: points, **{name: self._given(name) for name in named}}, faults), tuple(sorted(out))
 
     def blocks(self, whole: str | None = None) -> Blocks:
-        """Return the blocks whose surfaces are at hand: those of a horizon, or all."""
+        """Return the blocks whose surfaces are available: those of a horizon, or all."""
         surfaces = self.surfaces()
         found = {
             name: (part, surfaces[name].with_(model=None))
             for name, part in self._state.parts.items()
             if name in surfaces and whole in (None, part.horizon)
         }
-        return Blocks(found, self.given_for(*(self._state.recipes[name] for name in found)))
+        return Blocks(found, self.given_for(*(self._state.provenances[name] for name in found)))
 
     def select(self, horizon: str | None, row: Row | None = None) -> None:
         """Choose a horizon, and a row of its data."""
@@ -331,15 +333,15 @@ class Document:
             )
         return horizons[name]
 
-    def _give(self, horizons: Mapping[str, PointSet], faults: Iterable[Recipe]) -> Given:
+    def _give(self, horizons: Mapping[str, PointSet], faults: Iterable[Provenance]) -> Given:
         site = self._site
         reduced = Site(site.name, horizons, boundary=site.boundary, ground=site.ground, orientations=site.orientations)
-        # One that was read from a file has lost its last digits; what stands behind the patches need not travel.
+        # One that was read from a file has lost its last digits; the model behind the patches need not travel.
         made = {fault: one.with_(model=None) for fault in faults if (one := self.shelf.surface(fault)) and one.model}
         return Given(reduced, made)
 
     def _take_parts(self) -> None:
-        self._site = self._used = parted_site(self._read, self._state.parts)
+        self._site = self._used = site_with_blocks(self._read, self._state.parts)
         self._points.clear()
         self._fingerprints.clear()
 
@@ -352,6 +354,6 @@ class Document:
         ]
         return next(iter((*near, *self._state.order)), None)
 
-    def _tell_of(self, recipe: Recipe) -> None:
-        if self._state.recipes.get(recipe.horizon) == recipe:
-            self.result_changed.emit(recipe.horizon)
+    def _tell_of(self, provenance: Provenance) -> None:
+        if self._state.provenances.get(provenance.horizon) == provenance:
+            self.result_changed.emit(provenance.horizon)

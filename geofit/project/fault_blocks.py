@@ -1,4 +1,4 @@
-"""Horizons that faults cut, parted into blocks; without Qt: the parting runs in a process of its own."""
+"""Horizons that faults cut, members into blocks; without Qt: the parting runs in a process of its own."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from geofit.data.progress import Progress
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.building import Given, fault_surfaces
-from geofit.project.provenance import Part, Recipe, runs
+from geofit.project.provenance import Part, Provenance, runs
 from geofit.site.fit_site import SiteFit
 from geofit.site.throw import FaultCut
 
 if TYPE_CHECKING:
-    from geofit.site.fault_blocks import Parting
+    from geofit.site.fault_blocks import BlockMembers
 
-__all__ = ["Blocks", "Parted", "measured", "part_at_faults", "parted_site", "same_side", "site_fit"]
+__all__ = ["Blocks", "SplitHorizon", "measured", "same_side", "site_fit", "site_with_blocks", "split_at_faults"]
 
 
 @dataclass(frozen=True, eq=False)
-class Parted:
-    """A horizon's blocks by name, the faults' surfaces by recipe, and what there is to tell."""
+class SplitHorizon:
+    """A horizon's blocks by name, the faults' surfaces by provenance, and what there is to tell."""
 
     horizon: str
     blocks: Mapping[str, Part]
-    faults: Mapping[Recipe, HorizonFit]
+    faults: Mapping[Provenance, HorizonFit]
     notes: tuple[Message, ...]
 
 
@@ -42,8 +42,8 @@ class Blocks:
     given: Given
 
 
-def parted_site(site: Site, parts: Mapping[str, Part]) -> Site:
-    """Return a site with blocks in the place of the horizons that were parted."""
+def site_with_blocks(site: Site, parts: Mapping[str, Part]) -> Site:
+    """Return a site with blocks in the place of the horizons that were split."""
     if not parts:
         return site
     blocks: dict[str, dict[str, Part]] = {}
@@ -57,9 +57,15 @@ def parted_site(site: Site, parts: Mapping[str, Part]) -> Site:
     return replace(site, horizons=horizons)
 
 
-def part_at_faults(
-    horizon: str, faults: tuple[Recipe, ...], left_out: Sequence[int], given: Given, digest: str, *, progress: Progress
-) -> Parted:
+def split_at_faults(
+    horizon: str,
+    faults: tuple[Provenance, ...],
+    left_out: Sequence[int],
+    given: Given,
+    digest: str,
+    *,
+    progress: Progress,
+) -> SplitHorizon:
     """Part a horizon at its faults. No blocks: no fault parts it.
 
     Points ``left_out`` make no block; they belong to the one that lies on their side, if there is one.
@@ -98,18 +104,18 @@ def part_at_faults(
         )
         for k, (name, sides) in enumerate(zip(found.names, found.sides, strict=True))
     }
-    return Parted(horizon, blocks if len(blocks) > 1 else {}, surfaces, tuple(notes))
+    return SplitHorizon(horizon, blocks if len(blocks) > 1 else {}, surfaces, tuple(notes))
 
 
-def _block_of(places: NDArray[np.float64], parted: Parting) -> NDArray[np.int64]:
+def _block_of(places: NDArray[np.float64], members: BlockMembers) -> NDArray[np.int64]:
     """Return the number of the block on whose side places (n, 3) lie, -1 where there is none."""
-    sides = np.array([fault.side(places) for fault in parted.faults]).reshape(len(parted.faults), len(places)).T
-    number = {side: k for k, side in enumerate(parted.sides)}
+    sides = np.array([fault.side(places) for fault in members.faults]).reshape(len(members.faults), len(places)).T
+    number = {side: k for k, side in enumerate(members.sides)}
     return np.array([number.get(tuple(row), -1) for row in sides.tolist()], int)
 
 
 def same_side(parts: Mapping[str, Part], one: str, other: str) -> bool:
-    """Whether two surfaces can lie above each other: not two blocks of one horizon, nor parted by a fault of both."""
+    """Whether two surfaces can lie above each other: not two blocks of one horizon, nor members by a fault of both."""
     first, second = parts.get(one), parts.get(other)
     if first is None or second is None:
         return True
@@ -143,12 +149,12 @@ def measured(blocks: Blocks, *, progress: Progress | None) -> tuple[FaultCut, ..
 def site_fit(surfaces: Mapping[str, HorizonFit], blocks: Blocks, progress: Progress | None) -> SiteFit:
     """Return surfaces as a fit of their whole site has them: which are blocks of what, and the throws."""
     whole = {name: part.horizon for name, (part, _) in blocks.surfaces.items()}
-    recipes = dict.fromkeys(fault for part, _ in blocks.surfaces.values() for fault in part.faults)
-    faults = fault_surfaces(recipes, blocks.given, progress)
+    provenances = dict.fromkeys(fault for part, _ in blocks.surfaces.values() for fault in part.faults)
+    faults = fault_surfaces(provenances, blocks.given, progress)
     return SiteFit(
         dict(surfaces),
         {name: whole.get(name, name) for name in surfaces},
-        faults={recipe.horizon: surface for recipe, surface in faults.items()},
+        faults={provenance.horizon: surface for provenance, surface in faults.items()},
         cuts=measured(blocks, progress=progress),
     )
 

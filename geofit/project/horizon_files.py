@@ -18,7 +18,7 @@ from geofit.report.result import HorizonResult
 
 if TYPE_CHECKING:
     from geofit.checks.storage import Storage
-    from geofit.data.prediction import OffData
+    from geofit.data.prediction import PredictionResult
     from geofit.fitting.horizon_fit import HorizonFit
     from geofit.report.profile import Profile
 
@@ -68,7 +68,7 @@ def write_horizon(
     Returns
     -------
     Made or Message
-        The message says what unforeseen error the work ended with.
+        The message states what unforeseen error the work ended with.
     """
     failed: list[Message] = []
     t = language(code)
@@ -93,16 +93,16 @@ def _written(
     from geofit.report.tables import write_residuals
 
     clock = _Clock(fit)
-    offdata = examine(surface, lambda stage, share: progress(stage, 0.45 * share))
+    prediction = examine(surface, lambda stage, share: progress(stage, 0.45 * share))
     clock.stop("examination")
     progress("STEP and read-back", 0.45)
     path = stem.with_name(stem.name + ".step")
     back = write_step({surface.name: surface}, path)[surface.name]
-    warnings = _write_bands(surface, offdata, stem) if bands else ()
+    warnings = _write_bands(surface, prediction, stem) if bands else ()
     clock.stop("STEP and read-back")
     progress("pictures", 0.7)
     storage, missing = compared(surface)
-    result = HorizonResult(surface, site, back, storage, path.stat().st_size, offdata=offdata)
+    result = HorizonResult(surface, site, back, storage, path.stat().st_size, prediction=prediction)
     profiles, uncut = section_profiles(result, sections)
     result = replace(result, profiles=profiles)
     pictures = draw(result, t)
@@ -123,7 +123,7 @@ def section_profiles(
     missing: list[Message] = []
     nothing: Mapping[str, tuple[Profile, ...]] = {}
     found = guarded(
-        lambda: profiles(result.surface, result.offdata, sections),
+        lambda: profiles(result.surface, result.prediction, sections),
         nothing,
         lambda reason: missing.append(
             message(
@@ -157,12 +157,12 @@ def compared(surface: HorizonFit) -> tuple[Storage | None, tuple[Message, ...]]:
     return found, tuple(missing)
 
 
-def _write_bands(surface: HorizonFit, offdata: OffData, stem: Path) -> tuple[Message, ...]:
-    """Write the surfaces between which the rock lies with 90 %; return why there are none."""
+def _write_bands(surface: HorizonFit, prediction: PredictionResult, stem: Path) -> tuple[Message, ...]:
+    """Write the surfaces that bound the 90 % prediction band; return why there are none."""
     from geofit.cad.step import write_step
     from geofit.prediction.bands import band
 
-    if offdata.uncertainty is None:
+    if prediction.uncertainty is None:
         return (
             message(
                 "run.no-90-surfaces-standard",
@@ -181,7 +181,7 @@ def _write_bands(surface: HorizonFit, offdata: OffData, stem: Path) -> tuple[Mes
 
     # A band that crosses itself or cannot be sewn says nothing against the surface between.
     none: tuple[HorizonFit, ...] = ()
-    for side, one in zip(("upper", "lower"), guarded(lambda: band(surface, offdata), none, without), strict=False):
+    for side, one in zip(("upper", "lower"), guarded(lambda: band(surface, prediction), none, without), strict=False):
         path = stem.with_name(f"{stem.name}_{side}90.step")
         if guarded(partial(write_step, {one.name: one}, path), None, without) is None:
             path.unlink(missing_ok=True)

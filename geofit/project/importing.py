@@ -13,7 +13,7 @@ from geofit.data.errors import InputError
 from geofit.data.files import replacing
 from geofit.data.languages import EN, Language, translate
 from geofit.data.legible import legible
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, ImportIssue, Site, TableCount
 from geofit.io.boreholes import load_boreholes
@@ -21,7 +21,7 @@ from geofit.io.columns import SCHEMAS
 from geofit.io.contacts import load_contacts
 from geofit.io.grid import load_ground
 from geofit.io.guess import taken_as
-from geofit.io.import_plan import Part, Plan, campaigns, look_at, settle
+from geofit.io.import_plan import Part, Plan, campaigns, complete, look_at
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
 from geofit.io.site_file import build_site
@@ -115,11 +115,11 @@ def import_files(
     folder.mkdir(parents=True, exist_ok=True)
     plan = Plan()
     for i, file in enumerate(files):
-        tell(progress, "look at files", 0.3 * i / len(files))
+        tell(progress, "inspect files", 0.3 * i / len(files))
         look_at(Path(file), folder, mappings, crs, plan)
     mapping_file = site_file.with_name(f"{site_file.stem}_mapping.toml")
     while True:
-        settle(plan)
+        complete(plan)
         horizons = _horizons(plan, site_file, mapping_file, crs, base, top, language)
         tables = _tables(plan, site_file, mapping_file, crs, horizons)
         tell(progress, "read the site", 0.6)
@@ -253,14 +253,14 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
             "note",
             message(
                 "import.base-codes-fewer-contacts",
-                "The base of {count} codes has fewer than {least} contacts and makes no horizon: {names}",
+                "The base of {count} codes has fewer than {least} contacts and gives no horizon: {names}",
                 count=len(few),
                 least=FEWEST_CONTACTS,
                 names=names,
             ),
             message(
                 "import.add-horizon-site-file",
-                "Add a [[horizon]] to the site file where one is wanted (--base, --top).",
+                "Add a [[horizon]] to the site file where needed (--base, --top).",
             ),
         )
         if issue not in plan.issues:
@@ -271,8 +271,8 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
 
 def _name(limit: str, code: str) -> Message:
     if limit == "top":
-        return message("import.top-of-stratum", "top of {code}", code=Verbatim(code))
-    return message("import.base-of-stratum", "base of {code}", code=Verbatim(code))
+        return message("import.top-of-stratum", "top of {code}", code=Untranslated(code))
+    return message("import.base-of-stratum", "base of {code}", code=Untranslated(code))
 
 
 def _tables(

@@ -5,19 +5,19 @@ from __future__ import annotations
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.site import Site
-from geofit.project.provenance import Apart, HandEdit, Move, Pull, Recipe
+from geofit.project.provenance import ManualEdit, Move, MoveToPointEdit, Provenance, SeparationEdit
 
 __all__ = ["interventions_of"]
 
 
-def interventions_of(site: Site, recipe: Recipe) -> tuple[PointSet | None, tuple[Message, ...]]:
-    """Return the points that a surface was fitted without, and its changes by hand in their order.
+def interventions_of(site: Site, provenance: Provenance) -> tuple[PointSet | None, tuple[Message, ...]]:
+    """Return the points that a surface was fitted without, and its manual edits in their order.
 
     Parameters
     ----------
     site : Site
         As it was read, with all points.
-    recipe : Recipe
+    provenance : Provenance
         What the surface was made from.
 
     Returns
@@ -27,16 +27,16 @@ def interventions_of(site: Site, recipe: Recipe) -> tuple[PointSet | None, tuple
     tuple of Message
         One for each change.
     """
-    points = site.horizons.get(recipe.part.horizon if recipe.part is not None else recipe.horizon)
+    points = site.horizons.get(provenance.part.horizon if provenance.part is not None else provenance.horizon)
     excluded = None
-    if points is not None and recipe.excluded:
-        found = sorted(index for row in recipe.excluded if (index := row.find(points)) is not None)
+    if points is not None and provenance.excluded:
+        found = sorted(index for row in provenance.excluded if (index := row.find(points)) is not None)
         excluded = points[found] if found else None
-    return excluded, tuple(_in_words(edit) for edit in recipe.edits)
+    return excluded, tuple(_in_words(edit) for edit in provenance.edits)
 
 
-def _in_words(edit: HandEdit | Apart) -> Message:
-    if isinstance(edit, Apart):
+def _in_words(edit: ManualEdit | SeparationEdit) -> Message:
+    if isinstance(edit, SeparationEdit):
         return message(
             "edit.separated",
             "separated from {others} to at least {minimum:g} m",
@@ -52,7 +52,7 @@ def _in_words(edit: HandEdit | Apart) -> Message:
             patch=edit.patch,
             dz=edit.dz,
         )
-    if isinstance(edit, Pull):
+    if isinstance(edit, MoveToPointEdit):
         return message(
             "edit.pulled",
             "pulled towards point {number} by {share:.0f} % of its residual",

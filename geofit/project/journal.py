@@ -8,7 +8,7 @@
     5d8f3b02 {"saved": "dam.geofit", "state": {...}}
 
 Each line carries its checksum and is on the disk (fsync) before the command counts as done. A session that ends
-removes its journal; one that is there and that no living process holds was cut off, and is told again from its
+removes its journal; one that is there and that no living process holds was cut off, and is replayed from its
 first line up to the last whole one. A journal that a newer geofit wrote, or that makes no sense, is kept under another
 name (``.unreadable``) and never looked at again.
 """
@@ -38,7 +38,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class Journal:
-    """The journal of this session; ``folder`` is made if it is not there."""
+    """The journal of this session; ``folder`` is created if missing."""
 
     def __init__(self, folder: Path, state: State, site_file: Path | None, project_file: Path | None) -> None:
         folder.mkdir(parents=True, exist_ok=True)
@@ -121,7 +121,7 @@ class Unfinished:
 def unfinished(folder: Path) -> list[Unfinished]:
     """Return the sessions that were cut off with something unsaved, the latest first; journals of others stay.
 
-    One that cannot be read is renamed to ``NAME.unreadable``, and the log says so.
+    One that cannot be read is renamed to ``NAME.unreadable``, and the log reports it.
     """
     found = []
     for path in folder.glob(f"*{_SUFFIX}"):
@@ -154,7 +154,7 @@ def _set_aside(path: Path, error: Exception) -> None:
 def _read(path: Path, data: bytes) -> Unfinished | None:
     """Return what a journal tells; None if nothing was done: the session was cut off within its first line.
 
-    Any error says that a newer geofit wrote it, or that it is damaged.
+    Any error states that a newer geofit wrote it, or that it is damaged.
     """
     if b"\n" not in data:
         return None

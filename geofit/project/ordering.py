@@ -1,4 +1,4 @@
-"""Comparing all horizons, and pushing them apart, as tasks; without Qt: they run in a process of their own."""
+"""Comparing all horizons, and separating them, as tasks; without Qt: they run in a process of their own."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from geofit.geometry.elevation import plan_map
 from geofit.project.fault_blocks import same_side
 from geofit.project.provenance import Part
 from geofit.site.order import Order, compare_horizons
-from geofit.site.separate import Repair, separate_horizons
-from geofit.site.site_checks import check_surroundings
+from geofit.site.separate import Separation, separate_horizons
+from geofit.site.site_checks import add_site_checks
 
-__all__ = ["all_orders", "comparable", "over_map", "pushed_apart"]
+__all__ = ["all_orders", "comparable", "over_map", "separated"]
 
 
 def over_map(surfaces: Mapping[str, HorizonFit]) -> dict[str, HorizonFit]:
@@ -51,9 +51,9 @@ def all_orders(
     return tuple(found)
 
 
-def pushed_apart(surfaces: Mapping[str, HorizonFit], minimum: float, site: Site, *, progress: Progress) -> Repair:
+def separated(surfaces: Mapping[str, HorizonFit], minimum: float, site: Site, *, progress: Progress) -> Separation:
     """Push horizons apart, given the highest first; those that moved are asked again what the ``site`` says of them."""
-    tell(progress, "push apart", 0.1)
+    tell(progress, "separate horizons", 0.1)
     found = separate_horizons(surfaces, tuple(surfaces), minimum)
-    moved = {name: check_surroundings(found.surfaces[name], site) for name in found.moved}
+    moved = {name: add_site_checks(found.surfaces[name], site) for name in found.moved}
     return replace(found, surfaces={**found.surfaces, **moved})

@@ -80,7 +80,7 @@ def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
     Raises
     ------
     InputError, VolumeError
-        As for :func:`geofit.read_volume`, if the file cannot be read or is no volume.
+        As for :func:`geofit.read_volume`, if the file cannot be read or is not a volume.
     """
     from geofit.io.volumes import read_voxels
     from geofit.pores.threshold import grey_histogram, otsu_threshold
@@ -109,7 +109,7 @@ def pore_view(
     Raises
     ------
     VolumeError
-        If no voxel is pore, or the voxel is no length.
+        If no voxel is pore, or the voxel is not a length.
     Cancelled
         If the listener asks to stop; asked at every stage.
     """

@@ -16,14 +16,14 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 
 __all__ = [
-    "Apart",
     "DocumentError",
-    "HandEdit",
+    "ManualEdit",
     "Move",
+    "MoveToPointEdit",
     "Part",
-    "Pull",
-    "Recipe",
+    "Provenance",
     "Row",
+    "SeparationEdit",
     "Weigh",
     "find_rows",
     "fingerprint",
@@ -69,8 +69,8 @@ class Move:
 
 
 @dataclass(frozen=True)
-class Pull:
-    """The surface pulled to the point ``index`` of those that were fitted, by ``share`` of its residual."""
+class MoveToPointEdit:
+    """The surface moved to the point ``index`` of those that were fitted, by ``share`` of its residual."""
 
     index: int
     share: float
@@ -87,12 +87,12 @@ class Weigh:
 
 
 @dataclass(frozen=True)
-class Apart:
-    """Horizons pushed apart to ``minimum`` metres, from the top; ``others`` made all of them but this one."""
+class SeparationEdit:
+    """Horizons separated to ``minimum`` metres, from the top; ``others`` made all of them but this one."""
 
     sequence: tuple[str, ...]
     minimum: float
-    others: tuple[Recipe, ...]
+    others: tuple[Provenance, ...]
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class Part:
         Name of the whole.
     given : str
         :func:`fingerprint` of the whole.
-    faults : tuple of Recipe
+    faults : tuple of Provenance
         The faults that the site states to cut it.
     sides : tuple of int
         On which side of each of them the block lies, 0 or 1; -1 of one that has all points on one side.
@@ -117,7 +117,7 @@ class Part:
 
     horizon: str
     given: str
-    faults: tuple[Recipe, ...]
+    faults: tuple[Provenance, ...]
     sides: tuple[int, ...]
     members: str
     area: tuple[tuple[float, float], ...]
@@ -144,19 +144,19 @@ class Part:
         return cls(
             data["horizon"],
             data["given"],
-            tuple(Recipe.from_data(fault) for fault in data["faults"]),
+            tuple(Provenance.from_data(fault) for fault in data["faults"]),
             tuple(data["sides"]),
             data["members"],
             tuple((x, y) for x, y in data["area"]),
         )
 
 
-HandEdit = Move | Pull | Weigh
-_EDITS: dict[str, type[HandEdit]] = {"move": Move, "pull": Pull, "weigh": Weigh}
+ManualEdit = Move | MoveToPointEdit | Weigh
+_EDITS: dict[str, type[ManualEdit]] = {"move": Move, "pull": MoveToPointEdit, "weigh": Weigh}
 
 
 @dataclass(frozen=True)
-class Recipe:
+class Provenance:
     """What a surface is made from.
 
     Parameters
@@ -169,7 +169,7 @@ class Recipe:
         :func:`fingerprint` of the site for the horizon.
     excluded : tuple of Row
         Rows that were left out, sorted.
-    edits : tuple of HandEdit or Apart
+    edits : tuple of ManualEdit or SeparationEdit
         Changes after the fit, in their order.
     part : Part or None
         What the horizon is a block of.
@@ -179,7 +179,7 @@ class Recipe:
     settings: FitSettings
     given: str
     excluded: tuple[Row, ...] = ()
-    edits: tuple[HandEdit | Apart, ...] = field(default=())
+    edits: tuple[ManualEdit | SeparationEdit, ...] = field(default=())
     part: Part | None = None
 
     def to_data(self) -> dict[str, Any]:
@@ -194,7 +194,7 @@ class Recipe:
         }
 
     @classmethod
-    def from_data(cls, data: Mapping[str, Any]) -> Recipe:
+    def from_data(cls, data: Mapping[str, Any]) -> Provenance:
         """Return what :meth:`to_data` was called on."""
         return cls(
             data["horizon"],
@@ -205,15 +205,15 @@ class Recipe:
             None if data.get("part") is None else Part.from_data(data["part"]),
         )
 
-    def ingredients(self) -> Iterator[Recipe]:
-        """Return this recipe, and all that its changes and its faults name."""
+    def ancestors(self) -> Iterator[Provenance]:
+        """Return this provenance, and all that its changes and its faults name."""
         yield self
         for fault in () if self.part is None else self.part.faults:
-            yield from fault.ingredients()
+            yield from fault.ancestors()
         for edit in self.edits:
-            if isinstance(edit, Apart):
+            if isinstance(edit, SeparationEdit):
                 for other in edit.others:
-                    yield from other.ingredients()
+                    yield from other.ancestors()
 
 
 def settings_from(data: Mapping[str, Any]) -> FitSettings:
@@ -298,7 +298,7 @@ def indices(text: str) -> NDArray[np.intp]:
 
 def fingerprint(points: PointSet, site: Site) -> str:
     """Return a hash of everything that a fit of points of a site, and its check, depend on."""
-    digest = hashlib.sha256(surroundings_digest(site))
+    digest = hashlib.sha256(site_digest(site))
     for array in (points.xyz, points.accuracy, points.row):
         digest.update(np.ascontiguousarray(array).tobytes())
     for words in (points.kind, points.hole, points.section, points.file):
@@ -306,7 +306,7 @@ def fingerprint(points: PointSet, site: Site) -> str:
     return digest.hexdigest()[:16]
 
 
-def surroundings_digest(site: Site) -> bytes:
+def site_digest(site: Site) -> bytes:
     """Return a hash of the study area, the ground and the measured dips."""
     digest = hashlib.sha256()
     arrays = [site.boundary]
@@ -326,15 +326,15 @@ def _same(points: PointSet, file: str, row: int) -> NDArray[np.intp]:
     return same
 
 
-def _edit_data(edit: HandEdit | Apart) -> dict[str, Any]:
-    if isinstance(edit, Apart):
+def _edit_data(edit: ManualEdit | SeparationEdit) -> dict[str, Any]:
+    if isinstance(edit, SeparationEdit):
         others = [other.to_data() for other in edit.others]
-        return {"kind": "apart", "sequence": list(edit.sequence), "minimum": edit.minimum, "others": others}
+        return {"kind": "separate", "sequence": list(edit.sequence), "minimum": edit.minimum, "others": others}
     return {"kind": next(kind for kind, made in _EDITS.items() if isinstance(edit, made)), **asdict(edit)}
 
 
-def _edit_from(data: Mapping[str, Any]) -> HandEdit | Apart:
-    if data["kind"] == "apart":
-        others = tuple(Recipe.from_data(other) for other in data["others"])
-        return Apart(tuple(data["sequence"]), data["minimum"], others)
+def _edit_from(data: Mapping[str, Any]) -> ManualEdit | SeparationEdit:
+    if data["kind"] == "separate":
+        others = tuple(Provenance.from_data(other) for other in data["others"])
+        return SeparationEdit(tuple(data["sequence"]), data["minimum"], others)
     return _EDITS[data["kind"]](**{name: value for name, value in data.items() if name != "kind"})

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from geofit.data.languages import language
 from geofit.data.messages import Message
-from geofit.data.prediction import OffData
+from geofit.data.prediction import PredictionResult
 from geofit.data.progress import Progress, tell
 from geofit.project.fault_blocks import Blocks, site_fit
 from geofit.project.run import Form, write_reports
@@ -21,13 +21,14 @@ __all__ = ["ReportFiles", "write_report_files"]
 class ReportFiles:
     """What was written, by form, and what is to be told about it.
 
-    ``offdata`` is what was found out for it off the data, a horizon; not of surfaces with nothing behind them: of those
+    ``prediction`` is what was found out for it away from the data, a horizon; not of surfaces with nothing behind
+    them: of those
     nothing can be found out yet.
     """
 
     files: Mapping[Form, Path]
     warnings: tuple[Message, ...]
-    offdata: Mapping[str, OffData]
+    prediction: Mapping[str, PredictionResult]
 
 
 def write_report_files(
@@ -51,8 +52,8 @@ def write_report_files(
         results, folder, progress, language=language(code), forms=forms, examined=examined, date=date, fits=fits
     )
     new = {
-        after.name: after.offdata
+        after.name: after.prediction
         for before, after in zip(results, made.results, strict=True)
-        if before.offdata is None and after.offdata is not None and before.surface.model is not None
+        if before.prediction is None and after.prediction is not None and before.surface.model is not None
     }
     return ReportFiles(made.files, made.warnings, new)

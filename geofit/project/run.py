@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from geofit.site.separate import Contradiction
     from geofit.site.throw import FaultCut
 
-__all__ = ["Delivery", "Form", "Reports", "deliver", "write_reports"]
+__all__ = ["Form", "Reports", "RunResult", "run_horizons", "write_reports"]
 
 Form = Literal["html", "pdf", "json"]
 #: Share of the fits in a run's time.
@@ -37,11 +37,12 @@ FITS = 0.3
 
 
 @dataclass(frozen=True, eq=False)
-class Delivery:
+class RunResult:
     """What a run made: results in the order of the site; failures by horizon; warnings.
 
     A faulted horizon has a result for each block, and ``cuts`` between them; ``orders`` compares horizons of the site's
-    order, and ``contradictions`` are what a repair could not mend. ``report`` is None if nothing could be fitted.
+    order, and ``contradictions`` are what the separation could not resolve. ``report`` is None if nothing could be
+    fitted.
     """
 
     out: Path
@@ -63,7 +64,7 @@ class Delivery:
         return 0 if all(passed) else 1
 
 
-def deliver(
+def run_horizons(
     site: Site,
     out: Path,
     horizons: Sequence[str] = (),
@@ -73,12 +74,12 @@ def deliver(
     language: Language = EN,
     date: str = "",
     pdf: bool = False,
-    apart: bool = False,
+    separate: bool = False,
     bands: bool = False,
     scheduler: str | None = None,
     bodies: Sequence[str] = (),
     workers: int = 1,
-) -> Delivery:
+) -> RunResult:
     """Fit horizons of a site, examine them, and write everything that belongs to them.
 
     Each horizon, of a faulted one each block, leaves ``.step``, ``.png``, ``.json`` and ``_residuals.csv``; the site
@@ -89,7 +90,7 @@ def deliver(
     site : Site
         What was read.
     out : Path
-        Folder for the files; made if it is not there. Each file is whole or absent.
+        Folder for the files; created if missing. Each file is whole or absent.
     horizons : sequence of str
         Names of the horizons; empty: all.
     changes : mapping
@@ -102,10 +103,10 @@ def deliver(
         Date of the report, ISO 8601; empty: SOURCE_DATE_EPOCH, else today.
     pdf : bool
         Whether the report is written as PDF, too: about a second a horizon.
-    apart : bool
+    separate : bool
         Whether horizons of the site's order that cross are separated (:func:`geofit.separate_horizons`).
     bands : bool
-        Whether ``_upper90.step`` and ``_lower90.step`` are written: the rock lies between them with 90 %.
+        Whether ``_upper90.step`` and ``_lower90.step`` are written: they bound the 90 % prediction band.
     scheduler : str, optional
         Where the horizons are fitted side by side; see :func:`geofit.fit_site`. None: one after another.
     bodies : sequence of str
@@ -135,14 +136,14 @@ def deliver(
     _write_issues(site, out, language)
     with crew(min(workers, len(names))) as hands:
         listen = _within(progress, 0.0, FITS)
-        fits = fit_site(site, names, changes, listen, apart=apart, scheduler=scheduler, workers=workers)
-        return _deliver(site, fits, out, hands, progress, language, date, pdf, bands, bodies)
+        fits = fit_site(site, names, changes, listen, separate=separate, scheduler=scheduler, workers=workers)
+        return _write_results(site, fits, out, hands, progress, language, date, pdf, bands, bodies)
 
 
-def _deliver(
+def _write_results(
     site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, date: str,
     pdf: bool, bands: bool, bodies: Sequence[str],
-) -> Delivery:  # fmt: skip
+) -> RunResult:  # fmt: skip
     """Examine, draw and write what was fitted."""
     from geofit.report.gather import accuracy_report
     from geofit.report.pictures import draw_sections
@@ -181,7 +182,7 @@ def _deliver(
         chapters = [part.chapter for part in parts]
         _write_report(report, whole, images, out, language, font, forms, chapters)
         warnings = [text for text in (font, *warnings, unordered, whole.missing) if text]
-    return Delivery(
+    return RunResult(
         out, tuple(results), failures, tuple(warnings), orders, fits.cuts, fits.contradictions, report, tuple(parts)
     )
 
@@ -264,14 +265,14 @@ def write_reports(
 ) -> Reports:
     """Write the accuracy report of surfaces that are there already; nothing else is written.
 
-    A result without ``storage`` gets one, so that the report has the chapters of :func:`deliver`'s.
+    A result without ``storage`` gets one, so that the report has the chapters of :func:`run_horizons`'s.
 
     Parameters
     ----------
     results : sequence of HorizonResult
         At least one; all of one site.
     out : Path
-        Folder for the report; made if it is not there.
+        Folder for the report; created if missing.
     progress : callable, optional
         Called as ``progress(stage, fraction)``; returning False stops.
     language : Language
@@ -279,7 +280,7 @@ def write_reports(
     forms : sequence of {"html", "pdf", "json"}
         Which files are written.
     examined : bool
-        Whether surfaces without ``offdata`` are examined off their data first.
+        Whether surfaces without ``prediction`` are examined away from their data first.
     date : str
         ISO 8601; empty: SOURCE_DATE_EPOCH, else today.
     fits : SiteFit, optional
@@ -314,8 +315,8 @@ def write_reports(
         low, high = 0.9 * i / len(results), 0.9 * (i + 1) / len(results)
         part = _within(progress, low, high, result.name)
         part("examination", 0.0)
-        if examined and result.offdata is None:
-            result = replace(result, offdata=examine(result.surface, _within(progress, low, 0.6 * high + 0.4 * low)))
+        if examined and result.prediction is None:
+            result = replace(result, prediction=examine(result.surface, _within(progress, low, 0.6 * high + 0.4 * low)))
         if result.storage is None:
             storage, missing = compared(result.surface)
             result = replace(result, storage=storage)

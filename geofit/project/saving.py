@@ -18,8 +18,8 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
 from geofit.io.site_file import read_site
 from geofit.project.building import beside
-from geofit.project.fault_blocks import parted_site
-from geofit.project.provenance import Part, Recipe, Row, without_rows
+from geofit.project.fault_blocks import site_with_blocks
+from geofit.project.provenance import Part, Provenance, Row, without_rows
 from geofit.project.state import State
 
 __all__ = ["Opened", "Written", "project_of", "read_project", "read_surfaces", "save_state", "state_of"]
@@ -80,7 +80,7 @@ def save_state(
     site: Site,
     site_file: Path,
     path: Path,
-    surfaces: Mapping[Recipe, HorizonFit],
+    surfaces: Mapping[Provenance, HorizonFit],
     same: bool,
     *,
     progress: Progress,
@@ -91,35 +91,35 @@ def save_state(
         try:
             former = open_project(path)
         except InputError:
-            former = None  # whatever stands there is replaced
+            former = None  # whatever is there is replaced
     project = project_of(state, site, site_file, path, former)
     tell(progress, "write", 0.3)
     return Written(path, state, write_project(project, path, new_surfaces(project, surfaces)))
 
 
-def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Recipe, HorizonFit]:
+def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Provenance, HorizonFit]:
     """Read and check the surfaces of a project whose horizons the site still has."""
     tell(progress, "read STEP", 0.0)
     found = saved_surfaces(project, folder)
     tell(progress, "check", 0.7)
     return {
-        recipe: beside(checked(surface, recipe, site), recipe, site)
-        for recipe, surface in found.items()
-        if len(site.horizons.get(recipe.horizon, ()))
+        provenance: beside(checked(surface, provenance, site), provenance, site)
+        for provenance, surface in found.items()
+        if len(site.horizons.get(provenance.horizon, ()))
     }
 
 
-def saved_surfaces(project: Project, folder: Path) -> dict[Recipe, HorizonFit]:
-    """Read the surfaces that a project names and that are there, by their recipes; nothing stands behind them."""
-    there = tuple(result for result in project.results if result.recipe and (folder / result.surface).is_file())
+def saved_surfaces(project: Project, folder: Path) -> dict[Provenance, HorizonFit]:
+    """Read the surfaces that a project names and that are there, by their provenances; without their models."""
+    there = tuple(result for result in project.results if result.provenance and (folder / result.surface).is_file())
     surfaces = load_surfaces(replace(project, results=there), folder)
-    return {Recipe.from_data(result.recipe): surfaces[result.horizon] for result in there}
+    return {Provenance.from_data(result.provenance): surfaces[result.horizon] for result in there}
 
 
-def checked(surface: HorizonFit, recipe: Recipe, site: Site) -> HorizonFit:
+def checked(surface: HorizonFit, provenance: Provenance, site: Site) -> HorizonFit:
     """Return a surface that was read from a file, with its points and its check."""
-    points = without_rows(site.horizons[recipe.horizon], recipe.excluded)
-    known = surface.with_(points=points, settings=recipe.settings, core=np.zeros(len(points), bool))
+    points = without_rows(site.horizons[provenance.horizon], provenance.excluded)
+    known = surface.with_(points=points, settings=provenance.settings, core=np.zeros(len(points), bool))
     return known.with_(accuracy=check(known))
 
 
@@ -130,7 +130,7 @@ def state_of(project: Project, site: Site) -> State:
     whole = State.of_site(site).settings
     default = {**whole, **{name: whole[part.horizon] for name, part in parts.items()}}
     excluded: dict[str, frozenset[Row]] = {}
-    order = tuple(parted_site(site, parts).horizons)
+    order = tuple(site_with_blocks(site, parts).horizons)
     for edit in project.edits:
         if edit.kind == "exclude" and edit.horizon in default:
             excluded[edit.horizon] = excluded.get(edit.horizon, frozenset()) | {Row(**edit.values)}
@@ -138,16 +138,16 @@ def state_of(project: Project, site: Site) -> State:
             named = [name for name in edit.values["horizons"] if name in order]
             order = (*named, *(name for name in order if name not in named))
     settings = {name: project.settings.get(name, known) for name, known in default.items()}
-    recipes = {
-        result.horizon: Recipe.from_data(result.recipe)
+    provenances = {
+        result.horizon: Provenance.from_data(result.provenance)
         for result in project.results
-        if result.recipe and result.horizon in order
+        if result.provenance and result.horizon in order
     }
-    return State(project.name, order, settings, excluded, recipes, parts)
+    return State(project.name, order, settings, excluded, provenances, parts)
 
 
 def project_of(state: State, site: Site, site_file: Path, target: Path, former: Project | None) -> Project:
-    """Return what is saved: results of ``former`` whose recipes still hold need not be written again."""
+    """Return what is saved: results of ``former`` whose provenances still hold need not be written again."""
     folder = target.parent
     sources = [ProjectSource(path=_relative(site_file, folder), role=_SITE)]
     for name, digest in site.inputs.items():
@@ -165,8 +165,8 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
     kept = () if former is None else tuple(
         result
         for result in former.results
-        if result.recipe
-        and state.recipes.get(result.horizon) == Recipe.from_data(result.recipe)
+        if result.provenance
+        and state.provenances.get(result.horizon) == Provenance.from_data(result.provenance)
         and (folder / result.surface).is_file()
     )  # fmt: skip
     return Project(
@@ -174,16 +174,18 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
     )
 
 
-def write_project(project: Project, path: Path, surfaces: Mapping[Recipe, HorizonFit]) -> Project:
+def write_project(project: Project, path: Path, surfaces: Mapping[Provenance, HorizonFit]) -> Project:
     """Write a project file, and the surfaces that are new to it."""
-    by_horizon = {recipe.horizon: surface for recipe, surface in surfaces.items()}
-    return save_project(project, path, by_horizon, {recipe.horizon: recipe.to_data() for recipe in surfaces})
+    by_horizon = {provenance.horizon: surface for provenance, surface in surfaces.items()}
+    return save_project(
+        project, path, by_horizon, {provenance.horizon: provenance.to_data() for provenance in surfaces}
+    )
 
 
-def new_surfaces(project: Project, surfaces: Mapping[Recipe, HorizonFit]) -> dict[Recipe, HorizonFit]:
+def new_surfaces(project: Project, surfaces: Mapping[Provenance, HorizonFit]) -> dict[Provenance, HorizonFit]:
     """Return the surfaces that the project does not have yet."""
-    there = {Recipe.from_data(result.recipe) for result in project.results}
-    return {recipe: surface for recipe, surface in surfaces.items() if recipe not in there}
+    there = {Provenance.from_data(result.provenance) for result in project.results}
+    return {provenance: surface for provenance, surface in surfaces.items() if provenance not in there}
 
 
 def _relative(file: Path, folder: Path) -> str:

@@ -65,7 +65,7 @@ def read_line(text: str) -> Floats:
     Raises
     ------
     InputError
-        If there is no such file, a corner cannot be read, or the text is no list of coordinates.
+        If there is no such file, a corner cannot be read, or the text is not a list of coordinates.
     """
     words = text.replace(";", ",").split(",")
     try:

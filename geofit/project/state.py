@@ -8,7 +8,7 @@ from typing import Any
 
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
-from geofit.project.provenance import Part, Recipe, Row, settings_from
+from geofit.project.provenance import Part, Provenance, Row, settings_from
 
 __all__ = ["State"]
 
@@ -18,7 +18,7 @@ class State:
     """The work on a site.
 
     ``name`` of the site; ``order`` of the horizons, the highest first; ``settings``, ``excluded`` rows and the
-    ``recipes`` of the surfaces by horizon. ``parts`` names the blocks that stand in the place of horizons that faults
+    ``provenances`` of the surfaces by horizon. ``parts`` names the blocks that are in the place of horizons that faults
     cut: each is a horizon like the others.
     """
 
@@ -26,7 +26,7 @@ class State:
     order: tuple[str, ...] = ()
     settings: Mapping[str, FitSettings] = field(default_factory=dict)
     excluded: Mapping[str, frozenset[Row]] = field(default_factory=dict)
-    recipes: Mapping[str, Recipe] = field(default_factory=dict)
+    provenances: Mapping[str, Provenance] = field(default_factory=dict)
     parts: Mapping[str, Part] = field(default_factory=dict)
 
     @classmethod
@@ -42,7 +42,7 @@ class State:
             "order": list(self.order),
             "settings": {name: asdict(settings) for name, settings in self.settings.items()},
             "excluded": {name: [asdict(row) for row in sorted(rows)] for name, rows in self.excluded.items()},
-            "recipes": {name: recipe.to_data() for name, recipe in self.recipes.items()},
+            "provenances": {name: provenance.to_data() for name, provenance in self.provenances.items()},
             "parts": {name: part.to_data() for name, part in self.parts.items()},
         }
 
@@ -54,6 +54,6 @@ class State:
             tuple(data["order"]),
             {name: settings_from(settings) for name, settings in data["settings"].items()},
             {name: frozenset(Row(**row) for row in rows) for name, rows in data["excluded"].items()},
-            {name: Recipe.from_data(recipe) for name, recipe in data["recipes"].items()},
+            {name: Provenance.from_data(provenance) for name, provenance in data["provenances"].items()},
             {name: Part.from_data(part) for name, part in data.get("parts", {}).items()},
         )

@@ -1,7 +1,7 @@
 """The accuracy report of a site as plain data: numbers, words and tuples; pictures are named, not held.
 
-What the JSON holds, and all that the HTML and the PDF are written from. None stands for what was not measured; a
-part that was not examined at all is None as a whole, and the reader is told so.
+What the JSON holds, and all that the HTML and the PDF are written from. None represents what was not measured; a
+part that was not examined at all is None as a whole, and the report states it.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ __all__ = [
     "HorizonReport",
     "InputFile",
     "LeftOutLine",
-    "OffDataReport",
     "OrderLine",
     "OutlierLine",
     "PartLine",
     "PatchLine",
     "PlanSheet",
     "PointLine",
+    "PredictionReport",
     "RejectedRow",
     "SeamLine",
     "SectionSheet",
@@ -126,7 +126,7 @@ class FileCheck:
 
 @dataclass(frozen=True)
 class ConflictLine:
-    """Two points that contradict each other: which stayed, which gave way, by how much (m), and why."""
+    """Two points that contradict each other: which was used, which were dropped, by how much (m), and why."""
 
     kept: Message
     dropped: Message
@@ -138,7 +138,7 @@ class ConflictLine:
 class LeftOutLine:
     """Cross-validation by one scheme ("hole", "section", "block"): errors in metres, shares in the 90 % band.
 
-    ``peers`` holds the root mean square error of other methods on the same folds, by name.
+    ``references`` holds the root mean square error of other methods on the same folds, by name.
     """
 
     scheme: str
@@ -150,7 +150,7 @@ class LeftOutLine:
     max_abs: float
     inside: float | None
     inside_raw: float | None
-    peers: tuple[tuple[str, float | None], ...]
+    references: tuple[tuple[str, float | None], ...]
 
 
 @dataclass(frozen=True)
@@ -167,7 +167,7 @@ class SuggestionLine:
 
 @dataclass(frozen=True)
 class OutlierLine:
-    """A point that its neighbours do not bear out: left-out error, its standard deviation (m), their ratio."""
+    """A point that its neighbours contradict: left-out error, its standard deviation (m), their ratio."""
 
     point: PointLine
     error: float
@@ -176,7 +176,7 @@ class OutlierLine:
 
 
 @dataclass(frozen=True)
-class OffDataReport:
+class PredictionReport:
     """The surface away from its data: cross-validation, standard deviation, places to drill, outliers.
 
     ``factor`` is by how much the standard deviation was widened; ``sd_mean`` and ``sd_max`` are metres.
@@ -229,7 +229,7 @@ class ContradictionLine:
 
 @dataclass(frozen=True)
 class CutPlace:
-    """Throw and heave at one place of a fault's trace, metres; ``heave`` is None at the area's edge."""
+    """Throw and heave at one location of a fault's trace, metres; ``heave`` is None at the area's edge."""
 
     distance: float
     x: float
@@ -312,10 +312,10 @@ class HorizonReport:
     """Everything said about one horizon; metres.
 
     ``verdict`` is PASS, WARNING or FAIL, which follows from the ``lamps`` (:mod:`geofit.data.verdict`): at the data,
-    checks, away from the data. ``sound`` tells whether sigma is below epsilon and every check holds.
+    checks, away from the data. ``sound`` shows whether sigma is below epsilon and every check passes.
     ``over`` counts points beyond tolerances, by the name of the setting. ``pictures`` names those that
     belong here, by what they show. ``plan`` is None for a folded surface, of which contours would cross.
-    ``excluded`` are points that a person left out, ``edits`` changes by hand.
+    ``excluded`` are points that a person left out, ``edits`` manual edits.
     """
 
     horizon: str
@@ -340,7 +340,7 @@ class HorizonReport:
     seams: tuple[SeamLine, ...]
     checks: tuple[CheckLine, ...]
     read_back: FileCheck | None
-    off_data: OffDataReport | None
+    prediction: PredictionReport | None
     conflicts: tuple[ConflictLine, ...]
     patches: tuple[PatchLine, ...]
     storage: StorageLine
@@ -386,7 +386,7 @@ class AccuracyReport:
     """The accuracy report of a site.
 
     ``date`` is ISO 8601 (2026-11-21). ``orders`` is None where the order was not examined, empty where the site has
-    no two horizons to compare. ``cuts`` are what faults displace, ``contradictions`` what a repair of crossings left.
+    no two horizons to compare. ``cuts`` are what faults displace, ``contradictions`` what separating crossings left.
     ``failures`` holds horizons that could not be fitted, with the reason. ``issues``
     counts errors, warnings and notes of the readers; ``rejected`` lists errors and warnings. ``versions`` names the
     programs. ``picture`` names the picture of all horizons, empty if there is none. ``title`` is what the cover says,

@@ -56,14 +56,14 @@ def more(total: int, shown: int, where: str, t: Language) -> list[Block]:
     """Say that a table is longer than what is shown, and where the rest stands; nothing if it is not."""
     if total <= shown:
         return []
-    return [Paragraph(t("{count} more stand in {file}.", count=total - shown, file=where), "quiet")]
+    return [Paragraph(t("{file} lists {count} more.", count=total - shown, file=where), "quiet")]
 
 
 def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
     counts = report.issues
     blocks: list[Block] = [
         Heading(t("Files")),
-        Paragraph(t("Rows read = rows used + rows listed. SHA-256 tells whether a file is the one that was read.")),
+        Paragraph(t("Rows read = rows used + rows listed. SHA-256 shows whether a file is the one that was read.")),
         Table(
             (
                 Column(t("File"), "wide"),
@@ -115,8 +115,8 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
     blocks.append(
         Paragraph(
             t(
-                "Method: Li, Miao, Liu, Wang (2011), interpolation–approximation fitting of complex geological "
-                "surfaces; checks and errors off the data as geofit documents them."
+                "Method: Li, Miao, Liu, Wang (2011), interpolation–approximation fitting of complex "
+                "geological surfaces; checks and prediction errors as documented by geofit."
             ),
             "quiet",
         )

@@ -49,7 +49,7 @@ _METHODS = {
 
 @dataclass(frozen=True, eq=False)
 class BodyFindings:
-    """Everything that a chapter says of a body; None or empty: not examined, ``missing`` says why.
+    """Everything that a chapter says of a body; None or empty: not examined, ``missing`` states why.
 
     ``pictures`` are what was drawn: "view", "section-0" and so on.
     """
@@ -93,7 +93,7 @@ def _sentence(a: BodyAccuracy, t: Language) -> str:
         return t("σ {sigma} is not below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
     failed = any(check.passed is False for check in a.checks)
     text = t("σ {sigma} is below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
-    return together([text, t("But a check does not hold: see below.") if failed else ""], t)
+    return together([text, t("But a check fails: see below.") if failed else ""], t)
 
 
 def _facts(found: BodyFindings, t: Language) -> Facts:
@@ -294,6 +294,6 @@ def _issues(found: BodyFindings, t: Language) -> list[Block]:
         Table((Column(t("What")), Column(t("Finding"), "wide")), tuple(rows)),
     ]
     if len(issues) > LONGEST:
-        text = t("{count} more stand in {file}.", count=len(issues) - LONGEST, file=f"{found.body.name}.json")
+        text = t("{file} lists {count} more.", count=len(issues) - LONGEST, file=f"{found.body.name}.json")
         blocks.append(Paragraph(text, "quiet"))
     return blocks

@@ -14,7 +14,7 @@ from geofit.report.body_chapter import body_picture
 from geofit.report.box import draw_boxed
 from geofit.report.pictures import DOTS, TYPE, WIDTH, png
 from geofit.report.scene import mesh_scene
-from geofit.report.style import INK, LINE, MUTED, PAPER, drawing, quiet
+from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing, quiet
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -106,10 +106,10 @@ def _section(
     if value.min() < 0 < value.max():
         axes.contour(s, z, value, levels=[0.0], colors=COLOUR, linewidths=1.4, zorder=2)
     thick = THICKNESS * float((high - low).max())
-    for xyz, face in ((body.data.inside, INK), (body.data.outside, PAPER), (body.data.contacts, COLOUR)):
+    for xyz, face in ((body.data.inside, TEXT), (body.data.outside, PAPER), (body.data.contacts, COLOUR)):
         near = np.abs(xyz[:, across] - middle[across]) <= thick
         near &= ((xyz[:, [along, up]] >= low[[along, up]]) & (xyz[:, [along, up]] <= high[[along, up]])).all(axis=1)
-        axes.plot(xyz[near, along], xyz[near, up], "o", ms=1.8, mfc=face, mec=INK, mew=0.3, zorder=3)
+        axes.plot(xyz[near, along], xyz[near, up], "o", ms=1.8, mfc=face, mec=TEXT, mew=0.3, zorder=3)
     axes.set_xlim(s[0], s[-1])
     axes.set_ylim(z[0], z[-1])
     for axis in (axes.xaxis, axes.yaxis):

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.languages import Language
-from geofit.report.style import INK, LINE, MUTED
+from geofit.report.style import LINE, MUTED, TEXT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,7 +76,7 @@ def _edge(axes: Axes, scene: Scene, k: int, at: tuple[float, float], title: str)
     angle = (angle + 90) % 180 - 90
     reach = LABEL + (14, 32, 26)[k]
     axes.annotate(title, flat.mean(axis=0), xytext=tuple(step * reach), textcoords="offset points", size=SIZE + 0.6,
-                  color=INK, ha="center", va="center", rotation=angle, annotation_clip=False)  # fmt: skip
+                  color=TEXT, ha="center", va="center", rotation=angle, annotation_clip=False)  # fmt: skip
 
 
 def _along(k: int, values: list[float], at: tuple[float, float]) -> Floats:

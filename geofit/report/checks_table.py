@@ -11,7 +11,7 @@ from geofit.report.document import Column, Mark, Table
 
 __all__ = ["check_table"]
 
-#: Of the places where a check does not hold, so many are named.
+#: Of the places where a check fails, so many are named.
 MOST_PLACES = 3
 
 
@@ -24,7 +24,7 @@ def check_table(checks: Sequence[CheckLine], t: Language) -> Table:
         Column(t("Limit"), "number"),
         Column(t("Detail"), "wide"),
     )
-    words = {True: t("holds"), False: t("does not hold"), None: t("not applicable")}
+    words = {True: t("holds"), False: t("fails"), None: t("not applicable")}
     rows = tuple(
         (
             translate(c.name, t),
@@ -39,7 +39,7 @@ def check_table(checks: Sequence[CheckLine], t: Language) -> Table:
 
 
 def _detail(check: CheckLine, t: Language) -> str:
-    """Return what a check says, and, where it does not hold, the worst places."""
+    """Return what a check says, and, where it fails, the worst places."""
     text = sentence(check.text, t)
     if check.passed is not False or not check.places:
         return text

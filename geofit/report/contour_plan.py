@@ -11,7 +11,7 @@ from geofit.data.languages import EN, Language
 from geofit.report.accuracy_report import PlanSheet
 from geofit.report.furniture import north_arrow, scale_bar, scale_for, scale_text
 from geofit.report.result import HorizonResult
-from geofit.report.style import CORE, INK, LINE, MUTED, PAPER, drawing, kind_style
+from geofit.report.style import CORE, LINE, MUTED, PAPER, TEXT, drawing, kind_style
 from geofit.report.view import rims
 from geofit.sampling.contours import contours, interval_for
 
@@ -59,7 +59,7 @@ def draw_contour_plan(sheet: PlanSheet, result: HorizonResult, t: Language = EN)
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
         _contours(axes, result, sheet.interval)
-        _surroundings(axes, result, wide)
+        _base_map(axes, result, wide)
         _points(axes, result)
         _frame(axes, t)
         north_arrow(axes, wide + 8.0, tall - 17.0, t("N"))
@@ -125,7 +125,7 @@ def _label(axes: Axes, line: Floats, text: str, labelled: list[Floats], reach: f
     )  # fmt: skip
 
 
-def _surroundings(axes: Axes, result: HorizonResult, wide: float) -> None:
+def _base_map(axes: Axes, result: HorizonResult, wide: float) -> None:
     """Draw the study area, the core, section lines with their names, and holes with theirs."""
     surface, site = result.surface, result.site
     if site.boundary is not None:
@@ -173,7 +173,7 @@ def _frame(axes: Axes, t: Language) -> None:
     for label in axes.get_yticklabels():
         label.set(rotation=90, va="center")
     for spine in axes.spines.values():
-        spine.set(color=INK, linewidth=0.8)
+        spine.set(color=TEXT, linewidth=0.8)
     axes.set_xlabel(t("Easting, m"), fontsize=7, labelpad=2)
     axes.set_ylabel(t("Northing, m"), fontsize=7, labelpad=2)
 

@@ -43,7 +43,7 @@ def cover(
     Parameters
     ----------
     title : TitleBlock
-        What stands in the title block.
+        What is in the title block.
     facts : tuple of (label, value)
         What else does: coordinate system, program.
     picture : Picture, Paragraph or None

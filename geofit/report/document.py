@@ -121,7 +121,7 @@ Block = Heading | Paragraph | Table | Facts | Fields | Picture | Signatures
 
 @dataclass(frozen=True)
 class Chapter:
-    """A part of the document; ``verdict`` stands beside its title.
+    """A part of the document; ``verdict`` is next to its title.
 
     A chapter begins on a new page unless it ``follows`` on: then it begins where there is room for a good part of it.
     """
@@ -136,7 +136,7 @@ class Chapter:
 class Document:
     """A whole report in one language: the first chapter is the cover, ``contents`` titles the list of the others.
 
-    ``reference`` stands in the running head: document number and revision. ``unlisted`` are headings that the contents
+    ``reference`` is in the running head: document number and revision. ``unlisted`` are headings that the contents
     leave out.
     """
 

@@ -30,7 +30,7 @@ RATE, HOLD = 12, 8
 #: Colours of interpolated frames, of surveys, and of the ends in the background.
 BETWEEN, SURVEY, GHOST = "#8fa7b3", "#b4895a", "#6b6b6b"
 #: The viewpoint: from the south-west, above.
-EYE = (-0.55, -0.8, 0.45)
+VIEWPOINT = (-0.55, -0.8, 0.45)
 
 
 def write_film(bodies: Sequence[MorphBody], path: str | PathLike[str]) -> Path:
@@ -111,7 +111,7 @@ def body_pictures(
         for mesh in (meshes[0], meshes[-1]):
             if len(mesh.triangles):
                 plotter.add_mesh(shape(mesh), color=GHOST, opacity=0.1, show_edges=False)
-        eye = np.array(EYE) / np.linalg.norm(EYE)
+        eye = np.array(VIEWPOINT) / np.linalg.norm(VIEWPOINT)
         plotter.camera_position = [tuple(1.4 * reach * eye), (0, 0, 0), (0, 0, 1)]
         plotter.camera.view_angle = 32
         plotter.enable_anti_aliasing("ssaa")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from geofit.report.style import INK, MUTED, PAPER
+from geofit.report.style import MUTED, PAPER, TEXT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,7 +56,7 @@ def scale_bar(axes: Axes, scale: int, x: float, y: float) -> None:
     part = _round(10.0 * scale / 1000.0)
     wide = part * 1000.0 / scale
     for k in range(4):
-        colour = INK if k % 2 == 0 else PAPER
+        colour = TEXT if k % 2 == 0 else PAPER
         _box(axes, x + k * wide, y, wide, 1.3, colour)
     for k in (0, 1, 2, 4):
         words = f"{part * k:g}" + ("\N{NO-BREAK SPACE}m" if k == 4 else "")
@@ -67,13 +67,13 @@ def north_arrow(axes: Axes, x: float, y: float, word: str) -> None:
     """Draw an arrow to grid north, 11 mm tall; ``x`` and ``y`` (mm) are its foot from the axes' lower left corner."""
     from matplotlib.patches import Polygon
 
-    for side, colour in ((-1, INK), (1, PAPER)):
+    for side, colour in ((-1, TEXT), (1, PAPER)):
         corners = [(x, y + 11), (x + side * 2.6, y), (x, y + 2.4)]
         axes.add_patch(
-            Polygon(corners, closed=True, fc=colour, ec=INK, lw=0.6, transform=_millimetres(axes), zorder=9,
+            Polygon(corners, closed=True, fc=colour, ec=TEXT, lw=0.6, transform=_millimetres(axes), zorder=9,
                     clip_on=False)
         )  # fmt: skip
-    _word(axes, x, y + 12.0, word, size=8.0, weight="bold", colour=INK)
+    _word(axes, x, y + 12.0, word, size=8.0, weight="bold", colour=TEXT)
 
 
 def _round(length: float) -> float:
@@ -95,7 +95,7 @@ def _box(axes: Axes, x: float, y: float, wide: float, tall: float, colour: str) 
     from matplotlib.patches import Rectangle
 
     box = Rectangle(
-        (x, y), wide, tall, fc=colour, ec=INK, lw=0.6, transform=_millimetres(axes), clip_on=False, zorder=9
+        (x, y), wide, tall, fc=colour, ec=TEXT, lw=0.6, transform=_millimetres(axes), clip_on=False, zorder=9
     )
     axes.add_patch(box)
 

@@ -18,7 +18,7 @@ import geofit
 from geofit.data.accuracy import Check, Seam
 from geofit.data.messages import EMPTY, Message
 from geofit.data.points import PointSet
-from geofit.data.prediction import LeftOut, OffData
+from geofit.data.prediction import LeftOut, PredictionResult
 from geofit.data.site import ImportIssue, Section, Site
 from geofit.report.accuracy_report import (
     AccuracyReport,
@@ -32,12 +32,12 @@ from geofit.report.accuracy_report import (
     HorizonReport,
     InputFile,
     LeftOutLine,
-    OffDataReport,
     OrderLine,
     OutlierLine,
     PartLine,
     PatchLine,
     PointLine,
+    PredictionReport,
     RejectedRow,
     SeamLine,
     StorageLine,
@@ -119,7 +119,7 @@ def accuracy_report(
     cuts : sequence of FaultCut
         What faults displace, by :func:`geofit.site.throw.throws`.
     contradictions : sequence of Contradiction
-        What :func:`geofit.site.separate.separate_horizons` could not mend.
+        What :func:`geofit.site.separate.separate_horizons` could not resolve.
     failures : mapping of str to Message, optional
         Horizons that could not be fitted, and why.
     date : str
@@ -195,7 +195,7 @@ def horizon_report(result: HorizonResult) -> HorizonReport:
         seams=_seams(a.seams),
         checks=check_lines(a.checks),
         read_back=_file(result),
-        off_data=None if result.offdata is None else _off_data(result, result.offdata),
+        prediction=None if result.prediction is None else _prediction(result, result.prediction),
         conflicts=tuple(
             ConflictLine(points.describe(c.kept), points.describe(c.dropped), c.difference, c.text) for c in a.conflicts
         ),
@@ -221,11 +221,11 @@ def _shown(what: str, result: HorizonResult, approximated: NDArray[np.float64]) 
     """Whether a picture has something to show: residuals where not every point is interpolated."""
     if what == "residuals":
         return bool(np.abs(approximated).max(initial=0.0) >= NOISE)
-    return what != "uncertainty" or _has_uncertainty(result.offdata)
+    return what != "uncertainty" or _has_uncertainty(result.prediction)
 
 
-def _has_uncertainty(offdata: OffData | None) -> bool:
-    return offdata is not None and offdata.uncertainty is not None
+def _has_uncertainty(prediction: PredictionResult | None) -> bool:
+    return prediction is not None and prediction.uncertainty is not None
 
 
 def _part(d: NDArray[np.float64], tolerance: float) -> PartLine:
@@ -286,9 +286,9 @@ def _file(result: HorizonResult) -> FileCheck | None:
     )  # fmt: skip
 
 
-def _off_data(result: HorizonResult, found: OffData) -> OffDataReport:
+def _prediction(result: HorizonResult, found: PredictionResult) -> PredictionReport:
     field = found.uncertainty
-    return OffDataReport(
+    return PredictionReport(
         left_out=tuple(_left_out(scheme) for scheme in found.left_out),
         factor=_finite(field.factor) if field else None,
         sd_mean=_finite(field.mean) if field else None,
@@ -305,7 +305,7 @@ def _left_out(scheme: LeftOut) -> LeftOutLine:
     return LeftOutLine(
         scheme.scheme, scheme.groups, int(np.isfinite(scheme.error).sum()), scheme.rms, scheme.mean_abs, scheme.bias,
         scheme.max_abs, _finite(scheme.inside), _finite(scheme.inside_raw),
-        tuple((name, _finite(rms)) for name, rms in scheme.peers.items()),
+        tuple((name, _finite(rms)) for name, rms in scheme.references.items()),
     )  # fmt: skip
 
 

@@ -15,7 +15,7 @@ __all__ = ["doubled", "group_blocks"]
 
 #: Holes and sections beyond this number are in the JSON only, the largest residual first here.
 LONGEST_GROUPS = 20
-#: Longer tables of groups stand in two halves side by side.
+#: Longer tables of groups are set in two halves side by side.
 LONGEST_SINGLE = 6
 _GROUPS = {
     "kind": (message("report.by-kind", "By kind of source"), message("report.kind", "Kind of source")),
@@ -47,7 +47,7 @@ def group_blocks(h: HorizonReport, by_what: Sequence[str], t: Language) -> list[
         blocks += [Heading(translate(title, t), 3), doubled(table) if len(shown) > LONGEST_SINGLE else table]
         if len(rows) > LONGEST_GROUPS:
             text = t(
-                "The {shown} with the largest residuals; {count} more stand in report.json.",
+                "The {shown} with the largest residuals; report.json lists {count} more.",
                 shown=LONGEST_GROUPS,
                 count=len(rows) - LONGEST_GROUPS,
             )

@@ -8,7 +8,7 @@ import numpy as np
 
 from geofit.data.languages import EN, Language
 from geofit.report.result import HorizonResult
-from geofit.report.style import CORE, FAIL, INK, LINE, MUTED, PAPER, quiet
+from geofit.report.style import CORE, FAIL, LINE, MUTED, PAPER, TEXT, quiet
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +59,7 @@ def histogram(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
     axes.grid(axis="y", color=LINE, lw=0.6, zorder=0)
     axes.set_axisbelow(True)
     quiet(axes)
-    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.3), borderaxespad=0, labelcolor=INK)
+    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.3), borderaxespad=0, labelcolor=TEXT)
 
 
 def normal_plot(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
@@ -79,7 +79,7 @@ def normal_plot(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
     axes.grid(color=LINE, lw=0.6, zorder=0)
     axes.set_axisbelow(True)
     quiet(axes)
-    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.3), borderaxespad=0, labelcolor=INK, ncols=2)
+    axes.legend(loc="upper left", bbox_to_anchor=(0, -0.3), borderaxespad=0, labelcolor=TEXT, ncols=2)
 
 
 def _nothing(axes: Axes, t: Language) -> None:

@@ -22,7 +22,7 @@ from geofit.report.document import (
     Verdict,
 )
 from geofit.report.group_tables import group_blocks
-from geofit.report.off_data_blocks import off_data_blocks
+from geofit.report.prediction_blocks import prediction_blocks
 
 __all__ = ["horizon_chapter", "verdict_badge"]
 
@@ -39,7 +39,7 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
         *_deviations(h, t),
         *_checked(h, t),
         *_read_back(h.read_back, t),
-        *off_data_blocks(h, t),
+        *prediction_blocks(h, t),
     ]
     return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h, t))
 

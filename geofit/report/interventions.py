@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from geofit.data.languages import Language, sentence, translate
 from geofit.report import digits
-from geofit.report.accuracy_report import AccuracyReport, HorizonReport, OffDataReport
+from geofit.report.accuracy_report import AccuracyReport, HorizonReport, PredictionReport
 from geofit.report.document import Block, Cell, Chapter, Column, Heading, Paragraph, Table
 from geofit.report.point_table import point_cells, point_columns
 
@@ -49,7 +49,7 @@ def _conflicts(h: HorizonReport, t: Language) -> list[Block]:
         return []
     columns = (
         Column(t("Kept"), "wide"),
-        Column(t("Gave way"), "wide"),
+        Column(t("Dropped"), "wide"),
         Column(t("Difference, m"), "number"),
         Column(t("Why"), "wide"),
     )
@@ -61,7 +61,7 @@ def _conflicts(h: HorizonReport, t: Language) -> list[Block]:
 
 
 def _outliers(h: HorizonReport, t: Language) -> list[Block]:
-    if h.off_data is None or not h.off_data.outliers:
+    if h.prediction is None or not h.prediction.outliers:
         return []
     columns = (
         *point_columns(t),
@@ -69,17 +69,17 @@ def _outliers(h: HorizonReport, t: Language) -> list[Block]:
         Column(t("Standard deviation, m"), "number"),
         Column(t("Ratio"), "number"),
     )
-    found = h.off_data.outliers
+    found = h.prediction.outliers
     rows = tuple(
         (*point_cells(o.point, t), digits.metres(o.error), digits.metres(o.sd), f"{o.ratio:.1f}".replace("-", "−"))
         for o in found[:LONGEST]
     )
-    text = t("Points that their neighbours do not bear out. They were used all the same: look at them.")
+    text = t("Points that their neighbours contradict. They were used all the same: check them.")
     return [Paragraph(text, "quiet"), Table(columns, rows), *_more(len(found), t)]
 
 
 def _suggestions(h: HorizonReport, t: Language) -> list[Block]:
-    off = h.off_data
+    off = h.prediction
     if off is None or not off.suggestions:
         return []
     columns = (
@@ -95,7 +95,7 @@ def _suggestions(h: HorizonReport, t: Language) -> list[Block]:
     return [Table(columns, tuple(_suggestion(i, off, t) for i in range(len(off.suggestions))))]
 
 
-def _suggestion(i: int, off: OffDataReport, t: Language) -> tuple[Cell, ...]:
+def _suggestion(i: int, off: PredictionReport, t: Language) -> tuple[Cell, ...]:
     s = off.suggestions[i]
     return (
         str(i + 1),
@@ -108,4 +108,4 @@ def _suggestion(i: int, off: OffDataReport, t: Language) -> tuple[Cell, ...]:
 def _more(total: int, t: Language) -> list[Block]:
     if total <= LONGEST:
         return []
-    return [Paragraph(t("{count} more stand in {file}.", count=total - LONGEST, file="report.json"), "quiet")]
+    return [Paragraph(t("{file} lists {count} more.", count=total - LONGEST, file="report.json"), "quiet")]

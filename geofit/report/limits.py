@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from geofit.data.languages import Language
 from geofit.report import digits
-from geofit.report.accuracy_report import AccuracyReport, HorizonReport, OffDataReport
+from geofit.report.accuracy_report import AccuracyReport, HorizonReport, PredictionReport
 from geofit.report.document import Block, Column, Heading, Paragraph, Table
 
 __all__ = ["away_from_data", "limits_of_use"]
@@ -17,7 +17,7 @@ HALF = 1.6448536269514722
 
 def away_from_data(report: AccuracyReport, t: Language) -> list[Block]:
     """Lay out, a row a horizon, what to expect where there is no hole; nothing where nothing was examined."""
-    known = [(h.name, h.off_data) for h in report.horizons if h.off_data is not None]
+    known = [(h.name, h.prediction) for h in report.horizons if h.prediction is not None]
     if not known:
         return []
     columns = (
@@ -33,7 +33,7 @@ def away_from_data(report: AccuracyReport, t: Language) -> list[Block]:
     return [Heading(t("Away from the data")), Table(columns, rows), Paragraph(text, "quiet")]
 
 
-def _expected(off: OffDataReport) -> tuple[str, ...]:
+def _expected(off: PredictionReport) -> tuple[str, ...]:
     bands = [None if sd is None else HALF * sd for sd in (off.sd_mean, off.sd_max)]
     inside = off.left_out[0].inside if off.left_out else None
     return (
@@ -82,7 +82,7 @@ def limits_of_use(report: AccuracyReport, t: Language) -> list[Block]:
 
 
 def _left_out(horizon: HorizonReport) -> float | None:
-    off = horizon.off_data
+    off = horizon.prediction
     return off.left_out[0].rms if off is not None and off.left_out else None
 
 

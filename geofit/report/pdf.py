@@ -28,7 +28,7 @@ from geofit.report.document import (
 from geofit.report.fonts import pdf_fonts
 from geofit.report.pdf_table import draw_table, table_height
 from geofit.report.pdf_text import POINT, Pen, Typesetter, rgb
-from geofit.report.style import FAIL, INK, LINE, MUTED, PASS, WARNING
+from geofit.report.style import FAIL, LINE, MUTED, PASS, TEXT, WARNING
 
 __all__ = ["write_pdf"]
 
@@ -80,7 +80,7 @@ class _Pages(FPDF):
 
     def __init__(self, document: Document) -> None:
         super().__init__(format="A4")
-        # Each font that is asked for a character it lacks would say so, though the next one has it.
+        # Each font that is asked for a character it lacks would report it, though the next one has it.
         logging.getLogger("fpdf").setLevel(logging.ERROR)
         logging.getLogger("fontTools").setLevel(logging.ERROR)
         self.document, self.running, self.highest = document, "", HIGHEST
@@ -194,7 +194,7 @@ class _Pages(FPDF):
         self.set_xy(SIDE, 16)
         for text, pen, height in (
             (self.document.subject, Pen(10.5, MUTED), 5.5),
-            (self.document.title, Pen(22, INK, bold=True), 10.5),
+            (self.document.title, Pen(22, TEXT, bold=True), 10.5),
         ):
             self._lines(text, pen, height)
         self._rule(self.y + 1)
@@ -202,7 +202,7 @@ class _Pages(FPDF):
 
     def _title(self, text: str, verdict: Verdict | None) -> None:
         top = self.y
-        pen = Pen(15, INK, bold=True)
+        pen = Pen(15, TEXT, bold=True)
         for k, line in enumerate(self.type.lines(text, self.epw - 36, pen)):
             self.type.draw(SIDE, top + 8 * k + 4, line, pen)
             self.set_y(top + 8 * (k + 1))
@@ -239,7 +239,7 @@ class _Pages(FPDF):
             self.set_y(self.y + (3.5 if block.level == 2 else 2))
         if block.level == 2:
             self.start_section(block.text, level=1)
-        self._lines(block.text, Pen(11.5 if block.level == 2 else 9, INK, bold=True), 5.5)
+        self._lines(block.text, Pen(11.5 if block.level == 2 else 9, TEXT, bold=True), 5.5)
         self.set_y(self.y + 1)
 
     def _lines(self, text: str, pen: Pen, height: float, indent: float = 0.0) -> None:
@@ -276,12 +276,12 @@ class _Pages(FPDF):
         top = self.y
         for i, (_, value, _) in enumerate(block.items):
             left = SIDE + i * (wide + gap)
-            self.set_draw_color(*rgb(INK))
+            self.set_draw_color(*rgb(TEXT))
             self.set_line_width(0.35)
             self.line(left, top, left + wide, top)
-            pen = Pen(10.5, INK, bold=True)
+            pen = Pen(10.5, TEXT, bold=True)
             while self.type.width(value, pen) > wide and pen.size > 6:
-                pen = Pen(pen.size - 0.5, INK, bold=True)
+                pen = Pen(pen.size - 0.5, TEXT, bold=True)
             self.type.draw(left, top + 1.2 + 3 * high + 2.75, value, pen)
             for lines, start in ((above[i], 1.2), (below[i], 6.7 + 3 * high)):
                 for k, line in enumerate(lines):
@@ -290,7 +290,7 @@ class _Pages(FPDF):
 
     def _fields(self, block: Fields) -> None:
         """Draw the title block: two fields a row, label above value."""
-        wide, height, value = self.epw / 2, FIELD, Pen(BODY + 0.6, INK, bold=True)
+        wide, height, value = self.epw / 2, FIELD, Pen(BODY + 0.6, TEXT, bold=True)
         self.set_draw_color(*rgb(MUTED))
         self.set_line_width(0.2)
         for i, (label, text) in enumerate(block.items):
@@ -389,7 +389,7 @@ def _draw_contents(pdf: FPDF, outline: list[OutlineSection]) -> None:
         entries = [one for one in outline if one.level == 0]
     for one in entries:
         main = one.level == 0
-        pen = Pen(BODY + 0.4, INK, bold=True) if main else Pen(QUIET, MUTED)
+        pen = Pen(BODY + 0.4, TEXT, bold=True) if main else Pen(QUIET, MUTED)
         y += _ENTRIES[one.level]
         if y > pdf.foot:
             break

@@ -10,7 +10,7 @@ from typing import Literal
 from fpdf import FPDF
 from fpdf.fonts import TTFFont
 
-from geofit.report.style import INK
+from geofit.report.style import TEXT
 
 __all__ = ["POINT", "Pen", "Typesetter", "rgb"]
 
@@ -38,7 +38,7 @@ class Pen:
 
     __slots__ = ("bold", "colour", "family", "size")
 
-    def __init__(self, size: float, colour: str = INK, *, bold: bool = False, family: str = "text") -> None:
+    def __init__(self, size: float, colour: str = TEXT, *, bold: bool = False, family: str = "text") -> None:
         self.size, self.colour, self.bold, self.family = size, colour, bold, family
 
 

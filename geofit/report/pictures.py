@@ -1,4 +1,4 @@
-"""The pictures of a run: those that the report holds, and those that stand beside it as files."""
+"""The pictures of a run: those that the report holds, and those that are next to it as files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from geofit.report.gather import SITE_PICTURE, cut_of, picture_name, section_pic
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
 from geofit.report.section_sheet import draw_section, section_sheet
-from geofit.report.style import FAIL, HORIZONS, INK, MUTED, PASS, WARNING, drawing
+from geofit.report.style import FAIL, HORIZONS, MUTED, PASS, TEXT, WARNING, drawing
 from geofit.report.uncertainty import uncertainty_map
 
 if TYPE_CHECKING:
@@ -42,7 +42,7 @@ TYPE = 8.0
 
 @dataclass(frozen=True)
 class Pictures:
-    """Pictures as PNG by their names in the report, and the scene; ``missing`` says why there is none."""
+    """Pictures as PNG by their names in the report, and the scene; ``missing`` states why there is none."""
 
     images: Mapping[str, bytes] = field(repr=False)
     scene: Scene | None
@@ -66,8 +66,8 @@ def draw(result: HorizonResult, t: Language = EN) -> Pictures:
     }
     if view is not None:
         flat["view"] = _space(view, t)
-    if result.offdata is not None and result.offdata.uncertainty is not None:
-        field = result.offdata.uncertainty
+    if result.prediction is not None and result.prediction.uncertainty is not None:
+        field = result.prediction.uncertainty
         flat["uncertainty"] = _map(uncertainty_map, result, t, float(np.ptp(field.y) / np.ptp(field.x)))
     return Pictures({picture_name(what, result.name): data for what, data in flat.items()}, view, missing)
 
@@ -135,7 +135,7 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
             sigma=digits.equals(a.sigma),
             largest=digits.equals(a.max_abs),
         )
-        figure.text(0.025, top, result.name, size=17, weight="bold", color=INK)
+        figure.text(0.025, top, result.name, size=17, weight="bold", color=TEXT)
         figure.text(0.025, second, line, color=MUTED, size=10)
         verdict = result.verdict
         word = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}[verdict.word]

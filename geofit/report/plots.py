@@ -12,7 +12,7 @@ from geofit.data.languages import EN, Language, translate
 from geofit.data.site import Hole
 from geofit.report.histogram import histogram
 from geofit.report.result import HorizonResult
-from geofit.report.style import CORE, INK, LINE, MUTED, bands, kind_style, quiet
+from geofit.report.style import CORE, LINE, MUTED, TEXT, bands, kind_style, quiet
 from geofit.report.view import choose_view, rims, trimmed
 
 if TYPE_CHECKING:
@@ -197,4 +197,4 @@ def map_axes(axes: Axes, xlabel: str, ylabel: str) -> None:
 
 def legend(axes: Axes) -> None:
     """Put the legend beside a map."""
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, labelcolor=INK, handletextpad=0.5)
+    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), borderaxespad=0, labelcolor=TEXT, handletextpad=0.5)

@@ -1,4 +1,4 @@
-"""The columns by which a table says which data point is meant, and where it was read."""
+"""The columns by which a table names which data point is meant, and where it was read."""
 
 from __future__ import annotations
 

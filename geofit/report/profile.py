@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geofit.data.guard import guarded
 from geofit.data.points import PointSet
-from geofit.data.prediction import OffData
+from geofit.data.prediction import PredictionResult
 from geofit.data.site import Section, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.prediction.bands import prediction_sd
@@ -54,7 +54,9 @@ def report_sections(site: Site, points: Sequence[PointSet]) -> tuple[Section, ..
     return tuple(one for one in lines if one in chosen)
 
 
-def profiles(fit: HorizonFit, found: OffData | None, sections: Sequence[Section]) -> Mapping[str, tuple[Profile, ...]]:
+def profiles(
+    fit: HorizonFit, found: PredictionResult | None, sections: Sequence[Section]
+) -> Mapping[str, tuple[Profile, ...]]:
     """Return what each section cuts of a horizon, by the section's name."""
     mesh = fit.triangulate(COARSE)
     return {
@@ -80,7 +82,7 @@ def along(line: Floats, xy: Floats) -> tuple[Floats, Floats]:
     return where, best
 
 
-def _profile(fit: HorizonFit, found: OffData | None, section: Section, cut: CutLine) -> Profile:
+def _profile(fit: HorizonFit, found: PredictionResult | None, section: Section, cut: CutLine) -> Profile:
     line = np.column_stack([cut.distance, cut.xyz[:, 2]])
     uncertainty = found.uncertainty if found is not None else None
     if uncertainty is None or fit.model is None:
@@ -99,7 +101,7 @@ def _within_section(fit: HorizonFit, section: Section, cut: CutLine) -> Floats:
     """
     if fit.frame != "best-plane" or fit.model is None:
         return np.tile([0.0, 1.0], (len(cut.distance), 1))
-    normal = fit.model.problem.chart.frame.turn_back(np.array([[0.0, 0.0, 1.0]]))[0]
+    normal = fit.model.problem.parametrization.frame.turn_back(np.array([[0.0, 0.0, 1.0]]))[0]
     normal = normal if normal[2] >= 0 else -normal
     steps = np.diff(section.line, axis=0)
     lengths = np.linalg.norm(steps, axis=1)

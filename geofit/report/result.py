@@ -12,7 +12,7 @@ from geofit.checks.storage import Storage
 from geofit.data.accuracy import Accuracy, Check, ReadBack
 from geofit.data.messages import Message
 from geofit.data.points import PointSet
-from geofit.data.prediction import OffData
+from geofit.data.prediction import PredictionResult
 from geofit.data.site import ImportIssue, Site
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
@@ -39,7 +39,7 @@ class HorizonResult:
         Size of the STEP file.
     seconds : mapping of str to float
         Time of each stage.
-    offdata : OffData or None
+    prediction : PredictionResult or None
         The surface away from its data; None: not examined.
     profiles : mapping of str to tuple of Profile
         What the sections of the report cut, by the section's name.
@@ -57,7 +57,7 @@ class HorizonResult:
     storage: Storage | None = None
     step_bytes: int = 0
     seconds: Mapping[str, float] = field(default_factory=dict)
-    offdata: OffData | None = None
+    prediction: PredictionResult | None = None
     profiles: Mapping[str, tuple[Profile, ...]] = field(default_factory=dict, repr=False)
     excluded: PointSet | None = None
     edits: tuple[Message, ...] = ()
@@ -66,7 +66,7 @@ class HorizonResult:
     @property
     def verdict(self) -> Verdict:
         """The verdict with its three lamps."""
-        return verdict_of(self.accuracy, self.offdata, self.read_back, self.orders)
+        return verdict_of(self.accuracy, self.prediction, self.read_back, self.orders)
 
     @property
     def name(self) -> str:
@@ -88,7 +88,7 @@ class HorizonResult:
 
     @property
     def dropped(self) -> dict[int, Message]:
-        """Points that were not fitted, and why (conflicts settled by accuracy)."""
+        """Points that were not fitted, and why (conflicts resolved by accuracy)."""
         return {int(c.dropped): c.text for c in self.accuracy.conflicts}
 
     @property

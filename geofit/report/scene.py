@@ -46,12 +46,12 @@ NO_OPENGL = message(
 STEPS = 90
 #: Opacity of horizons that stand behind each other.
 SHEER = 0.55
-#: Relief is raised by a whole number, at most MOST_RAISED, until it is this share of the width.
-RELIEF, MOST_RAISED = 0.14, 5
+#: Heights are raised by a whole number, at most MOST_RAISED, until it is this share of the width.
+LEAST_HEIGHT, MOST_RAISED = 0.14, 5
 #: Pores of a network are drawn so much smaller, so that the throats are seen.
 BALL = 0.6
-#: Where the eye is: from the south-west, above.
-EYE = (-0.5, -0.8, 0.62)
+#: Direction of the viewpoint: from the south-west, above.
+VIEWPOINT = (-0.5, -0.8, 0.62)
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,7 +105,7 @@ def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -
     if core is not None and len(surface.patches) > 1:
         _add_rim(plotter, surface, core, place, color="#0b2f4a", line_width=6)
     _add_points(plotter, place(surface.points.xyz))
-    return _shoot(plotter, place, raised, limits)
+    return _image(plotter, place, raised, limits)
 
 
 def site_scene(
@@ -131,7 +131,7 @@ def site_scene(
             _add_rim(plotter, surface, rim, place, color="#1c2733", line_width=2, opacity=0.35)
     for hole in holes:
         plotter.add_mesh(_line(place(hole.xyz)), color=kind_style(hole.kind)[1], line_width=4)
-    return _shoot(plotter, place, raised, (0.0, 0.0), boxed=True)
+    return _image(plotter, place, raised, (0.0, 0.0), boxed=True)
 
 
 def mesh_scene(
@@ -164,7 +164,7 @@ def mesh_scene(
     faces = np.column_stack([np.full(len(triangles), 3), triangles])
     _add_surface(plotter, pyvista.PolyData(place(vertices), faces.ravel()), color=colour)
     _add_points(plotter, place(points))
-    return _shoot(plotter, place, 1, (0.0, 0.0), boxed=True)
+    return _image(plotter, place, 1, (0.0, 0.0), boxed=True)
 
 
 def network_scene(
@@ -201,7 +201,7 @@ def network_scene(
         lines = np.column_stack([np.full(len(links), 2), links])
         plotter.add_mesh(pyvista.PolyData(place(centre), lines=lines.ravel()), color="#3a4652", line_width=5)
     plotter.add_mesh(pyvista.Box(np.column_stack([-size / 2, size / 2]).ravel()), style="wireframe", color="#9aa7b4")
-    return _shoot(plotter, place, 1, (float(radius.min()), float(radius.max())))
+    return _image(plotter, place, 1, (float(radius.min()), float(radius.max())))
 
 
 def elevation_colours() -> Any:
@@ -230,8 +230,8 @@ class _Place:
 
 def _raised(surfaces: Sequence[HorizonFit]) -> int:
     xyz = np.concatenate([rim for s in surfaces for rim in rims(s).values()])
-    width, relief = np.ptp(xyz[:, :2], axis=0).max(), np.ptp(xyz[:, 2])
-    return int(np.clip(np.ceil(RELIEF * width / max(relief, 1e-9)), 1, MOST_RAISED))
+    width, height = np.ptp(xyz[:, :2], axis=0).max(), np.ptp(xyz[:, 2])
+    return int(np.clip(np.ceil(LEAST_HEIGHT * width / max(height, 1e-9)), 1, MOST_RAISED))
 
 
 def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
@@ -240,9 +240,9 @@ def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
 
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
     plotter.set_background("white")
-    # The sun of a hill-shaded map stands in the north-west; a weak light beside the eye lifts the shadows.
+    # The sun of a hill-shaded map is in the north-west; a weak light beside the eye lifts the shadows.
     plotter.add_light(pyvista.Light(position=(-1, 0.9, 1.1), intensity=0.7, light_type="scene light"))
-    plotter.add_light(pyvista.Light(position=EYE, intensity=0.5, light_type="scene light"))
+    plotter.add_light(pyvista.Light(position=VIEWPOINT, intensity=0.5, light_type="scene light"))
     return plotter
 
 
@@ -323,12 +323,12 @@ def _line(local: NDArray[np.float32]) -> pyvista.PolyData:
     return pyvista.lines_from_points(local)
 
 
-def _shoot(
+def _image(
     plotter: pyvista.Plotter, place: _Place, raised: int, limits: tuple[float, float], *, boxed: bool = False
 ) -> Scene:
     """Take the picture, and cut its margin off; ``boxed``: keep room for the box around what is drawn."""
     low, high = np.reshape(plotter.bounds, (3, 2)).T / place.scale + place.centre
-    plotter.camera_position = [EYE, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
+    plotter.camera_position = [VIEWPOINT, (0.0, 0.0, 0.0), (0.0, 0.0, 1.0)]
     plotter.enable_parallel_projection()
     plotter.enable_anti_aliasing("ssaa")
     plotter.reset_camera()

@@ -1,7 +1,7 @@
 """The results as JSON: one schema for NAME.json, report.json and --json, published as ``result.schema.json``.
 
 A document is a serialised dataclass: the names of its fields, null for None, a message as its code, severity, English
-text and parameters. ``kind`` says which document it is, ``schema_version`` which schema; a change that a reader would
+text and parameters. ``kind`` names which document it is, ``schema_version`` which schema; a change that a reader would
 misread makes it one more. ``tools/schema.py`` writes the schema from the dataclasses.
 """
 

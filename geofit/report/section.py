@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geofit.data.files import replacing
-from geofit.report.style import INK, LINE, MUTED, drawing, horizon_colours, quiet
+from geofit.report.style import LINE, MUTED, TEXT, drawing, horizon_colours, quiet
 from geofit.sampling.cut import CutLine
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["write_section_picture"]
 
-#: A section flatter than this is drawn higher, and says so.
+#: A section flatter than this is drawn higher, and reports it.
 FLATTEST, HIGHEST = 1 / 6, 5.0
 
 
@@ -73,7 +73,7 @@ def write_section_picture(
         if axes.lines:
             axes.legend(loc="upper left", bbox_to_anchor=(0, -0.55 / (height - 1.9)), ncols=6, borderaxespad=0)
         start, end = (f"({x:.1f}, {y:.1f})" for x, y in (corners[0], corners[-1]))
-        figure.text(0.08, 1 - 0.4 / height, "Section", size=13, weight="bold", color=INK)
+        figure.text(0.08, 1 - 0.4 / height, "Section", size=13, weight="bold", color=TEXT)
         words = "true to scale" if scale == 1 else f"elevations {scale:g} times higher"
         figure.text(0.08, 1 - 0.68 / height, f"{start} to {end} · {words}", size=8.5, color=MUTED)
         with replacing(path) as part:

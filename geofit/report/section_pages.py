@@ -14,7 +14,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.files import file_stems, replacing
 from geofit.data.languages import EN, Language
 from geofit.data.messages import message
-from geofit.report.style import INK, LINE, MUTED, drawing, horizon_colours, kind_style
+from geofit.report.style import LINE, MUTED, TEXT, drawing, horizon_colours, kind_style
 from geofit.site.section_view import HoleTrack, SectionView, lithologies
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def write_sheet_pdf(
     scale : int, optional
         1 : so many; None: the largest at which all fit.
     exaggeration : float
-        Elevations are drawn so many times higher; the title block says so.
+        Elevations are drawn so many times higher; the title block reports it.
     language : Language
         That of the words.
 
@@ -222,7 +222,7 @@ def _page(
 
     def box(x: float, y: float, width: float, height: float) -> None:
         figure.add_artist(
-            Rectangle((x / wide, y / high), width / wide, height / high, fill=False, ec=INK, lw=0.7,
+            Rectangle((x / wide, y / high), width / wide, height / high, fill=False, ec=TEXT, lw=0.7,
                       transform=figure.transFigure)
         )  # fmt: skip
 
@@ -257,10 +257,10 @@ def _draw(
         axes.plot(*view.ground.T, color=GROUND, lw=1.2, label=t("ground"), zorder=3)
     banded = False
     for name, traces in view.traces.items():
-        told = any(one.supported for one in traces)
+        solid = any(one.supported for one in traces)
         named = False
         for one in traces:
-            first = not named and one.supported == told
+            first = not named and one.supported == solid
             named |= first
             axes.plot(
                 one.distance, one.z, color=colours[name], lw=1.4 if one.supported else 1.0,
@@ -289,17 +289,17 @@ def _column(axes: Axes, hole: HoleTrack, half: float, styles: Mapping[str, tuple
     """Draw a hole with a column for each of its interval tables side by side, its name over the collar."""
     from matplotlib.patches import Polygon
 
-    axes.plot(*hole.track.T, color=INK, lw=0.6, zorder=4)
+    axes.plot(*hole.track.T, color=TEXT, lw=0.6, zorder=4)
     tables = list(dict.fromkeys(interval.table for interval in hole.intervals))
     for interval in hole.intervals:
         colour, hatch = styles[interval.code]
         left, right = (np.array([2 * half * (tables.index(interval.table) + k), 0.0]) for k in (0, 1))
         outline = np.concatenate([interval.track + left, interval.track[::-1] + right])
-        axes.add_patch(Polygon(outline, fc=colour, ec=INK, lw=0.3, hatch=hatch, zorder=4))
+        axes.add_patch(Polygon(outline, fc=colour, ec=TEXT, lw=0.3, hatch=hatch, zorder=4))
     top = hole.track[hole.track[:, 1].argmax()]
     axes.annotate(
         hole.name, top, xytext=(0, 3), textcoords="offset points", ha="center", va="bottom", rotation=90, size=6,
-        color=INK, zorder=7,
+        color=TEXT, zorder=7,
     )  # fmt: skip
 
 
@@ -322,7 +322,7 @@ def _legend(
     here = {one.code for hole in view.holes for one in hole.intervals}
     for code, (colour, hatch) in styles.items():
         if code in here:
-            handles.append(Patch(fc=colour, ec=INK, lw=0.3, hatch=hatch))
+            handles.append(Patch(fc=colour, ec=TEXT, lw=0.3, hatch=hatch))
             labels.append(code)
     corner = ((wide - EDGE - LEGEND) / wide, (high - EDGE - 14) / high)
     figure.legend(handles, labels, loc="upper left", bbox_to_anchor=corner, fontsize=6.5, borderaxespad=0)
@@ -343,7 +343,7 @@ def _block(
     """Write the title over the drawing, and the title block below it."""
     wide, high = paper
     name = f"{block.title} · {view.name}" if view.name else block.title
-    figure.text((EDGE + 6) / wide, (high - EDGE - 9) / high, name, size=13, weight="bold", color=INK)
+    figure.text((EDGE + 6) / wide, (high - EDGE - 9) / high, name, size=13, weight="bold", color=TEXT)
     (x0, y0), (x1, y1) = view.line[[0, -1]]
     line = t(
         "from ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m; holes and points within {half:g} m",
@@ -363,5 +363,5 @@ def _block(
     for word, value, share in cells:
         box(at, EDGE, share * width, BLOCK - 8)
         figure.text((at + 2) / wide, (EDGE + BLOCK - 12) / high, word, size=6, color=MUTED)
-        figure.text((at + 2) / wide, (EDGE + 4) / high, value, size=8.5, color=INK)
+        figure.text((at + 2) / wide, (EDGE + 4) / high, value, size=8.5, color=TEXT)
         at += share * width

@@ -14,7 +14,7 @@ from geofit.data.site import Ground, Section, Site
 from geofit.report.accuracy_report import SectionSheet
 from geofit.report.furniture import exaggeration_for, scale_bar, scale_for, scale_text
 from geofit.report.profile import THICKNESS, Profile, along
-from geofit.report.style import INK, LINE, MUTED, PAPER, drawing, horizon_colours, kind_style
+from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing, horizon_colours, kind_style
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -187,7 +187,7 @@ def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[
             named.append(float(s[0]))
             axes.annotate(
                 hole.name, (s[0], min(max(z[0], low), high)), xytext=(0, 4), textcoords="offset points", rotation=90,
-                size=5.6, color=INK, ha="center", va="bottom", zorder=7, annotation_clip=False,
+                size=5.6, color=TEXT, ha="center", va="bottom", zorder=7, annotation_clip=False,
             )  # fmt: skip
 
 
@@ -220,7 +220,7 @@ def _frame(axes: Axes, section: Section, length: float, t: Language) -> None:
     for x, name, bearing, ha in ends:
         axes.annotate(
             f"{name}  {bearing:03.0f}°", (x, top), xytext=(0, 20), textcoords="offset points", size=8, weight="bold",
-            color=INK, ha=ha, va="bottom", annotation_clip=False,
+            color=TEXT, ha=ha, va="bottom", annotation_clip=False,
         )  # fmt: skip
 
 

@@ -1,4 +1,4 @@
-"""How the horizons of a site lie to each other: their order, what a repair left, and what faults displace."""
+"""How the horizons of a site lie to each other: their order, what the separation left, and what faults displace."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _order(report: AccuracyReport, t: Language) -> list[Block]:
 
 
 def _order_row(order: OrderLine, t: Language) -> tuple[Cell, ...]:
-    words = {True: t("holds"), False: t("does not hold"), None: t("not applicable")}
+    words = {True: t("holds"), False: t("fails"), None: t("not applicable")}
     where = "–" if order.deepest is None else f"{digits.place(order.deepest[0])}, {digits.place(order.deepest[1])}"
     return (
         order.upper,
@@ -65,7 +65,7 @@ def _order_row(order: OrderLine, t: Language) -> tuple[Cell, ...]:
 
 
 def _contradictions(report: AccuracyReport, t: Language) -> list[Block]:
-    """List what stayed crossed after the horizons were pushed apart; nothing if they were not, or all are apart."""
+    """List what stayed crossed after the horizons were separated; nothing if they were not, or all are apart."""
     if not report.contradictions:
         return []
     columns = (
@@ -90,10 +90,10 @@ def _contradictions(report: AccuracyReport, t: Language) -> list[Block]:
         for c in report.contradictions
     )
     text = t(
-        "The horizons were pushed apart as far as their exact points allow. Here these points contradict each other: "
-        "look at their rows."
+        "The horizons were separated as far as their exact points allow. Here these points "
+        "contradict each other: check their rows."
     )
-    return [Heading(t("Crossings that exact points hold"), 3), Paragraph(text, "warning"), Table(columns, rows)]
+    return [Heading(t("Crossings fixed by exact points"), 3), Paragraph(text, "warning"), Table(columns, rows)]
 
 
 def _faults(report: AccuracyReport, t: Language) -> list[Block]:
@@ -123,9 +123,9 @@ def _faults(report: AccuracyReport, t: Language) -> list[Block]:
         for c in report.cuts
     )
     text = t(
-        "Each block is a surface of its own that ends at the fault. Throw is the vertical distance between the blocks "
-        "midway between their ends, negative where the fault's sense is turned round; heave the horizontal one, "
-        "negative where they overlap."
+        "Each block is a surface of its own that ends at the fault. Throw is the vertical "
+        "distance between the blocks midway between their ends, negative where the fault's "
+        "sense is reversed; heave is the horizontal one, negative where they overlap."
     )
     blocks: list[Block] = [Heading(t("Faults")), Paragraph(text, "quiet"), Table(columns, rows)]
     for cut in report.cuts:

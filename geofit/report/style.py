@@ -20,11 +20,21 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 __all__ = [
-    "HORIZONS", "INK", "KIND_STYLE", "LINE", "MUTED", "PAPER", "Band", "bands", "drawing", "horizon_colours",
-    "kind_style", "quiet",
+    "HORIZONS",
+    "KIND_STYLE",
+    "LINE",
+    "MUTED",
+    "PAPER",
+    "TEXT",
+    "Band",
+    "bands",
+    "drawing",
+    "horizon_colours",
+    "kind_style",
+    "quiet",
 ]  # fmt: skip
 
-INK, MUTED, LINE, PAPER = "#1c2733", "#5d6b7a", "#d4dae1", "#ffffff"
+TEXT, MUTED, LINE, PAPER = "#1c2733", "#5d6b7a", "#d4dae1", "#ffffff"
 CORE, PASS, FAIL, QUIET, WARNING = "#0b5c8a", "#1b6e3c", "#a3271c", "#8795a3", "#b2611b"
 
 #: Marker and colour of each kind of source; shapes differ, so that a black-and-white print still tells.
@@ -40,7 +50,7 @@ KIND_STYLE = {
 _OTHER = ("P", "#6b6b6b")
 
 #: Colours of the horizons in turn. All stand out from white paper and from a dark window alike, so that a horizon has
-#: the very same colour in both; the first five are told apart by colour-blind eyes too.
+#: the very same colour in both; the first five can be distinguished by colour-blind readers too.
 HORIZONS = COLOURS
 
 #: Deviations: near zero, then three steps below and three above the surface. What is farther off stands out more: on
@@ -101,14 +111,14 @@ def bands(settings: FitSettings, *, dark: bool = False) -> tuple[Band, ...]:
 
 @contextmanager
 def drawing(size: float = 9.0) -> Iterator[None]:
-    """Hold matplotlib's settings for one picture, type in points; a missing glyph is told of once, by the caller."""
+    """Hold matplotlib's settings for one picture, type in points; a missing glyph is reported once, by the caller."""
     import matplotlib as mpl
 
     # The names that matplotlib's types allow change with its release.
     settings: dict[Any, Any] = {
         "font.family": families(),
         "font.size": size,
-        "text.color": INK,
+        "text.color": TEXT,
         "axes.edgecolor": LINE,
         "axes.labelcolor": MUTED,
         "axes.linewidth": 0.8,

@@ -25,10 +25,10 @@ ISSUE_HEADER = ("severity", "file", "row", "column", "value", "reason", "remedy"
 
 
 def write_residuals(result: HorizonResult, path: Path, language: Language = EN) -> None:
-    """Write one line a point, in the order they were read; only the reasons are told in the language.
+    """Write one line a point, in the order they were read; only the reasons are written in the language.
 
     Metres; residuals are positive above the surface. ``exact`` marks the points that the core interpolates;
-    ``used`` is "no" for a point that lost a conflict, and ``reason`` says why.
+    ``used`` is "no" for a point that lost a conflict, and ``reason`` states why.
     """
     points, a, core, dropped = result.surface.points, result.accuracy, result.core, result.dropped
     rows = (
@@ -62,7 +62,7 @@ def write_contacts(body: ImplicitBody, path: Path) -> None:
 
 
 def write_issues(issues: Sequence[ImportIssue], path: Path, language: Language = EN) -> None:
-    """Write everything that the readers found, errors first; only reasons and remedies are told in the language."""
+    """Write everything that the readers found, errors first; only reasons and remedies are written in the language."""
     order = {"error": 0, "warning": 1, "note": 2}
     rows = (
         (

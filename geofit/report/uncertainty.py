@@ -11,7 +11,7 @@ from geofit.data.languages import EN, Language
 from geofit.data.prediction import Uncertainty
 from geofit.report.plots import legend, map_axes
 from geofit.report.result import HorizonResult
-from geofit.report.style import FAIL, INK, MUTED
+from geofit.report.style import FAIL, MUTED, TEXT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,13 +29,13 @@ def uncertainty_map(axes: Axes, result: HorizonResult, t: Language = EN) -> None
     ValueError
         If the standard deviation was not examined.
     """
-    found = result.offdata
+    found = result.prediction
     if found is None or found.uncertainty is None:
         raise ValueError(f"The standard deviation of horizon '{result.name}' was not examined.")
     _shades(axes, found.uncertainty, t)
     turned = found.uncertainty.frame == "best-plane"
     points = _flat(result, result.surface.points.xyz, turned)
-    axes.plot(*points.T, ".", ms=2.2, color=INK, alpha=0.6, label=t("data points"), zorder=3)
+    axes.plot(*points.T, ".", ms=2.2, color=TEXT, alpha=0.6, label=t("data points"), zorder=3)
     _places(axes, _flat(result, np.array([(s.x, s.y, s.z) for s in found.suggestions]).reshape(-1, 3), turned), t)
     axes.set_title(t("Standard deviation of the surface"))
     if turned:
@@ -50,7 +50,7 @@ def _flat(result: HorizonResult, xyz: Floats, turned: bool) -> Floats:
     model = result.surface.model
     if not turned or model is None:
         return np.asarray(xyz[:, :2])
-    return model.problem.chart.frame.to_local(xyz)[:, :2]
+    return model.problem.parametrization.frame.to_local(xyz)[:, :2]
 
 
 def _shades(axes: Axes, field: Uncertainty, t: Language) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.site import Ground
-from geofit.sample.ledger import Ledger, errors_of
+from geofit.sample.observations import Observations, errors_of
 from geofit.sample.paths import Path, borehole_path, crossings, polyline_path
 from geofit.sample.truth import AZIMUTH, HORIZONS, fault_at, horizon_truth, overburden, to_map
 
@@ -66,7 +66,7 @@ class Adit:
     contacts: list[tuple[float, str]]
 
 
-def drill_boreholes(ground: Ground, sections: Floats, ledger: Ledger) -> list[Borehole]:
+def drill_boreholes(ground: Ground, sections: Floats, observations: Observations) -> list[Borehole]:
     """Return the boreholes: on each cross section (``sections`` is their s) and outside."""
     rng = np.random.default_rng(41)
     holes = []
@@ -77,11 +77,11 @@ def drill_boreholes(ground: Ground, sections: Floats, ledger: Ledger) -> list[Bo
             s_hole, t_hole = s + side * rng.uniform(0.5, 4.0), t + rng.uniform(-14, 14)
             name = f"ZK{i + 1}{j + 1:02d}"
             bottom = _FOLD_FLOOR if abs(t) < 50 and 0 < i < len(sections) - 1 else None
-            holes.append(_drill(name, s_hole, t_hole, t == to_fault, bottom, ground, ledger, rng))
+            holes.append(_drill(name, s_hole, t_hole, t == to_fault, bottom, ground, observations, rng))
     for side, places in (("W", _WEST), ("E", _EAST)):
         for j, (s, t) in enumerate(places):
             s, t = np.array([s, t]) + rng.uniform(-15, 15, 2)
-            holes.append(_drill(f"ZK{side}{j + 1:02d}", s, t, False, None, ground, ledger, rng))
+            holes.append(_drill(f"ZK{side}{j + 1:02d}", s, t, False, None, ground, observations, rng))
     return holes
 
 
@@ -92,7 +92,7 @@ def _drill(
     inclined: bool,
     bottom: float | None,
     ground: Ground,
-    ledger: Ledger,
+    observations: Observations,
     rng: np.random.Generator,
 ) -> Borehole:
     """Drill one hole: vertical or inclined to the left bank; ``bottom`` is an elevation to reach."""
@@ -126,7 +126,7 @@ def _drill(
         if met:
             contacts[horizon] = met
         for at in met:
-            ledger.add(horizon, "borehole", path(np.array([at]))[0])
+            observations.add(horizon, "borehole", path(np.array([at]))[0])
     end = path(np.array([depth]))
     bottom_rock = "T3" if horizon_truth("T3-T2").offset(end)[0] > 0 else "T2"
     if horizon_truth("T2-T1").offset(end)[0] < 0:
@@ -146,7 +146,7 @@ def _survey(azimuth: float, dip: float, depth: float, rng: np.random.Generator) 
     return np.column_stack([at, np.round(turn % 360, 1), np.round(np.minimum(dips, 89.9), 1)])
 
 
-def drill_adits(ground: Ground, ledger: Ledger) -> list[Adit]:
+def drill_adits(ground: Ground, observations: Observations) -> list[Adit]:
     """Return the adits: from a portal on the slope into the bank, rising by 0.5 %, with a bend."""
     rng = np.random.default_rng(42)
     adits = []
@@ -162,9 +162,9 @@ def drill_adits(ground: Ground, ledger: Ledger) -> list[Adit]:
         for horizon in HORIZONS:
             for at in crossings(path, length, horizon_truth(horizon).offset):
                 at = round(at + float(errors_of(rng, "adit", 1)[0]), 2)
-                if at > 6.0 and ledger.is_clear(horizon, path(np.array([at]))[0]):
+                if at > 6.0 and observations.is_clear(horizon, path(np.array([at]))[0]):
                     contacts.append((at, horizon))
-                    ledger.add(horizon, "adit", path(np.array([at]))[0])
+                    observations.add(horizon, "adit", path(np.array([at]))[0])
         nodes = np.column_stack([x, y, np.round(portal + 0.005 * along, 2)])
         adits.append(Adit(name, nodes, sorted(contacts)))
     return adits

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.site import Ground
-from geofit.sample.ledger import Ledger, errors_of
+from geofit.sample.observations import Observations, errors_of
 from geofit.sample.paths import zero_between
 from geofit.sample.truth import CORE, MapTruth, PlaneTruth, horizon_truth, inside, river, to_map, to_site
 from geofit.sample.truth import ground as true_ground
@@ -36,7 +36,7 @@ def _outside_core(s: Floats) -> NDArray[np.bool_]:
     return np.asarray((s < CORE[0] - _CLEAR) | (s > CORE[1] + _CLEAR))
 
 
-def map_outcrops(horizon: str, spacing: float, ground: Ground, ledger: Ledger) -> Floats:
+def map_outcrops(horizon: str, spacing: float, ground: Ground, observations: Observations) -> Floats:
     """Return (n, 2) map vertices where a horizon comes to the ground outside the core, bank by bank.
 
     They are off by the noise of an outcrop: the horizon passes so far above or below the mapped ground.
@@ -52,8 +52,8 @@ def map_outcrops(horizon: str, spacing: float, ground: Ground, ledger: Ledger) -
     for x, y in candidates:
         xyz = np.array([x, y, float(ground.elevation(np.array(x), np.array(y)))])
         s, _ = to_site(x, y)
-        if _outside_core(s) and inside(x, y) and ledger.is_clear(horizon, xyz):
-            ledger.add(horizon, "outcrop", xyz)
+        if _outside_core(s) and inside(x, y) and observations.is_clear(horizon, xyz):
+            observations.add(horizon, "outcrop", xyz)
             found.append((x, y))
     return np.array(found)
 
@@ -98,7 +98,7 @@ def _fault_outcrops(
     return found
 
 
-def pick_lines(horizon: str, n: int, ledger: Ledger) -> Floats:
+def pick_lines(horizon: str, n: int, observations: Observations) -> Floats:
     """Return (n, 3) picks of a horizon along the seismic lines outside the core."""
     rng = np.random.default_rng([44, *horizon.encode()])
     truth = horizon_truth(horizon)
@@ -116,10 +116,10 @@ def pick_lines(horizon: str, n: int, ledger: Ledger) -> Floats:
             x, y = (np.round(c, 2) for c in place)
             z = truth.height(x, y) + errors_of(rng, "geophysics", 1)[0]
             xyz = np.array([x, y, np.round(z, 2)])
-            if ledger.is_clear(horizon, xyz):
+            if observations.is_clear(horizon, xyz):
                 break
         else:
             raise AssertionError(f"No room for pick {i + 1} of {n} of {horizon}.")
-        ledger.add(horizon, "geophysics", xyz)
+        observations.add(horizon, "geophysics", xyz)
         found.append(xyz)
     return np.array(found)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.sample.ledger import APART_IN_PLAN, Ledger, errors_of
+from geofit.sample.observations import LEAST_DISTANCE, Observations, errors_of
 from geofit.sample.truth import (
     CORE,
     FAULT_BOTTOM,
@@ -72,8 +72,8 @@ def section_lines() -> list[Drawing]:
     return drawings
 
 
-def draw(drawing: Drawing, horizon: str, n: int, ledger: Ledger, rng: np.random.Generator) -> None:
-    """Draw n points of a horizon on a section, none where it is eroded, and enter them in the ledger."""
+def draw(drawing: Drawing, horizon: str, n: int, observations: Observations, rng: np.random.Generator) -> None:
+    """Draw n points of a horizon on a section, none where it is eroded, and enter them in the observations."""
     truth = horizon_truth(horizon)
     if isinstance(truth, MapTruth):
         trace = _map_trace(drawing, truth)
@@ -85,19 +85,19 @@ def draw(drawing: Drawing, horizon: str, n: int, ledger: Ledger, rng: np.random.
         return
     error = errors_of(rng, "section", n)
     for _ in range(100):
-        points = _spread(drawing, horizon, trace, error, ledger, rng)
+        points = _spread(drawing, horizon, trace, error, observations, rng)
         if points is not None:
             break
     else:
         raise AssertionError(f"No room for {n} points of {horizon} on section {drawing.name}.")
     for distance, elevation in points:
         x, y = drawing.plan(np.array([distance]))
-        ledger.add(horizon, "section", np.array([x[0], y[0], elevation]))
+        observations.add(horizon, "section", np.array([x[0], y[0], elevation]))
     drawing.lines[horizon] = _parts(points, horizon, drawing)
 
 
 def _spread(
-    drawing: Drawing, horizon: str, trace: _Trace, error: Floats, ledger: Ledger, rng: np.random.Generator
+    drawing: Drawing, horizon: str, trace: _Trace, error: Floats, observations: Observations, rng: np.random.Generator
 ) -> Floats | None:
     """Return (n, 2) points of a trace, about one in each n-th part of it; None if one found no room."""
     places, weight, locate = trace
@@ -114,9 +114,9 @@ def _spread(
             x, y = drawing.plan(point[:1])
             near = bool(picked) and (
                 np.linalg.norm(point - picked[-1]) < _STEP
-                or np.abs(np.array(picked)[:, 0] - distance).min() < APART_IN_PLAN
+                or np.abs(np.array(picked)[:, 0] - distance).min() < LEAST_DISTANCE
             )
-            if place > last and not near and ledger.is_clear(horizon, np.array([x[0], y[0], point[1]])):
+            if place > last and not near and observations.is_clear(horizon, np.array([x[0], y[0], point[1]])):
                 picked.append(point)
                 last = place
                 break

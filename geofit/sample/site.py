@@ -13,8 +13,8 @@ import geofit.sample.tables as tables
 from geofit.data.site import Ground
 from geofit.sample.body_holes import write_bodies
 from geofit.sample.holes import Adit, Borehole, drill_adits, drill_boreholes
-from geofit.sample.ledger import Ledger
 from geofit.sample.mapping import map_outcrops, pick_lines
+from geofit.sample.observations import Observations
 from geofit.sample.sections import CROSS_SECTIONS, Drawing, draw, section_lines
 from geofit.sample.truth import BOUNDARY, HORIZONS
 from geofit.sample.truth import ground as true_ground
@@ -44,7 +44,7 @@ class Campaign:
     drawings: list[Drawing]
     outcrops: dict[str, Floats]
     picks: dict[str, Floats]
-    ledger: Ledger
+    observations: Observations
 
 
 def observe() -> Campaign:
@@ -55,15 +55,15 @@ def observe() -> Campaign:
     AssertionError
         If the points of T2-T1 are not as many as in the paper.
     """
-    ground, ledger = _ground(), Ledger()
-    boreholes = drill_boreholes(ground, CROSS_SECTIONS, ledger)
+    ground, observations = _ground(), Observations()
+    boreholes = drill_boreholes(ground, CROSS_SECTIONS, observations)
     outside = {hole.name for hole in boreholes if hole.name[2] in "WE"}
-    adits = drill_adits(ground, ledger)
+    adits = drill_adits(ground, observations)
     drawings = section_lines()
-    outcrops = {name: map_outcrops(name, gap, ground, ledger) for name, gap in _OUTCROP_SPACING.items()}
+    outcrops = {name: map_outcrops(name, gap, ground, observations) for name, gap in _OUTCROP_SPACING.items()}
 
     peripheral = sum(len(h.contacts.get("T2-T1", ())) for h in boreholes if h.name in outside)
-    central = ledger.count("T2-T1", "borehole", "adit") - peripheral
+    central = observations.count("T2-T1", "borehole", "adit") - peripheral
     rng = np.random.default_rng(45)
     for name in HORIZONS:
         across, along = _DRAWN.get(name, (0, _LONGITUDINAL_POINTS))
@@ -73,12 +73,12 @@ def observe() -> Campaign:
             shares[: len(CROSS_SECTIONS)] = [(rest + i) // len(CROSS_SECTIONS) for i in range(len(CROSS_SECTIONS))]
         for drawing, n in zip(drawings, shares, strict=True):
             if n:
-                draw(drawing, name, n, ledger, rng)
+                draw(drawing, name, n, observations, rng)
     counts = _PICKS | {"T2-T1": POINTS - CORE_POINTS - peripheral - len(outcrops["T2-T1"])}
-    picks = {name: pick_lines(name, counts[name], ledger) for name in HORIZONS if name in counts}
-    if ledger.count("T2-T1") != POINTS:
-        raise AssertionError(f"T2-T1 has {ledger.count('T2-T1')} points instead of {POINTS}.")
-    return Campaign(ground, boreholes, adits, drawings, outcrops, picks, ledger)
+    picks = {name: pick_lines(name, counts[name], observations) for name in HORIZONS if name in counts}
+    if observations.count("T2-T1") != POINTS:
+        raise AssertionError(f"T2-T1 has {observations.count('T2-T1')} points instead of {POINTS}.")
+    return Campaign(ground, boreholes, adits, drawings, outcrops, picks, observations)
 
 
 def _ground() -> Ground:
@@ -124,4 +124,4 @@ def write_site(folder: str | os.PathLike[str]) -> dict[str, int]:
     tables.write_picks(folder / "geophysics.csv", campaign.picks, campaign.boreholes)
     tables.write_site_file(folder / "site.toml", campaign.drawings)
     write_bodies(folder)
-    return {name: campaign.ledger.count(name) for name in HORIZONS}
+    return {name: campaign.observations.count(name) for name in HORIZONS}

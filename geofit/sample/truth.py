@@ -351,7 +351,7 @@ def horizon_truth(name: str) -> MapTruth | PlaneTruth | FoldTruth:
     -------
     MapTruth, PlaneTruth or FoldTruth
         ``places(n, core=False)`` gives (n, 3) points on the true horizon where a fit is to be scored,
-        ``offset(xyz)`` says how far (n, 3) points lie off it.
+        ``offset(xyz)`` states how far (n, 3) points lie off it.
 
     Raises
     ------

@@ -57,7 +57,10 @@ def section_line(line: ArrayLike) -> Floats:
     apart = np.append(True, np.linalg.norm(np.diff(corners, axis=0), axis=1) > JOIN)
     if apart.sum() < 2:
         raise SettingsError(
-            message("geometry.section-line-place-give", "The section line has one place only; give two different ends.")
+            message(
+                "geometry.section-line-place-give",
+                "The section line has only one distinct point; give two different ends.",
+            )
         )
     return np.asarray(corners[apart])
 

@@ -27,7 +27,7 @@ COARSE = 1.0
 
 
 def elevation_grid(surface: Surface, cell: float | None = None) -> Ground:
-    """Return the elevation of a surface at nodes that stand at multiples of ``cell`` metres; nan outside.
+    """Return the elevation of a surface at nodes that are at multiples of ``cell`` metres; nan outside.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Float
         raise SettingsError(
             message(
                 "geometry.horizons-not-stand-no",
-                "The horizons do not stand over one another; there is no thickness between them.",
+                "The horizons do not overlap in plan; there is no thickness between them.",
             )
         )
     step = interval_for(0.0, float((high - low).max()) * 20 / CELLS) if cell is None else cell

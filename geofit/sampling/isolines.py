@@ -65,11 +65,11 @@ def plane_lines(surface: Surface, mesh: Mesh, normal: Floats, offset: float) -> 
     first = np.unique(number, return_index=True)[1]
     patch = np.concatenate([mesh.patch[crossed]] * 2)[first]
     points = np.concatenate(places)[first]
-    settled = points  # of a file's triangles, which are the surface themselves
+    refined = points  # of a file's triangles, which are the surface themselves
     if surface.patches:
-        settled = _settled(surface.patches, patch, np.concatenate(uvs)[first], points, normal, offset)
+        refined = _refined(surface.patches, patch, np.concatenate(uvs)[first], points, normal, offset)
     pairs = number.reshape(2, -1).T
-    return [settled[chain] for chain in _chains(pairs, len(edges))]
+    return [refined[chain] for chain in _chains(pairs, len(edges))]
 
 
 def _chains(pairs: Ints, count: int) -> list[Ints]:
@@ -95,7 +95,7 @@ def _chains(pairs: Ints, count: int) -> list[Ints]:
     return chains
 
 
-def _settled(
+def _refined(
     patches: tuple[Patch, ...], which: Ints, uv: Floats, points: Floats, normal: Floats, offset: float
 ) -> Floats:
     """Move places along the surface onto the plane by the shortest way in space (Newton)."""

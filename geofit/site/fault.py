@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.site.zero_contours import zero_lines
+from geofit.site.zero_contours import zero_contours
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -80,7 +80,7 @@ class Fault:
             return value
 
         value = above(plan[..., 0].ravel(), plan[..., 1].ravel()).reshape(plan.shape[:2])
-        return zero_lines(plan, value, above, HALVINGS)
+        return zero_contours(plan, value, above, HALVINGS)
 
 
 def longer(line: Floats, length: float) -> Floats:

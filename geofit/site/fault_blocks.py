@@ -23,14 +23,14 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
 from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, size
-from geofit.site.height_field import Relief
+from geofit.site.height_field import HeightField
 from geofit.site.throw import FaultCut, Sides, throws
 
 if TYPE_CHECKING:
     from shapely import Polygon
     from shapely.geometry.base import BaseGeometry
 
-__all__ = ["BlockFit", "Parting", "area_of", "fit_block", "fit_blocks", "fit_faulted", "part"]
+__all__ = ["BlockFit", "BlockMembers", "area_of", "fit_block", "fit_blocks", "fit_faulted", "part"]
 
 Floats = NDArray[np.float64]
 
@@ -41,11 +41,11 @@ BEYOND = 0.1
 
 
 @dataclass(frozen=True, eq=False)
-class Parting:
-    """The points of a horizon, parted by faults.
+class BlockMembers:
+    """The points of a horizon, members by faults.
 
     ``faults`` are those that part them. ``names`` and ``sides`` of the blocks, those with more points first; ``block``
-    (n,) is the number of the block of each point. ``notes`` tell of faults that do not cut, and of small blocks.
+    (n,) is the number of the block of each point. ``notes`` reports faults that do not cut, and of small blocks.
     """
 
     faults: tuple[Fault, ...]
@@ -127,7 +127,7 @@ def fit_blocks(
     Returns
     -------
     BlockFit
-        Blocks, the larger ones first. A fault that leaves all points on one side does not cut; a note says so.
+        Blocks, the larger ones first. A fault that leaves all points on one side does not cut; a note reports it.
 
     Raises
     ------
@@ -141,14 +141,14 @@ def fit_blocks(
     A fault that dies out inside the area is continued through it: its throw there is what the blocks' data say.
     """
     area = area_of(points, boundary)
-    parted = part(points, faults, area, name)
+    members = part(points, faults, area, name)
     blocks: dict[Sides, HorizonFit] = {}
-    for k, (title, sides) in enumerate(zip(parted.names, parted.sides, strict=True)):
-        tell(progress, message("site.block-name", "block {name}", name=title), 0.5 + 0.5 * k / len(parted.names))
-        mine = points[np.flatnonzero(parted.block == k)]
-        blocks[sides] = fit_block(mine, parted.faults, sides, settings, area, name=title)
-    cuts = throws(blocks, parted.faults, name, area)
-    return BlockFit(tuple(blocks.values()), parted.block, cuts, parted.notes)
+    for k, (title, sides) in enumerate(zip(members.names, members.sides, strict=True)):
+        tell(progress, message("site.block-name", "block {name}", name=title), 0.5 + 0.5 * k / len(members.names))
+        mine = points[np.flatnonzero(members.block == k)]
+        blocks[sides] = fit_block(mine, members.faults, sides, settings, area, name=title)
+    cuts = throws(blocks, members.faults, name, area)
+    return BlockFit(tuple(blocks.values()), members.block, cuts, members.notes)
 
 
 def area_of(points: PointSet, boundary: ArrayLike | None) -> Polygon:
@@ -161,7 +161,7 @@ def area_of(points: PointSet, boundary: ArrayLike | None) -> Polygon:
     return shapely.Polygon([(x0, y0), (x1, y0), (x1, y1), (x0, y1)])
 
 
-def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polygon, name: str) -> Parting:
+def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polygon, name: str) -> BlockMembers:
     """Part the points of a horizon by the side of each fault they lie on.
 
     Parameters and errors as :func:`fit_blocks`; ``area`` is the study area.
@@ -192,8 +192,8 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
         if len(mine) < FEWEST:
             text = message(
                 "site.too-few-points-block",
-                "Too few points in the block '{block}' of {horizon}: {count} ({points}); at least {least} are needed "
-                "to lay a surface. Give more points there, or leave the fault out.",
+                "Too few points in the block '{block}' of {horizon}: {count} ({points}); at least "
+                "{least} are needed to fit a surface. Give more points there, or leave the fault out.",
                 block=title,
                 horizon=name,
                 count=len(mine),
@@ -212,7 +212,7 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
                 ).with_severity("warning")
             )
     rows = tuple(tuple(row) for row in signs[order].tolist())
-    return Parting(tuple(cutting), tuple(names), rows, block, tuple(notes))
+    return BlockMembers(tuple(cutting), tuple(names), rows, block, tuple(notes))
 
 
 def fit_block(
@@ -258,9 +258,9 @@ def fit_block(
     guess = _cut(area, plane, faults, sides, name)
     widened = _largest(shapely.intersection(shapely.buffer(guess, BEYOND * size(area), join_style="mitre"), area))
     surface = fit_horizon(points, settings, shapely.get_coordinates(widened.exterior)[:-1], progress, name=name)
-    relief = Relief(surface)
-    held = _largest(shapely.intersection(area, relief.area()))
-    outline = _cut(held, relief, faults, sides, name)
+    height_field = HeightField(surface)
+    held = _largest(shapely.intersection(area, height_field.area()))
+    outline = _cut(held, height_field, faults, sides, name)
     return surface.ended_at(shapely.get_coordinates(outline.exterior)[:-1])
 
 
@@ -282,8 +282,8 @@ def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, t
         if not mine:
             text = message(
                 "site.block-points-side-surface",
-                "The block '{block}' has points on a side of {fault} where its surface has no area. Look at the points "
-                "beside the fault: one on the wrong side makes a block of its own.",
+                "The block '{block}' has points on a side of {fault} where its surface has no area. "
+                "Check the points next to the fault: one on the wrong side makes a block of its own.",
                 block=title,
                 fault=fault.name,
             )

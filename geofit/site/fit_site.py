@@ -1,4 +1,4 @@
-"""Fit the horizons of a site together: faulted ones block by block, crossings pushed apart if asked, order compared."""
+"""Fit the horizons of a site together: faulted ones block by block, crossings separated if asked, order compared."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from geofit.fitting.pipeline import fit_horizon
 from geofit.site.fault_blocks import fit_blocks
 from geofit.site.order import Order, compare_horizons
 from geofit.site.separate import Contradiction, separate_horizons
-from geofit.site.site_checks import check_surroundings
+from geofit.site.site_checks import add_site_checks
 from geofit.site.throw import FaultCut
 from geofit.streaming.executors import run_tasks
 
@@ -36,8 +36,8 @@ class SiteFit:
 
     ``surfaces`` by name in the order of the site; in the place of a faulted horizon its blocks. ``horizon`` names the
     horizon of each surface, ``seconds`` the time of its fit, ``cuts`` the displacement between blocks along the
-    ``faults``. ``failures`` says by horizon why it could not be fitted. ``moved`` and ``contradictions`` are those of
-    a repair; ``warnings`` what else is to be told.
+    ``faults``. ``failures`` gives by horizon why it could not be fitted. ``moved`` and ``contradictions`` are those of
+    the separation; ``warnings`` what else is to be told.
     """
 
     surfaces: dict[str, HorizonFit] = field(default_factory=dict)
@@ -61,7 +61,7 @@ def fit_site(
     changes: Mapping[str, Any] | None = None,
     progress: Progress | None = None,
     *,
-    apart: bool = False,
+    separate: bool = False,
     scheduler: str | None = None,
     workers: int | None = None,
 ) -> SiteFit:
@@ -77,8 +77,8 @@ def fit_site(
         Settings that take the place of the site's.
     progress : callable, optional
         Called as ``progress("horizon: stage", fraction)``.
-    apart : bool
-        Whether horizons of ``site.order`` that cross are pushed apart (:func:`geofit.site.separate.separate_horizons`).
+    separate : bool
+        Whether horizons of ``site.order`` that cross are separated (:func:`geofit.site.separate.separate_horizons`).
     scheduler, workers : str, int, optional
         Where the horizons are fitted, side by side (:func:`geofit.streaming.executors.run_tasks`); by default one after
         the other in this process. The surfaces are the same.
@@ -104,11 +104,11 @@ def fit_site(
         found = _one_by_one(site, names, changes or {}, progress)
     else:
         found = _side_by_side(site, names, changes or {}, progress, scheduler, workers)
-    if apart:
-        tell(progress, "repair", 1.0)
-        _push_apart(site, found)
+    if separate:
+        tell(progress, "separation", 1.0)
+        _separate_horizons(site, found)
     found.surfaces = {
-        name: check_surroundings(surface, site, "" if found.horizon[name] == name else found.horizon[name])
+        name: add_site_checks(surface, site, "" if found.horizon[name] == name else found.horizon[name])
         for name, surface in found.surfaces.items()
     }
     return found
@@ -213,7 +213,7 @@ class _Fits:
             raise FitError(
                 message(
                     "site.fault-cannot-laid",
-                    "the fault {fault} cannot be laid: {reason}",
+                    "the fault {fault} cannot be fitted: {reason}",
                     fault=name,
                     reason=error.message,
                 )
@@ -235,14 +235,14 @@ def _noted(block: HorizonFit, notes: Sequence[Message]) -> HorizonFit:
     return block.with_(accuracy=replace(block.accuracy, notes=(*block.accuracy.notes, *notes)))
 
 
-def _push_apart(site: Site, found: SiteFit) -> None:
-    """Repair the horizons of the order that are one surface each; say which are not."""
+def _separate_horizons(site: Site, found: SiteFit) -> None:
+    """Separation the horizons of the order that are one surface each; say which are not."""
     sequence = [name for name in site.order if name in found.surfaces]
     blocked = [name for name in site.order if name in found.horizon.values() and name not in found.surfaces]
     if blocked:
         text = message(
             "site.cut-fault-not-pushed",
-            "{names}: cut by a fault, so not pushed apart from other horizons",
+            "{names}: cut by a fault, so not separated from other horizons",
             names=", ".join(blocked),
         )
         found.warnings += (text.with_severity("warning"),)
@@ -252,14 +252,14 @@ def _push_apart(site: Site, found: SiteFit) -> None:
         found.warnings += (
             message(
                 "site.no-repair-order-site",
-                "no repair: the order of the site names no two fitted horizons without a fault",
+                "not separated: the order of the site names no two fitted horizons without a fault",
             ).with_severity("warning"),
         )
         return
     try:
         done = separate_horizons(found.surfaces, sequence)
     except SettingsError as error:
-        found.warnings += (message("site.no-repair", "no repair: {reason}", reason=error).with_severity("warning"),)
+        found.warnings += (message("site.no-repair", "not separated: {reason}", reason=error).with_severity("warning"),)
         return
     found.surfaces.update(done.surfaces)
     found.moved, found.contradictions = dict(done.moved), done.contradictions
@@ -271,7 +271,7 @@ def compare(site: Site, found: SiteFit) -> tuple[Order, ...]:
     Raises
     ------
     SettingsError
-        If one of them is no height field over the map.
+        If one of them is not a height field over the map.
     """
     layers = [[name for name, horizon in found.horizon.items() if horizon == layer] for layer in site.order]
     pairs = [

@@ -16,7 +16,7 @@ from geofit.geometry.elevation import RIM, Plan, plan_map
 if TYPE_CHECKING:
     from shapely import Geometry
 
-__all__ = ["Relief", "onto"]
+__all__ = ["HeightField", "onto"]
 
 Floats = NDArray[np.float64]
 
@@ -26,7 +26,7 @@ SAME = 1e-9
 JOIN = 1e-6
 
 
-class Relief:
+class HeightField:
     """The height over the map of a surface whose patches are height fields.
 
     Parameters
@@ -37,7 +37,7 @@ class Relief:
     Raises
     ------
     SettingsError
-        If a patch is no height field over the map (faults, overturned folds, triangles of a file).
+        If a patch is not a height field over the map (faults, overturned folds, triangles of a file).
     """
 
     def __init__(self, surface: HorizonFit) -> None:
@@ -47,8 +47,9 @@ class Relief:
         if not mappings or len(self._mappings) < len(mappings):
             text = message(
                 "site.no-height-field-map",
-                "'{name}' is no height field over the map, so nothing can be said to lie above or below it. Name "
-                "fitted horizons only; leave out faults, overturned folds and triangles read from files.",
+                "'{name}' is not a height field over the map, so above and below are not defined for "
+                "it. Name fitted horizons only; leave out faults, overturned folds and triangles read "
+                "from files.",
                 name=surface.name,
             )
             raise SettingsError(text)

@@ -14,7 +14,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.site.height_field import Relief
+from geofit.site.height_field import HeightField
 from geofit.site.overlap import Crossing, Overlap
 
 __all__ = ["Order", "compare_horizons", "orders", "require_sequence", "thickness"]
@@ -51,7 +51,7 @@ class Order:
         return sum(crossing.volume for crossing in self.crossings)
 
     def check(self) -> Check:
-        """Return the check; it does not hold where horizons cross below the ground, and is None without common area."""
+        """Return the check; it fails where horizons cross below the ground, and is None without common area."""
         names = {"upper": self.upper, "lower": self.lower}
         if not self.area:
             return Check(
@@ -133,10 +133,10 @@ def orders(
     Raises
     ------
     SettingsError
-        If the sequence names a horizon twice, one without a surface, or one that is no height field.
+        If the sequence names a horizon twice, one without a surface, or one that is not a height field.
     """
     require_sequence(surfaces, sequence)
-    reliefs = [Relief(surfaces[name]) for name in sequence]
+    reliefs = [HeightField(surfaces[name]) for name in sequence]
     return tuple(_compare(upper, lower, ground) for upper, lower in combinations(reliefs, 2))
 
 
@@ -164,7 +164,7 @@ def compare_horizons(upper: HorizonFit, lower: HorizonFit, ground: Ground | None
     -----
     Thickness is measured vertically, over the area that both horizons cover.
     """
-    return _compare(Relief(upper), Relief(lower), ground)
+    return _compare(HeightField(upper), HeightField(lower), ground)
 
 
 def require_sequence(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str]) -> None:
@@ -173,7 +173,8 @@ def require_sequence(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str]
     if missing:
         text = message(
             "site.order-names-no-surface",
-            "The order names '{name}', which has no surface; there are {names}. Fit it, or take it out of the order.",
+            "The order names '{name}', which has no surface; the surfaces are {names}. Fit it, or "
+            "take it out of the order.",
             name=missing[0],
             names=", ".join(surfaces) or message("site.none", "none"),
         )
@@ -187,7 +188,7 @@ def require_sequence(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str]
         raise SettingsError(text)
 
 
-def _compare(upper: Relief, lower: Relief, ground: Ground | None) -> Order:
+def _compare(upper: HeightField, lower: HeightField, ground: Ground | None) -> Order:
     found = Overlap.between(upper, lower)
     if found is None:
         nan = float("nan")

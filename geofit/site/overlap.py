@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.site import Ground
-from geofit.site.height_field import Relief, onto
-from geofit.site.zero_contours import lattice_triangles, zero_lines
+from geofit.site.height_field import HeightField, onto
+from geofit.site.zero_contours import lattice_triangles, zero_contours
 
 if TYPE_CHECKING:
     from shapely import Geometry
@@ -85,11 +85,11 @@ class _Window:
 class Overlap:
     """The thickness between two reliefs over the area that both stand over."""
 
-    def __init__(self, upper: Relief, lower: Relief, area: Geometry) -> None:
+    def __init__(self, upper: HeightField, lower: HeightField, area: Geometry) -> None:
         self.upper, self.lower, self.area = upper, lower, area
 
     @classmethod
-    def between(cls, upper: Relief, lower: Relief) -> Overlap | None:
+    def between(cls, upper: HeightField, lower: HeightField) -> Overlap | None:
         """Return the overlap of two reliefs, None if they share no area."""
         import shapely
 
@@ -141,7 +141,7 @@ class Overlap:
         starts = [_extremes(window, sign) for sign in (1.0, -1.0) for window in self._windows]
         sign = np.repeat([1.0, 1.0, -1.0, -1.0], [len(place) for place, _ in starts])
         place, reach = (np.concatenate(parts) for parts in zip(*starts, strict=True))
-        found = self._descend(place, reach, sign)
+        found = self._minimize(place, reach, sign)
         return found[sign > 0], found[sign < 0]
 
     def nodes(self) -> Floats:
@@ -167,7 +167,7 @@ class Overlap:
         value[near] = self(*plan[near].T)
         return _Window(plan, value)
 
-    def _descend(self, place: Floats, reach: Floats, sign: Floats) -> Floats:
+    def _minimize(self, place: Floats, reach: Floats, sign: Floats) -> Floats:
         """Look in ever smaller windows around (n, 2) places for the least of sign (n,) * thickness; return (n, 3)."""
         steps = np.linspace(-1, 1, WINDOW)
         offset = np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
@@ -185,7 +185,7 @@ class Overlap:
         return best
 
     def crossings(self, ground: Ground | None = None) -> tuple[Crossing, ...]:
-        """Return the crossings, the largest volume first; a ground tells which of them lie above it."""
+        """Return the crossings, the largest volume first; a ground shows which of them lie above it."""
         from scipy.ndimage import find_objects, label
 
         plan = self.upper.lattice(PIECES)
@@ -234,9 +234,9 @@ class Overlap:
             part = _Window(window.plan[box], window.value[box])
             mine = labels[box] == k + 1
             at = np.argwhere(mine & (part.value == part.value[mine].min()))[:1]
-            deep = self._descend(part.plan[at[:, 0], at[:, 1]], _reach(part.plan, at), np.ones(1))[0]
+            deep = self._minimize(part.plan[at[:, 0], at[:, 1]], _reach(part.plan, at), np.ones(1))[0]
             value = np.where(mine, part.value + TOUCH, np.maximum(part.value + TOUCH, 0.0))
-            lines = zero_lines(part.plan, value, self.over)
+            lines = zero_contours(part.plan, value, self.over)
             found.append(
                 Crossing(
                     area=float(areas[k]),

@@ -22,11 +22,11 @@ from geofit.data.errors import SettingsError
 from geofit.data.messages import EMPTY, Message, message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
-from geofit.site.height_field import Relief
+from geofit.site.height_field import HeightField
 from geofit.site.order import require_sequence
 from geofit.site.overlap import Overlap
 
-__all__ = ["Contradiction", "Repair", "separate_horizons"]
+__all__ = ["Contradiction", "Separation", "separate_horizons"]
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +45,7 @@ STILL, SOFT = 1e-9, 1e-10
 
 @dataclass(frozen=True)
 class Contradiction:
-    """A place that no repair can mend: the exact points around it ask for what cannot be.
+    """A place that cannot be resolved: the exact points around it ask for what cannot be.
 
     ``lack`` is by how many metres the thickness at (x, y) stays below the least one; ``above`` and ``below`` name the
     nearest exact point of the upper and of the lower horizon by file and row, empty where there is none.
@@ -65,8 +65,8 @@ class Contradiction:
         none = message("site.no-exact-point", "no exact point")
         return message(
             "site.contradiction",
-            "{upper} and {lower} cannot be pushed apart at ({x:.1f}, {y:.1f}), {lack:.3f} m are missing: {above} of "
-            "{upper} stands against {below} of {lower}",
+            "{upper} and {lower} cannot be separated at ({x:.1f}, {y:.1f}), {lack:.3f} m are "
+            "missing: {above} of {upper} contradicts {below} of {lower}",
             upper=self.upper,
             lower=self.lower,
             x=self.x,
@@ -78,15 +78,15 @@ class Contradiction:
 
 
 @dataclass(frozen=True, eq=False)
-class Repair:
-    """Surfaces after a repair, by name; ``moved`` says by how many metres each was moved at most."""
+class Separation:
+    """Surfaces after the separation, by name; ``moved`` gives by how many metres each was moved at most."""
 
     surfaces: Mapping[str, HorizonFit]
     moved: Mapping[str, float]
     contradictions: tuple[Contradiction, ...]
 
 
-def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], minimum: float = 0.0) -> Repair:
+def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str], minimum: float = 0.0) -> Separation:
     """Push horizons of a sequence apart until each is at least ``minimum`` metres above the next.
 
     Parameters
@@ -100,7 +100,7 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
 
     Returns
     -------
-    Repair
+    Separation
         Surfaces that had to move are new and checked, with their control net in ``model``; the others are the same
         objects. What exact points forbid is listed.
 
@@ -125,31 +125,31 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
         )
     stack = _Stack([_Layer(surfaces[name]) for name in sequence], minimum)
     with threadpool_limits(limits=1):
-        stack.push_apart()
+        stack.separate()
         result, moved = dict(surfaces), {}
         for layer in stack.layers:
             if layer.change.any():
                 moved[layer.surface.name] = float(np.abs(layer.change).max())
                 result[layer.surface.name] = layer.moved_surface()
-        return Repair(result, moved, stack.contradictions())
+        return Separation(result, moved, stack.contradictions())
 
 
 class _Layer:
     """One horizon of the stack: its control net, its exact points, and the change so far."""
 
     def __init__(self, surface: HorizonFit) -> None:
-        if surface.model is None or surface.model.problem.chart.frame.kind != "map":
+        if surface.model is None or surface.model.problem.parametrization.frame.kind != "map":
             text = message(
                 "site.no-control-net-map",
-                "'{name}' has no control net over the map: it was read from a file, or is no height field. Fit it "
-                "again, or take it out of the order.",
+                "'{name}' has no control net over the map: it was read from a file, or is not a height "
+                "field. Fit it again, or take it out of the order.",
                 name=surface.name,
             )
             raise SettingsError(text)
         self.surface, self.model = surface, surface.model
         problem, net = self.model.problem, self.model.net
-        held = problem.kept & problem.chart.placed
-        self.plane = problem.chart.plane / net.unit
+        held = problem.kept & problem.parametrization.parametrized
+        self.plane = problem.parametrization.plane / net.unit
         self.exact = np.flatnonzero(held & surface.core)
         self.loose = np.flatnonzero(held & ~surface.core)
         self.movable = ~net.frozen if net.lines is not None else np.ones(net.space.size, bool)
@@ -157,7 +157,7 @@ class _Layer:
 
     def matrix(self, xy: Floats) -> csr_array:
         """Return the (n, size) matrix from coefficients to heights at map coordinates."""
-        return self.model.net.space.matrix(self.model.problem.chart.frame.plan(xy) / self.model.net.unit)
+        return self.model.net.space.matrix(self.model.problem.parametrization.frame.plan(xy) / self.model.net.unit)
 
     def at_points(self, which: NDArray[np.intp]) -> csr_array:
         """Return the matrix from coefficients to heights at some of its points."""
@@ -182,7 +182,7 @@ class _Layer:
         return self.model.with_net(replace(net, coefficients=coefficients))
 
     def moved_surface(self) -> HorizonFit:
-        """Return the checked surface of the control points moved; it says that it was."""
+        """Return the checked surface of the control points moved; it states that it was."""
         new = self.surface.refitted(self.moved())
         assert new.accuracy is not None
         note = message(
@@ -195,7 +195,7 @@ class _Layer:
 
 
 class _Stack:
-    """Horizons from the top to the bottom, pushed apart together."""
+    """Horizons from the top to the bottom, separated together."""
 
     def __init__(self, layers: list[_Layer], minimum: float) -> None:
         self.layers, self.minimum = layers, minimum
@@ -205,12 +205,12 @@ class _Stack:
 
     def overlaps(self) -> dict[tuple[int, int], Overlap]:
         """Return what is too thin as overlaps: the upper surface of each pair is lowered by the least thickness."""
-        lowered = [Relief(layer.as_moved(-self.minimum)) for layer in self.layers]
-        reliefs = [Relief(layer.as_moved(0.0)) for layer in self.layers]
+        lowered = [HeightField(layer.as_moved(-self.minimum)) for layer in self.layers]
+        reliefs = [HeightField(layer.as_moved(0.0)) for layer in self.layers]
         found = {(i, j): Overlap.between(lowered[i], reliefs[j]) for i, j in self.pairs}
         return {pair: overlap for pair, overlap in found.items() if overlap is not None}
 
-    def push_apart(self) -> None:
+    def separate(self) -> None:
         """Move control points until nothing that can move is too thin."""
         rows: list[csr_array] = []
         thickness: list[Floats] = []
@@ -281,13 +281,15 @@ class _Stack:
         exact = csr_array(exact[np.unique(exact.nonzero()[0])])
         before = np.concatenate([layer.change for layer in self.layers])
         change = np.zeros(movable.size)
-        change[free] = _least_change(csr_array(rows[held]), lack[held], exact, loose, before[free])
+        change[free] = _minimum_norm_correction(csr_array(rows[held]), lack[held], exact, loose, before[free])
         for layer, first in zip(self.layers, self.start, strict=False):
             layer.change = change[first : first + layer.change.size]
         return bool(np.abs(change - before).max() > STILL)
 
 
-def _least_change(rows: csr_array, lack: Floats, exact: csr_array, loose: csr_array, start: Floats) -> Floats:
+def _minimum_norm_correction(
+    rows: csr_array, lack: Floats, exact: csr_array, loose: csr_array, start: Floats
+) -> Floats:
     """Return the smallest x with rows @ x >= lack where that is free to be, exact @ x = 0, and loose @ x small.
 
     Parameters

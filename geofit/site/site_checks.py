@@ -14,7 +14,7 @@ from geofit.geometry.clip import inside
 from geofit.site.dips import check_dips
 from geofit.site.topography import check_ground
 
-__all__ = ["check_surroundings", "ground_tolerance"]
+__all__ = ["add_site_checks", "ground_tolerance"]
 
 #: What a grid of the ground does not show between its nodes, as a share of its cell: 2 m at cells of 20 m. So far off
 #: is a bilinear cell where the slope changes by 40 % from one cell to the next, along both axes (cell^2 / 8 times the
@@ -22,8 +22,8 @@ __all__ = ["check_surroundings", "ground_tolerance"]
 CELL_SHARE = 0.1
 
 
-def check_surroundings(surface: HorizonFit, site: Site, horizon: str = "") -> HorizonFit:
-    """Return a checked surface whose checks also ask whether it agrees with dips and ground.
+def add_site_checks(surface: HorizonFit, site: Site, horizon: str = "") -> HorizonFit:
+    """Return a checked surface whose checks also check whether it agrees with dips and ground.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from geofit.data.messages import Message, message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.fault import BEYOND_TRACE, HALVINGS, Fault, longer, size
-from geofit.site.height_field import Relief
+from geofit.site.height_field import HeightField
 
 if TYPE_CHECKING:
     from shapely import Polygon
@@ -83,7 +83,7 @@ def throws(
     area : shapely.Polygon
         The study area, map coordinates.
     """
-    known = [_Block(sides, surface.name, Relief(surface)) for sides, surface in blocks.items()]
+    known = [_Block(sides, surface.name, HeightField(surface)) for sides, surface in blocks.items()]
     found = []
     for one, two in combinations(known, 2):
         differing = [k for k in range(len(faults)) if one.sides[k] != two.sides[k]]
@@ -98,7 +98,7 @@ class _Block:
 
     sides: Sides
     name: str
-    relief: Relief
+    height_field: HeightField
 
 
 def _displacement(
@@ -110,7 +110,7 @@ def _displacement(
     fault = faults[number]
 
     def middle(x: Floats, y: Floats) -> Floats:
-        return np.asarray((one.relief(x, y) + two.relief(x, y)) / 2)
+        return np.asarray((one.height_field(x, y) + two.height_field(x, y)) / 2)
 
     lines = [
         part
@@ -134,7 +134,7 @@ def _displacement(
     if meets.sum() < 2:
         return None
     trace, distance = trace[meets], distance[meets] - distance[meets][0]
-    throw = one.relief(*trace[:, :2].T) - two.relief(*trace[:, :2].T)
+    throw = one.height_field(*trace[:, :2].T) - two.height_field(*trace[:, :2].T)
     heave = _heave(fault, number, one, two, trace[:, :2], ACROSS * size(area))
     upper, lower = (one, two) if throw.mean() >= 0 else (two, one)
     throw = throw if upper is one else -throw
@@ -150,7 +150,7 @@ def _heave(fault: Fault, number: int, one: _Block, two: _Block, plan: Floats, re
 
         def side(off: Floats, block: _Block = block) -> NDArray[np.int64]:
             place = plan + off[:, None] * across
-            return fault.side(np.column_stack([place, np.nan_to_num(block.relief(*place.T))]))
+            return fault.side(np.column_stack([place, np.nan_to_num(block.height_field(*place.T))]))
 
         low, high = np.full(len(plan), -reach), np.full(len(plan), reach)
         first = side(low)
@@ -159,7 +159,7 @@ def _heave(fault: Fault, number: int, one: _Block, two: _Block, plan: Floats, re
             same = side(half) == first
             low, high = np.where(same, half, low), np.where(same, high, half)
         end = (low + high) / 2
-        known = np.isfinite(block.relief(*(plan + end[:, None] * across).T)) & (np.abs(end) < 0.99 * reach)
+        known = np.isfinite(block.height_field(*(plan + end[:, None] * across).T)) & (np.abs(end) < 0.99 * reach)
         ends.append(np.where(known, end, np.nan))
     # The block whose side lies across the trace begins where the other ends.
     ahead = side(np.full(len(plan), reach)) == one.sides[number]

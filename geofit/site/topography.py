@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 #: Nodes of the ground that are compared.
 PLACES = 40_000
-#: Three points no farther apart than so many times their usual distance say that the horizon is between them.
+#: Three points no farther apart than so many times their usual distance show that the horizon is between them.
 REACH = 2.0
 NAMED = 20
 
@@ -26,7 +26,7 @@ NAMED = 20
 def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -> Check | None:
     """Look for places where a horizon stands above the ground.
 
-    A horizon that crops out goes on above the ground as it lay before erosion: that is told, and no fault. Above
+    A horizon that crops out goes on above the ground as it lay before erosion: that is reported, not a failure. Above
     the ground at one of its own points it is wrong, and so it is between three points close to each other that lie
     deeper below the ground than it stands above.
 
@@ -65,8 +65,9 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
         value = float(height[worst[0]])
         text = message(
             "check.horizon-stands-above-ground",
-            "the horizon stands above the ground: by {value:.1f} m at {x:.0f}, {y:.0f}, where its own points hold it; "
-            "{points} points and {area:.0f} square metres in all are more than {tolerance:g} m above it",
+            "the horizon lies above the ground: by {value:.1f} m at {x:.0f}, {y:.0f}, where its "
+            "own points constrain it; {points} points and {area:.0f} square metres in all are more "
+            "than {tolerance:g} m above it",
             value=value,
             x=plan[worst[0], 0],
             y=plan[worst[0], 1],
@@ -79,8 +80,8 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
         highest = float(height[above].max())
         text = message(
             "check.away-points-horizon-goes",
-            "away from its points the horizon goes on above the ground, up to {value:.1f} m over {area:.0f} square "
-            "metres: eroded there, or not held by any point",
+            "away from its points the horizon continues above the ground, up to {value:.1f} m over "
+            "{area:.0f} square metres: it is eroded there, or no point constrains it",
             value=highest,
             **area,
         )

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["lattice_triangles", "zero_lines"]
+__all__ = ["lattice_triangles", "zero_contours"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -23,7 +23,7 @@ def lattice_triangles(shape: tuple[int, int]) -> Ints:
     return np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
 
 
-def zero_lines(
+def zero_contours(
     plan: Floats, value: Floats, function: Callable[[Floats, Floats], Floats], halvings: int = HALVINGS
 ) -> list[Floats]:
     """Return the lines along which a function changes its sign.

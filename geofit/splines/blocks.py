@@ -44,7 +44,7 @@ class BlockFactor:
             raise FitError(
                 message(
                     "splines.posterior-fit-improper-some",
-                    "The posterior of the fit is improper: some control points are held by nothing.",
+                    "The posterior of the fit is improper: some control points are not constrained.",
                 )
             )
         # Scaled to a unit diagonal, as in geofit.splines.tensor.Factor.

@@ -55,7 +55,7 @@ def spans(knots: Floats, degree: int, x: Floats) -> Ints:
 def intervals(breaks: Floats, x: Floats) -> Ints:
     """Return the index k with breaks[k] <= x < breaks[k + 1]; the first and the last hold what lies beyond.
 
-    For many places a table of even bins says which interval begins there, or a rounding error before; each bin is
+    For many places a table of even bins names which interval begins there, or a rounding error before; each bin is
     shorter than half an interval, so a look at the next break settles the rest in half a search's time.
     """
     count, length = len(breaks) - 1, float(breaks[-1] - breaks[0])

@@ -159,7 +159,8 @@ class Factor:
             raise FitError(
                 message(
                     "splines.control-points-held-neither",
-                    "Control points held by neither data nor energy: {count}. Use fewer knots, or a larger smoothing.",
+                    "Control points constrained by neither data nor energy: {count}. Use fewer knots, or a "
+                    "larger smoothing.",
                     count=int((diagonal <= 0).sum()),
                 )
             )

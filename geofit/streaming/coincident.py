@@ -25,7 +25,7 @@ _RECORD = np.dtype([("place", np.float64, 2), ("index", np.int64)])
 
 
 def coincident(plane: Rows, distance: float, folder: Path) -> Ints:
-    """Return the points that give way: of two nearer than a distance in plan, the later one; ascending.
+    """Return the points to drop: of two nearer than a distance in plan, the later one; ascending.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def coincident(plane: Rows, distance: float, folder: Path) -> Ints:
 
 
 def _later(pairs: Ints) -> Ints:
-    """Go through the pairs by their first point: where both are there still, the second one gives way."""
+    """Go through the pairs by their first point: where both are there still, the second one is dropped."""
     pairs = np.sort(pairs, axis=1)
     dropped: set[int] = set()
     for first, second in pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))].tolist():

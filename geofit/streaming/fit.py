@@ -52,7 +52,7 @@ class CloudFit:
     n : int
         Number of points.
     coincident : (k,) array of int
-        Points that gave way to another one at the same place.
+        Points that were dropped to another one at the same place.
     field : Field
         Covariance and noise that the likelihood found.
     seconds : mapping
@@ -131,7 +131,7 @@ def _fit_cloud(
     frame = _frame(clock.listened(xyz, "frame", 0.1, 0.15), low, high, settings, boundary)
     local = LongArray((len(xyz), 3), lambda start, stop: (xyz[start:stop] - frame.origin) @ frame.axes.T)
     places = LongArray((len(xyz), 2), lambda start, stop: local[start:stop][:, :2])
-    gone = coincident(clock.listened(places, "conflicts", 0.15, 0.35), settings.conflict_distance, folder)
+    gone = coincident(clock.listened(places, "conflicts", 0.15, 0.35), settings.coincidence_distance, folder)
     kept = without(local, gone)
     data = _gather(clock.listened(kept, "field", 0.35, 0.95), frame, boundary)
     most = cap_for(settings, len(kept))
@@ -225,7 +225,7 @@ def _bounds(xyz: Rows) -> tuple[Floats, Floats]:
 
 
 def _frame(xyz: Rows, low: Floats, high: Floats, settings: FitSettings, boundary: Floats | None) -> Frame:
-    """Choose the frame as :func:`geofit.fitting.parametrize.choose_chart` does where no sections are named."""
+    """Choose the frame as :func:`geofit.fitting.parametrize.parametrize` does where no sections are named."""
     ends = PointSet(np.array([low, high]))
     kind = settings.frame
     axes = plane_axes(covariance(xyz)[1]) if kind in ("auto", "best-plane") else np.eye(3)

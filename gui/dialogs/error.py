@@ -21,15 +21,15 @@ from PySide6.QtWidgets import (
 
 from geofit import __version__
 from geofit.data.errors import GeofitError, InputError
-from geofit.gui.words import failure, spoken
+from geofit.gui.translate import failure, translated
 
 __all__ = ["ErrorDialog"]
 
 
 class ErrorDialog(QDialog):
-    """Tells of a failure.
+    """Reports a failure.
 
-    ``title`` says what was being done. An error that geofit raises on purpose carries its own remedy; any other is a
+    ``title`` states what was being done. An error that geofit raises on purpose carries its own remedy; any other is a
     mistake in geofit, and the dialog asks to pass the details on.
     """
 
@@ -74,9 +74,9 @@ class ErrorDialog(QDialog):
 
     def _message(self, error: Exception) -> str:
         if isinstance(error, InputError) and error.remedy:
-            return f"{spoken(error.fault)}\n\n{spoken(error.remedy)}"
+            return f"{translated(error.fault)}\n\n{translated(error.remedy)}"
         if isinstance(error, GeofitError):
-            return spoken(error)
+            return translated(error)
         if isinstance(error, OSError):
             return self.tr("{reason}\n\nCheck that the folder is there, can be written, and has room.").format(
                 reason=failure(error)

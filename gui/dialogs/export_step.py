@@ -35,7 +35,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon, level_mark, verdict_mark
 from geofit.gui.panels.tables import Column, DataTable
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.step_files import StepFile, step_paths, write_step_files
 from geofit.report import digits
 
@@ -69,7 +69,7 @@ class ExportDialog(TaskDialog):
         self.unit.addItem(self.tr("metres"), "m")
         self.unit.addItem(self.tr("millimetres"), "mm")
         self.unit.setToolTip(
-            self.tr("The file says which unit it has, and CAD systems convert. The surfaces are the same.")
+            self.tr("The file states its unit, and CAD systems convert it. The surfaces are the same.")
         )
         self.together, self.apart = QRadioButton(self.tr("&One file")), QRadioButton(self.tr("One file a &horizon"))
         self.table = DataTable()
@@ -100,7 +100,7 @@ class ExportDialog(TaskDialog):
         for name, surface in self._surfaces.items():
             accuracy = surface.accuracy
             judged = None if accuracy is None else self._verdicts.get(name) or verdict_of(accuracy)
-            text = name if judged is None else f"{name}   {spoken(judged.text)}"
+            text = name if judged is None else f"{name}   {translated(judged.text)}"
             item = QListWidgetItem(icon("none" if judged is None else level_mark(judged.level)), text)
             item.setToolTip(text)
             item.setData(Qt.ItemDataRole.UserRole, name)
@@ -140,7 +140,7 @@ class ExportDialog(TaskDialog):
         self.fields = (self.horizons, self.target, browse, self.together, self.apart, self.unit)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
-        layout.addLayout(self.said)
+        layout.addLayout(self.message_row)
         layout.addWidget(self.table, 1)
         layout.addLayout(self.foot(self.folder))
         self.resize(QSize(960, 640).boundedTo(self.screen().availableSize()))
@@ -172,13 +172,14 @@ class ExportDialog(TaskDialog):
         size = digits.size(sum(file.size for file in files))
         names = ", ".join(str(file.path.resolve()) for file in files)
         if all(back.passed for back in found.values()):
-            self.say(self.tr("Wrote {names} ({size}). Every check of the file holds.").format(names=names, size=size),
+            self.say(self.tr("Wrote {names} ({size}). The file passes every check.").format(names=names, size=size),
                       "passed")  # fmt: skip
         else:
             bad = ", ".join(name for name, back in found.items() if not back.passed)
             text = self.tr(
-                "Wrote {names} ({size}), but the file does not hold what it should for: {bad}. Look at the failed "
-                "checks below; fit these horizons with a smaller tolerance or another core before you pass the file on."
+                "Wrote {names} ({size}), but the file fails its checks for: {bad}. See the failed "
+                "checks below; fit these horizons with a smaller tolerance or another core before you "
+                "pass the file on."
             )
             self.say(text.format(names=names, size=size, bad=bad), "failed")
         self._show_checks([(name, check) for name, back in found.items() for check in self._checks(name, files)])
@@ -206,7 +207,7 @@ class ExportDialog(TaskDialog):
                 Column(self.tr("Horizon"), texts([name for name, _ in rows])),
                 Column(
                     self.tr("Check of the file"),
-                    texts([spoken(check.name) for _, check in rows]),
+                    texts([translated(check.name) for _, check in rows]),
                     icons=lambda row: verdict_mark(passed[row]),
                 ),
                 Column(
@@ -215,12 +216,12 @@ class ExportDialog(TaskDialog):
                     order=[{False: 0, True: 1, None: 2}[value] for value in passed],
                 ),
                 Column(
-                    self.tr("Found"), texts([digits.measured(check.value, spoken(check.unit)) for _, check in rows])
+                    self.tr("Found"), texts([digits.measured(check.value, translated(check.unit)) for _, check in rows])
                 ),
                 Column(
-                    self.tr("Limit"), texts([digits.measured(check.limit, spoken(check.unit)) for _, check in rows])
+                    self.tr("Limit"), texts([digits.measured(check.limit, translated(check.unit)) for _, check in rows])
                 ),
-                Column(self.tr("In words"), texts([spoken(check.text) for _, check in rows])),
+                Column(self.tr("In words"), texts([translated(check.text) for _, check in rows])),
             )
         )
         self.table.resizeColumnsToContents()

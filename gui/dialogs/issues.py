@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.data.site import ImportIssue, Site
-from geofit.gui.words import spoken, spoken_language
+from geofit.gui.translate import translated, user_language
 
 __all__ = ["IssuesDialog"]
 
@@ -71,7 +71,7 @@ class IssuesDialog(QDialog):
 
         path, _ = QFileDialog.getSaveFileName(self, self.windowTitle(), "import_issues.csv", "CSV (*.csv)")
         if path:
-            write_issues(self._site.issues, Path(path), spoken_language())
+            write_issues(self._site.issues, Path(path), user_language())
 
 
 class _Issues(QAbstractTableModel):
@@ -86,8 +86,8 @@ class _Issues(QAbstractTableModel):
                 i.row or "",
                 i.column,
                 i.value,
-                spoken(i.reason),
-                spoken(i.remedy),
+                translated(i.reason),
+                translated(i.remedy),
             )
             for i in issues
         ]

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.journal import Unfinished
 
 __all__ = ["RecoveryDialog"]
@@ -64,7 +64,7 @@ class RecoveryDialog(QDialog):
     def _describe(self, session: Unfinished) -> str:
         file = session.project_file or session.site_file
         when = time.strftime("%Y-%m-%d %H:%M", time.localtime(session.time))
-        steps = [spoken(command.text) for command in session.commands]
+        steps = [translated(command.text) for command in session.commands]
         last = "; ".join(steps[-_NAMED:])
         more = "… " if len(steps) > _NAMED else ""
         return self.tr("{site} – {when} – steps ({count}): {steps}\n{file}").format(

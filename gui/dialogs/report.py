@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
 from geofit.data.site import Site
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.preferences import Preferences
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.building import Given
 from geofit.project.fault_blocks import Blocks
 from geofit.project.reporting import ReportFiles, write_report_files
@@ -43,7 +43,7 @@ class ReportDialog(TaskDialog):
     """Asks how the report shall be, writes it in a process of its own, and opens it.
 
     ``written(path)`` is emitted for the form that people read: the PDF if there is one, else the HTML, else the JSON;
-    ``examined(name, offdata)`` for each horizon that was examined off its data on the way.
+    ``examined(name, prediction)`` for each horizon that was examined away from its data on the way.
     """
 
     written = Signal(object)
@@ -80,9 +80,7 @@ class ReportDialog(TaskDialog):
         self.folder = QLineEdit(str((folder or Path(str(QSettings().value(_FOLDER, "")) or Path.home())) / "report"))
         self.folder.textChanged.connect(self.refresh)
         self.examine = QCheckBox()
-        self.examine.setToolTip(
-            self.tr("How far the rock may lie from the surface where nobody drilled, found by leaving out holes.")
-        )
+        self.examine.setToolTip(self.tr("The prediction error away from the data, found by leaving out holes."))
         self.examine.setChecked(True)
         self.go.setText(self.tr("&Write"))
         self.view = QPushButton(self.tr("&Open"))
@@ -117,19 +115,19 @@ class ReportDialog(TaskDialog):
         form.addRow(self.tr("Forms"), forms)
         form.addRow(self.tr("&Date"), self.date)
         form.addRow(label, place)
-        form.addRow(self.tr("Off the data"), self.examine)
+        form.addRow(self.tr("Away from the data"), self.examine)
         self.fields = (self.language, *self.forms.values(), self.date, self.folder, browse, self.examine)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
-        layout.addLayout(self.said)
+        layout.addLayout(self.message_row)
         layout.addStretch(1)
         layout.addLayout(self.foot(self.view))
         self.setMinimumWidth(560)
         self._ask_to_examine()
 
     def _ask_to_examine(self) -> None:
-        """Offer to examine the horizons of which nothing is known off their data."""
-        unknown = [result.name for result in self._results if result.offdata is None]
+        """Offer to examine the horizons of which nothing is known away from their data."""
+        unknown = [result.name for result in self._results if result.prediction is None]
         self.examine.setText(self.tr("&Examine first: {names}").format(names=", ".join(unknown)))
         self._form.setRowVisible(self.examine, bool(unknown))
 
@@ -143,10 +141,10 @@ class ReportDialog(TaskDialog):
 
     def _write(self) -> None:
         examined = self.examine.isChecked()
-        # What stands behind the patches is only needed to leave points out, and for the bands of the sections.
+        # The model behind the patches is only needed to leave points out, and for the bands of the sections.
         results = [
             result
-            if examined or result.offdata is not None
+            if examined or result.prediction is not None
             else replace(result, surface=result.surface.with_(model=None))
             for result in self._results
         ]
@@ -163,10 +161,10 @@ class ReportDialog(TaskDialog):
         )
 
     def _done(self, made: ReportFiles) -> None:
-        for name, offdata in made.offdata.items():
-            self.examined.emit(name, offdata)
+        for name, prediction in made.prediction.items():
+            self.examined.emit(name, prediction)
         self._results = [
-            replace(result, offdata=made.offdata.get(result.name, result.offdata)) for result in self._results
+            replace(result, prediction=made.prediction.get(result.name, result.prediction)) for result in self._results
         ]
         self._ask_to_examine()
         best: Form = next(form for form in ("pdf", "html", "json") if form in made.files)
@@ -174,8 +172,8 @@ class ReportDialog(TaskDialog):
         QSettings().setValue(_FOLDER, str(self._path.parent.parent))
         names = ", ".join(str(path.resolve()) for path in made.files.values())
         text = self.tr("Wrote {names} in {folder}.").format(names=names, folder=self._path.parent)
-        said = "\n".join([text, *(spoken(warning) for warning in made.warnings)])
-        self.say(said, "stale" if made.warnings else "passed")
+        summary = "\n".join([text, *(translated(warning) for warning in made.warnings)])
+        self.say(summary, "stale" if made.warnings else "passed")
         self.written.emit(self._path)
         self.open_result()
 

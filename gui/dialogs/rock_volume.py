@@ -24,8 +24,8 @@ from PySide6.QtWidgets import (
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.tables import Column, DataTable
 from geofit.gui.panels.volume_slices import VolumeSlices
+from geofit.gui.translate import translated
 from geofit.gui.view3d.pore_scene import PoreScene
-from geofit.gui.words import spoken
 from geofit.project.pore_view import GreyVolume, PoreView, pore_view, read_grey
 
 __all__ = ["RockVolumeDialog"]
@@ -135,7 +135,7 @@ class RockVolumeDialog(TaskDialog):
         parts.setChildrenCollapsible(False)
         layout = QVBoxLayout(self)
         layout.addWidget(parts, 1)
-        layout.addLayout(self.said)
+        layout.addLayout(self.message_row)
         layout.addLayout(self.foot())
         self.resize(1180, 760)
 
@@ -195,8 +195,10 @@ class RockVolumeDialog(TaskDialog):
         self.table.show_columns(
             [Column(self.tr("Figure"), np.array(names)), Column(self.tr("Value"), np.array(values))]
         )
-        told = [spoken(text) for text in view.permeability.messages]
-        self.say("\n".join(told) or self.tr("The pore space connects all faces."), "stale" if told else "passed")
+        messages = [translated(text) for text in view.permeability.messages]
+        self.say(
+            "\n".join(messages) or self.tr("The pore space connects all faces."), "stale" if messages else "passed"
+        )
         self.refresh()
 
     def _figures(self, view: PoreView) -> list[tuple[str, str]]:

@@ -28,7 +28,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.task_dialog import TaskDialog
-from geofit.gui.words import failure, spoken_language
+from geofit.gui.translate import failure, user_language
 from geofit.project.section_sheet import SheetForm, SheetOrder, write_section_sheet
 from geofit.report.section_pages import PAPERS, SCALES, SheetTitle
 from geofit.site.section_view import parallel_lines
@@ -121,7 +121,7 @@ class SectionSheetDialog(TaskDialog):
             self.paper.currentText(),
             self.scale.currentData(),
             self.factor.currentData(),
-            spoken_language().code,
+            user_language().code,
         )
 
     def refresh(self) -> None:
@@ -168,7 +168,7 @@ class SectionSheetDialog(TaskDialog):
         )  # fmt: skip
         layout = QVBoxLayout(self)
         layout.addLayout(form)
-        layout.addLayout(self.said)
+        layout.addLayout(self.message_row)
         layout.addStretch(1)
         layout.addLayout(self.foot(self.open_folder))
 

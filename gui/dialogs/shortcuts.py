@@ -13,7 +13,7 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
 )
 
-from geofit.gui.words import bare
+from geofit.gui.translate import bare
 
 __all__ = ["ShortcutsDialog"]
 

@@ -12,8 +12,8 @@ from shiboken6 import isValid
 
 from geofit.data.errors import GeofitError
 from geofit.gui.panels.marks import icon
-from geofit.gui.words import failure, spoken
-from geofit.gui.worker import Task, run, run_apart
+from geofit.gui.translate import failure, translated
+from geofit.gui.worker import Task, run, run_in_process
 
 __all__ = ["TaskDialog"]
 
@@ -24,8 +24,8 @@ PATIENCE = 300
 class TaskDialog(QDialog):
     """A dialog that does one long task at a time, and says in one place how it ended; closing it stops the task.
 
-    A subclass lays out ``said`` (a mark and a sentence) and :meth:`foot`, connects ``go`` to what calls :meth:`begin`,
-    names the ``fields`` that rest meanwhile, and extends :meth:`refresh`.
+    A subclass lays out ``message_row`` (a mark and a sentence) and :meth:`foot`, connects ``go`` to what calls
+    :meth:`begin`, names the ``fields`` that rest meanwhile, and extends :meth:`refresh`.
     """
 
     def __init__(
@@ -40,9 +40,9 @@ class TaskDialog(QDialog):
         self.message, self.sign = QLabel(), QLabel()
         self.message.setWordWrap(True)
         self.message.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.said = QHBoxLayout()
-        self.said.addWidget(self.sign, 0, Qt.AlignmentFlag.AlignTop)
-        self.said.addWidget(self.message, 1)
+        self.message_row = QHBoxLayout()
+        self.message_row.addWidget(self.sign, 0, Qt.AlignmentFlag.AlignTop)
+        self.message_row.addWidget(self.message, 1)
         self.progress = QProgressBar()
         self.progress.setAccessibleName(self.tr("Progress"))
         self.go, self.stop = QPushButton(), QPushButton(self.tr("&Stop"))
@@ -81,10 +81,10 @@ class TaskDialog(QDialog):
         *args: Any,
         on_done: Callable[[Any], object],
         on_stopped: Callable[[], object],
-        apart: bool = True,
+        in_process: bool = True,
     ) -> None:
-        """Call ``function(*args, progress=...)``, ``apart`` in a process of its own; a failure is said in words."""
-        start = run_apart if apart else run
+        """Call ``function(*args, progress=...)``, ``in_process`` in its own process; failures are shown."""
+        start = run_in_process if in_process else run
         self._focused = self.focusWidget()
         self.progress.setRange(0, 0)
         self._task = start(
@@ -137,7 +137,7 @@ class TaskDialog(QDialog):
         if fraction > 0:
             self.progress.setRange(0, 1000)
             self.progress.setValue(round(1000 * fraction))
-            self.progress.setFormat(spoken(stage))
+            self.progress.setFormat(translated(stage))
 
     def _show_progress(self) -> None:
         self.progress.setVisible(self.running)

@@ -1,4 +1,4 @@
-"""A change by hand: a control point moved, or the surface pulled to a point, with its effect before it is applied."""
+"""A manual edit: a control point moved, or the surface moved to a point, with its effect before it is applied."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ PAUSE = 250
 class AdjustPanel(QWidget):
     """One change at a time.
 
-    ``adjust_requested`` and ``pull_requested`` come from Apply, ``weigh_requested`` from Set; ``..._wanted`` a moment
+    ``adjust_requested`` and ``move_requested`` come from Apply, ``weigh_requested`` from Set; ``..._wanted`` a moment
     after the last edit, for whoever can tell the effect by :meth:`show_effect`; ``control_chosen`` follows the boxes.
     """
 
     adjust_requested = Signal(str, int, int, float)
-    pull_requested = Signal(object, float)
+    move_requested = Signal(object, float)
     weigh_requested = Signal(str, int, int, float)
     adjust_wanted = Signal(str, int, int, float)
-    pull_wanted = Signal(int, float)
+    move_wanted = Signal(int, float)
     weigh_wanted = Signal(str, int, int, float)
     control_chosen = Signal(str, int, int)
 
@@ -85,11 +85,9 @@ class AdjustPanel(QWidget):
         if surface is None or surface.model is None:
             self._rest()
             self.pages.say(
-                self.tr("No surface yet: press Fit, then change it by hand where you know better.")
+                self.tr("No surface yet: press Fit, then edit it manually where you know better.")
                 if surface is None
-                else self.tr(
-                    "This surface was read from a file: it has no control net of its own. Fit it, then adjust."
-                )
+                else self.tr("This surface was read from a file: it has no control net. Fit it, then adjust.")
             )
             return
         self.control.show_surface(surface)
@@ -150,7 +148,7 @@ class AdjustPanel(QWidget):
         if self.ways.currentWidget() is self.control:
             self.adjust_wanted.emit(*self.control.target, self.control.dz.value())
         elif self.point.point is not None:
-            self.pull_wanted.emit(self.point.point, self.point.share.value() / 100)
+            self.move_wanted.emit(self.point.point, self.point.share.value() / 100)
 
     def _apply(self) -> None:
         self._pause.stop()
@@ -158,4 +156,4 @@ class AdjustPanel(QWidget):
             self.adjust_requested.emit(*self.control.target, self.control.dz.value())
         elif self.point.point is not None and self._surface is not None:
             row = Row.of(self._surface.points, self.point.point)
-            self.pull_requested.emit(row, self.point.share.value() / 100)
+            self.move_requested.emit(row, self.point.share.value() / 100)

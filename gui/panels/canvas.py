@@ -1,4 +1,4 @@
-"""A matplotlib canvas that follows the theme of the window it stands in."""
+"""A matplotlib canvas that follows the theme of its window."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ from PySide6.QtGui import QColor, QPalette
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from geofit.gui.panels.marks import readable
-from geofit.report.style import INK, LINE, MUTED, PAPER, drawing
+from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing
 
-__all__ = ["Canvas", "Ink", "place", "recolour", "wrapped"]
+__all__ = ["Canvas", "PlotColours", "place", "recolour", "wrapped"]
 
 #: Logical pixels of a point: a figure has 100 dots an inch.
 DOT = 100 / 72
 
 
 @dataclass(frozen=True)
-class Ink:
+class PlotColours:
     """Colours of a picture in the theme: ground, text, quieter text, lines; ``of`` lightens a fixed one if needed."""
 
     paper: str
@@ -49,13 +49,16 @@ class Canvas(FigureCanvasQTAgg):
     Parameters
     ----------
     paint : callable
-        Called as ``paint(ink)`` for a new picture; it draws into what :meth:`axes` gives it.
+        Called as ``paint(colours)`` for a new picture; it draws into what :meth:`axes` gives it.
     arrange : callable
-        Called as ``arrange(ink)`` after that, and when the size has changed: gives everything its place.
+        Called as ``arrange(colours)`` after that, and when the size has changed: gives everything its place.
     """
 
     def __init__(
-        self, paint: Callable[[Ink], None], arrange: Callable[[Ink], None], parent: QWidget | None = None
+        self,
+        paint: Callable[[PlotColours], None],
+        arrange: Callable[[PlotColours], None],
+        parent: QWidget | None = None,
     ) -> None:
         # matplotlib types neither its canvas for Qt nor what it inherits.
         super().__init__(Figure())  # type: ignore[no-untyped-call]
@@ -109,7 +112,7 @@ class Canvas(FigureCanvasQTAgg):
         self.update()
 
     def draw(self) -> None:
-        """Draw; a glyph that no font has is no error."""
+        """Draw; a glyph that no font has is not an error."""
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message=r"Glyph .* missing from font")
             size = int(self.width()), int(self.height())
@@ -126,33 +129,33 @@ class Canvas(FigureCanvasQTAgg):
         super().changeEvent(event)
 
     def _compose(self, *, anew: bool) -> None:
-        ink = self._ink()
+        colours = self._colours()
         with (
             drawing(),
             mpl.rc_context(
                 {
-                    "text.color": ink.text,
-                    "axes.edgecolor": ink.line,
-                    "axes.labelcolor": ink.muted,
-                    "axes.facecolor": ink.paper,
+                    "text.color": colours.text,
+                    "axes.edgecolor": colours.line,
+                    "axes.labelcolor": colours.muted,
+                    "axes.facecolor": colours.paper,
                     "axes.titlesize": 9.0,
                     "axes.titley": 1.0,
-                    "xtick.color": ink.muted,
-                    "ytick.color": ink.muted,
-                    "figure.facecolor": ink.paper,
+                    "xtick.color": colours.muted,
+                    "ytick.color": colours.muted,
+                    "figure.facecolor": colours.paper,
                 }
             ),
         ):
             if anew:
-                self.figure.set_facecolor(ink.paper)
-                self._paint(ink)
+                self.figure.set_facecolor(colours.paper)
+                self._paint(colours)
             if self.figure.axes:
-                self._arrange(ink)
+                self._arrange(colours)
 
-    def _ink(self) -> Ink:
+    def _colours(self) -> PlotColours:
         palette = self.palette()
         paper, text = palette.color(QPalette.ColorRole.Base), palette.color(QPalette.ColorRole.Text)
-        return Ink(paper.name(), text.name(), _between(paper, text, 0.7), _between(paper, text, 0.25), palette)
+        return PlotColours(paper.name(), text.name(), _between(paper, text, 0.7), _between(paper, text, 0.25), palette)
 
 
 def _between(paper: QColor, text: QColor, share: float) -> str:
@@ -227,25 +230,25 @@ def wrapped(text: str, width: float, size: float) -> str:
     return "\n".join(lines)
 
 
-def recolour(axes: Axes, ink: Ink) -> None:
+def recolour(axes: Axes, colours: PlotColours) -> None:
     """Give axes that the report has drawn for white paper the theme's colours."""
     from matplotlib.colors import to_hex
 
-    theme = {INK: ink.text, MUTED: ink.muted, LINE: ink.line, PAPER: ink.paper}
+    theme = {TEXT: colours.text, MUTED: colours.muted, LINE: colours.line, PAPER: colours.paper}
 
     def turned(colour: Any) -> str:
         plain = to_hex(colour)
-        return theme.get(plain) or ink.of(plain)
+        return theme.get(plain) or colours.of(plain)
 
     for line in axes.lines:
         line.set_color(turned(line.get_color()))
     for bars in axes.collections:
-        bars.set_edgecolor(ink.paper)
+        bars.set_edgecolor(colours.paper)
     for spine in axes.spines.values():
-        spine.set_edgecolor(ink.line)
+        spine.set_edgecolor(colours.line)
     for grid in (*axes.get_xgridlines(), *axes.get_ygridlines()):
-        grid.set_color(ink.line)
+        grid.set_color(colours.line)
     legend = axes.get_legend()
-    axes.set_title(axes.get_title("left"), loc="left", color=ink.text)
+    axes.set_title(axes.get_title("left"), loc="left", color=colours.text)
     for text in (*axes.texts, *(legend.get_texts() if legend is not None else ())):
         text.set_color(turned(text.get_color()))

@@ -20,11 +20,11 @@ from PySide6.QtWidgets import (
 
 from geofit.data.accuracy import Accuracy, Check, ReadBack
 from geofit.data.messages import Message, gravest_first
-from geofit.data.prediction import OffData
+from geofit.data.prediction import PredictionResult
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, verdict_mark
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.provenance import Row
 from geofit.report.digits import measured
 from geofit.site.order import Order
@@ -40,7 +40,7 @@ _WORDS = 4
 class ChecksPanel(QWidget):
     """Checks in groups; each says passed, failed or not applicable by a mark and by a word.
 
-    ``point_chosen`` carries the Row of the point that gave way, when its conflict is chosen;
+    ``point_chosen`` carries the Row of the point that were dropped, when its conflict is chosen;
     ``place_chosen`` map coordinates, when a check that has a worst place is.
     """
 
@@ -82,7 +82,7 @@ class ChecksPanel(QWidget):
     def show_surface(
         self,
         surface: HorizonFit | None,
-        offdata: OffData | None = None,
+        prediction: PredictionResult | None = None,
         orders: Sequence[Order] = (),
         read_back: ReadBack | None = None,
         cuts: Sequence[FaultCut] = (),
@@ -93,7 +93,7 @@ class ChecksPanel(QWidget):
         ----------
         surface : HorizonFit or None
             With its accuracy; None while there is none.
-        offdata : OffData or None
+        prediction : PredictionResult or None
             What is known away from the data.
         orders : sequence of Order
             How the horizon lies to its neighbours.
@@ -111,7 +111,7 @@ class ChecksPanel(QWidget):
         self._group(self.tr("Surface"), [self._sigma(accuracy), *map(self._check, accuracy.checks)])
         self._group(self.tr("Order of horizons"), [self._order(order) for order in orders])
         self._group(self.tr("Throw at faults"), [self._cut(cut) for cut in cuts])
-        self._group(self.tr("Away from the data"), self._away(offdata))
+        self._group(self.tr("Away from the data"), self._away(prediction))
         self._group(self.tr("Conflicts"), self._conflicts(surface, accuracy))
         self._group(self.tr("Notes"), [self._note(note) for note in gravest_first(accuracy.notes)])
         self._group(self.tr("STEP file read back"), self._file(read_back))
@@ -163,15 +163,15 @@ class ChecksPanel(QWidget):
         return self._row("σ", a.passed, measured(a.sigma, "m"), measured(a.epsilon, "m"), words)
 
     def _check(self, check: Check) -> QTreeWidgetItem:
-        value, limit = (measured(number, spoken(check.unit)) for number in (check.value, check.limit))
-        item = self._row(spoken(check.name), check.passed, value, limit, spoken(check.text))
+        value, limit = (measured(number, translated(check.unit)) for number in (check.value, check.limit))
+        item = self._row(translated(check.name), check.passed, value, limit, translated(check.text))
         item.setData(0, _PLACE, _places(check))
         return item
 
     def _order(self, order: Order) -> QTreeWidgetItem:
         name = self.tr("{upper} above {lower}").format(upper=order.upper, lower=order.lower)
         check = order.check()
-        item = self._row(name, check.passed, measured(order.min, "m"), measured(0.0, "m"), spoken(check.text))
+        item = self._row(name, check.passed, measured(order.min, "m"), measured(0.0, "m"), translated(check.text))
         if not order.area:
             item.setText(2, "")
         item.setData(0, _PLACE, _places(check))
@@ -180,10 +180,10 @@ class ChecksPanel(QWidget):
     def _cut(self, cut: FaultCut) -> QTreeWidgetItem:
         name = self.tr("{up} above {down}, at {fault}").format(up=cut.up, down=cut.down, fault=cut.fault)
         mean = measured(float(cut.throw.mean()), "m")
-        return self._row(name, None, mean, words=spoken(cut.text), word=self.tr("for knowledge"))
+        return self._row(name, None, mean, words=translated(cut.text), word=self.tr("for knowledge"))
 
-    def _away(self, offdata: OffData | None) -> list[QTreeWidgetItem]:
-        if offdata is None:
+    def _away(self, prediction: PredictionResult | None) -> list[QTreeWidgetItem]:
+        if prediction is None:
             return []
         rows = []
         schemes = {
@@ -191,29 +191,29 @@ class ChecksPanel(QWidget):
             "section": self.tr("sections left out"),
             "block": self.tr("blocks left out"),
         }
-        for left in offdata.left_out:
+        for left in prediction.left_out:
             words = self.tr(
                 "{share:.0f} % of the left-out points lie in the 90 % band; mean error {bias:+.2f} m"
             ).format(share=100 * left.inside, bias=left.bias)
             name = schemes.get(left.scheme, left.scheme)
             rows.append(self._row(name, None, measured(left.rms, "m"), words=words, word=self.tr("for knowledge")))
-        return rows + [self._note(note) for note in gravest_first(offdata.notes)]
+        return rows + [self._note(note) for note in gravest_first(prediction.notes)]
 
     def _conflicts(self, surface: HorizonFit, a: Accuracy) -> list[QTreeWidgetItem]:
         rows = []
         for conflict in a.conflicts:
-            name = spoken(surface.points.describe(conflict.dropped))
+            name = translated(surface.points.describe(conflict.dropped))
             value = measured(conflict.difference, "m")
-            item = self._row(name, None, value, words=spoken(conflict.text), word=self.tr("gave way"))
+            item = self._row(name, None, value, words=translated(conflict.text), word=self.tr("dropped"))
             item.setIcon(0, icon("stale"))
             item.setData(0, _POINT, Row.of(surface.points, conflict.dropped))
             rows.append(item)
         return rows
 
     def _note(self, note: Message) -> QTreeWidgetItem:
-        item = QTreeWidgetItem([spoken(note)])
+        item = QTreeWidgetItem([translated(note)])
         item.setFirstColumnSpanned(True)
-        item.setToolTip(0, spoken(note))
+        item.setToolTip(0, translated(note))
         if note.severity != "info":
             item.setIcon(0, icon("stale"))
         return item

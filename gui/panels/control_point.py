@@ -23,7 +23,7 @@ from geofit.data.errors import GeofitError
 from geofit.fitting.edit import acted_on, support
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.weight import WeightBox
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.splines.patch import Patch
 
 __all__ = ["ControlPointPage"]
@@ -35,7 +35,7 @@ STEPS = (-1.0, -0.1, 0.1, 1.0)
 class ControlPointPage(QWidget):
     """Boxes for a patch, a row and a column, a move and a weight.
 
-    ``chosen(patch, i, j)`` follows the boxes; ``moved()`` tells of every other move, ``weigh_wanted(weight)`` of every
+    ``chosen(patch, i, j)`` follows the boxes; ``moved()`` reports every other move, ``weigh_wanted(weight)`` of every
     other weight, and ``weigh_requested(weight)`` comes from Set.
     """
 
@@ -78,7 +78,7 @@ class ControlPointPage(QWidget):
         before = self.patch.currentData()
         self.patch.clear()
         for patch in surface.patches:
-            self.patch.addItem(spoken(patch.name), patch.name)
+            self.patch.addItem(translated(patch.name), patch.name)
         self.patch.setCurrentIndex(max(self.patch.findData(before), 0))
         self._limit()
         self._show()
@@ -179,7 +179,7 @@ class ControlPointPage(QWidget):
             reach, self.held = self._reach()
             words += "\n" + reach
         except GeofitError as error:
-            words, self.held = spoken(str(error)), True
+            words, self.held = translated(str(error)), True
         self.about.setText(words)
         weights = self._patch().weights
         weight = 1.0 if weights is None else float(weights[self.i.value(), self.j.value()])
@@ -198,7 +198,8 @@ class ControlPointPage(QWidget):
         ).format(width=u1 - u0, height=v1 - v0, n=int(within.sum()))
         if exact.any():
             words += "\n" + self.tr(
-                "It is held by points that are met exactly: {n}. Choose one farther from them, or exclude them."
+                "It is fixed by points that are interpolated exactly: {n}. Choose one farther from "
+                "them, or exclude them."
             ).format(n=int(exact.sum()))
         return words, bool(exact.any())
 

@@ -12,11 +12,11 @@ from geofit.data.messages import EMPTY
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.fitting.parametrize import Chart, choose_chart
+from geofit.fitting.parametrize import Parametrization, parametrize
 from geofit.fitting.partition import split_rectangle
 from geofit.geometry.frame import Frame
 
-__all__ = ["CoreBox", "chart_of", "taken"]
+__all__ = ["CoreBox", "parametrization_of", "taken"]
 
 Floats = NDArray[np.float64]
 
@@ -76,28 +76,28 @@ class CoreBox:
         return np.asarray(((plan >= self.low - 1e-6) & (plan <= self.high + 1e-6)).all(axis=1))
 
 
-def chart_of(
+def parametrization_of(
     points: PointSet, settings: FitSettings, boundary: Floats | None, surface: HorizonFit | None
-) -> Chart | None:
-    """Return the chart on which a horizon is (or will be) fitted; None where these points cannot be fitted."""
+) -> Parametrization | None:
+    """Return the parametrization of a horizon's fit, done or to come; None where these points cannot be fitted."""
     if surface is not None and surface.model is not None:
-        return surface.model.problem.chart
+        return surface.model.problem.parametrization
     try:
-        return choose_chart(points, settings, boundary)
+        return parametrize(points, settings, boundary)
     except GeofitError:
         return None
 
 
-def taken(chart: Chart, box: CoreBox) -> tuple[int, bool]:
+def taken(parametrization: Parametrization, box: CoreBox) -> tuple[int, bool]:
     """Return how many points the fit takes into the core for a rectangle, and whether it widens the rectangle.
 
     The fit moves a side to the edge of the area where next to nothing lies between them.
     """
-    low = np.maximum(box.low, (chart.area[0], chart.area[2]))
-    high = np.minimum(box.high, (chart.area[1], chart.area[3]))
+    low = np.maximum(box.low, (parametrization.area[0], parametrization.area[2]))
+    high = np.minimum(box.high, (parametrization.area[1], parametrization.area[3]))
     if (high <= low).any():
         return 0, False
     given = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
-    split = split_rectangle(chart.plane, given, chart.area, EMPTY)
+    split = split_rectangle(parametrization.plane, given, parametrization.area, EMPTY)
     widened = split.core is not None and not np.allclose(split.core, given)
     return int(split.inside.sum()), widened

@@ -1,4 +1,4 @@
-"""A data point that the surface shall be pulled to, all the way or by a share."""
+"""A data point that the surface shall be moved to, all the way or by a share."""
 
 from __future__ import annotations
 
@@ -6,14 +6,14 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QVBoxLayout, QWidget
 
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.provenance import Row
 
 __all__ = ["DataPointPage"]
 
 
 class DataPointPage(QWidget):
-    """The chosen point with its residual, and the share; ``edited()`` tells of every other share."""
+    """The chosen point with its residual, and the share; ``edited()`` reports every other share."""
 
     edited = Signal()
 
@@ -39,7 +39,7 @@ class DataPointPage(QWidget):
             )
         )
         what.setWordWrap(True)
-        label = QLabel(self.tr("Pull by"))
+        label = QLabel(self.tr("Move by"))
         label.setBuddy(self.share)
         row = QHBoxLayout()
         row.addWidget(label)
@@ -69,7 +69,7 @@ class DataPointPage(QWidget):
             self.about.setText(self.tr("Choose a point in the view or in the residual table."))
             return
         words = self.tr("{point}\nElevation {z:.3f} m\nResidual {d:+.3f} m").format(
-            point=spoken(surface.points.describe(index)),
+            point=translated(surface.points.describe(index)),
             z=surface.points.xyz[index, 2],
             # Adding 0 turns -0.000 into +0.000.
             d=round(float(surface.accuracy.residuals[index]), 3) + 0.0,

@@ -1,4 +1,4 @@
-"""The effect of a change by hand on the check, before it is applied."""
+"""The effect of a manual edit on the check, before it is applied."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Effect(QFrame):
 
     def clear(self) -> None:
         """Show that no effect is known."""
-        self.say(self.tr("Effect: move or pull, and the deviation before and after stands here."))
+        self.say(self.tr("Effect: move the control point to see the deviation before and after."))
 
     def say(self, text: str) -> None:
         """Show a sentence instead of figures."""

@@ -98,7 +98,7 @@ class AutoField(QWidget):
         self.setFocusProxy(self.box)
 
     def value(self) -> Any:
-        """Return the number or what stands for the fit's choice."""
+        """Return the number or what represents the fit's choice."""
         return self._automatic if self.box.currentIndex() == 0 else self.number.value()
 
     def put(self, value: Any) -> None:
@@ -145,5 +145,5 @@ class CoreField(ChoiceField):
             self.box.removeItem(self._plain)
 
 
-#: What the panel works with: each takes and gives one value, and ``changed`` tells of each keystroke or choice.
+#: What the panel works with: each takes and gives one value, and ``changed`` reports each keystroke or choice.
 Field = NumberField | ChoiceField | AutoField

@@ -26,7 +26,7 @@ from geofit.data.settings import FitSettings
 from geofit.gui.panels.fit_fields import AutoField, ChoiceField, CoreField, Field, NumberField
 from geofit.gui.panels.marks import icon, readable
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.report.style import FAIL
 
 __all__ = ["FIRST", "FitPanel"]
@@ -143,7 +143,7 @@ class FitPanel(QWidget):
         self.pages.reveal()
 
     def edited(self) -> FitSettings | None:
-        """Return the settings as they stand in the form; None while one is out of its range."""
+        """Return the settings as written in the form; None while one is out of its range."""
         try:
             return FitSettings(**{name: field.value() for name, field in self.fields.items()})
         except SettingsError:
@@ -166,7 +166,7 @@ class FitPanel(QWidget):
             self._add(name, ChoiceField(_choices(name)))
         self._add("max_iterations", NumberField(whole=True))
         self._add("max_control_points", AutoField(None, at_most, whole=True, start=2000))
-        self._add("conflict_distance", NumberField(unit))
+        self._add("coincidence_distance", NumberField(unit))
         assert set(self.fields) == {field.name for field in fields(FitSettings)}
 
     def _turn_arrow(self, unfolded: bool) -> None:
@@ -181,7 +181,7 @@ class FitPanel(QWidget):
         self._rest.addWidget(label)
 
     def _add(self, name: str, field: Field) -> None:
-        words, about = spoken(SETTINGS[name].label), spoken(SETTINGS[name].about)
+        words, about = translated(SETTINGS[name].label), translated(SETTINGS[name].about)
         label, error = QLabel(words), QLabel()
         label.setBuddy(field)
         label.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
@@ -204,14 +204,14 @@ class FitPanel(QWidget):
         self.fields[name], self.errors[name], self._labels[name] = field, error, label
 
     def _check(self) -> None:
-        """Validate each field for itself, so that every error stands beside its own field."""
+        """Validate each field for itself, so that every error is next to its own field."""
         sound = True
         for name, field in self.fields.items():
             value, text = field.value(), ""
             try:
                 replace(self._settings, **{name: value})
             except SettingsError as error:
-                text = spoken(str(error))
+                text = translated(str(error))
                 if isinstance(value, str) and "," in value:
                     text = self.tr("Write the decimal mark as a point: 0.5, not 0,5.")
             colours = self.errors[name].palette()
@@ -260,7 +260,7 @@ class FitPanel(QWidget):
 
 def _choices(name: str) -> dict[object, str]:
     """Return the words of a setting's choices in the user's language."""
-    return {value: spoken(text) for value, text in SETTINGS[name].choices.items()}
+    return {value: translated(text) for value, text in SETTINGS[name].choices.items()}
 
 
 class _Banner(QFrame):

@@ -11,9 +11,9 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from geofit.data.languages import Language
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.panels.canvas import Canvas, Ink, place, recolour, wrapped
+from geofit.gui.panels.canvas import Canvas, PlotColours, place, recolour, wrapped
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.words import spoken_language
+from geofit.gui.translate import user_language
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
 
@@ -52,49 +52,49 @@ class HistogramPanel(QWidget):
             return
         result = HorizonResult(surface, Site(surface.name, {}))
         if result.core.all():
-            self.pages.say(self.tr("Every point is met exactly: there is no residual to count."))
+            self.pages.say(self.tr("Every point is interpolated exactly: there is no residual to count."))
             return
         self._result = result
         self.pages.reveal()
         self.canvas.repaint_figure()
 
-    def _paint(self, ink: Ink) -> None:
+    def _paint(self, colours: PlotColours) -> None:
         if self._result is None:
             return
         left, right = self.canvas.axes(2)
-        told = cast(Language, _told)
-        histogram(left, self._result, told)
-        normal_plot(right, self._result, told)
+        language = cast(Language, _translated)
+        histogram(left, self._result, language)
+        normal_plot(right, self._result, language)
         self._texts = []
         for axes in (left, right):
-            recolour(axes, ink)
+            recolour(axes, colours)
             self._texts.append((axes.get_title("left"), axes.get_xlabel(), axes.get_ylim()))
 
-    def _arrange(self, ink: Ink) -> None:
+    def _arrange(self, colours: PlotColours) -> None:
         """Put the pictures beside each other, or one above the other; break texts that are too long for them."""
         width, height = int(self.canvas.width()), int(self.canvas.height())
         narrow = self.canvas.narrow
         wide, high = (width, height / 2) if narrow else (width / 2, height)
         for k, axes in enumerate(self.canvas.figure.axes):
             title, below, limits = self._texts[k]
-            axes.set_title(wrapped(title, wide - BESIDE, 10.0), loc="left", color=ink.text)
+            axes.set_title(wrapped(title, wide - BESIDE, 10.0), loc="left", color=colours.text)
             axes.set_xlabel(wrapped(below, wide - BESIDE, 9.0))
             axes.xaxis.set_major_locator(MaxNLocator(max(2, min(9, int(wide) // 80))))
             axes.set_ylim(limits)
             corner: tuple[float, float] = (0.0, k * high) if narrow else (k * wide, 0.0)
             inner = place(axes, *corner, wide, high)
             if axes.get_legend() is not None:
-                _explain(axes, ink, limits, inner)
+                _explain(axes, colours, limits, inner)
                 # The scale may have got longer numbers.
                 place(axes, *corner, wide, high)
 
 
-def _told(template: str, /, **values: Any) -> str:
+def _translated(template: str, /, **values: Any) -> str:
     """Say a label of the report in the language of the windows."""
-    return spoken_language()(template, **values)
+    return user_language()(template, **values)
 
 
-def _explain(axes: Axes, ink: Ink, limits: tuple[float, float], inner: tuple[float, float]) -> None:
+def _explain(axes: Axes, colours: PlotColours, limits: tuple[float, float], inner: tuple[float, float]) -> None:
     """Write the legend above what is drawn, which makes room for it."""
     handles, labels = axes.get_legend_handles_labels()
     labels = [wrapped(label, inner[0] - 44, LETTERS) for label in labels]
@@ -106,5 +106,11 @@ def _explain(axes: Axes, ink: Ink, limits: tuple[float, float], inner: tuple[flo
         if line.get_transform() == axes.get_xaxis_transform("grid"):
             line.set_ydata([0.0, 1 - share])
     axes.legend(
-        handles, labels, loc="upper left", fontsize=LETTERS, borderaxespad=0.2, labelcolor=ink.text, labelspacing=0.3
+        handles,
+        labels,
+        loc="upper left",
+        fontsize=LETTERS,
+        borderaxespad=0.2,
+        labelcolor=colours.text,
+        labelspacing=0.3,
     )

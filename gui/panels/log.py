@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QGuiApplication, QPalette, QTextCharFormat, QT
 from PySide6.QtWidgets import QHBoxLayout, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
 from geofit.data.messages import Message
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.report.style import FAIL
 
 __all__ = ["LogPanel", "qt_to_logging"]
@@ -69,7 +69,7 @@ class LogPanel(QWidget):
         self.text.setReadOnly(True)
         self.text.setMaximumBlockCount(LINES)
         self.text.setAccessibleName(self.tr("Log"))
-        self.text.setPlaceholderText(self.tr("Nothing to tell yet: what geofit does is written here."))
+        self.text.setPlaceholderText(self.tr("No messages yet: what geofit does is listed here."))
         copy, clear = QPushButton(self.tr("Copy all")), QPushButton(self.tr("Clear"))
         copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(self.text.toPlainText()))
         clear.clicked.connect(self.text.clear)
@@ -127,4 +127,4 @@ class _Formatter(logging.Formatter):
 
 def _message(record: logging.LogRecord) -> str:
     """Return a record's message in the user's language; what other libraries log stays as it is."""
-    return spoken(record.msg) if isinstance(record.msg, Message) else record.getMessage()
+    return translated(record.msg) if isinstance(record.msg, Message) else record.getMessage()

@@ -1,4 +1,4 @@
-"""What stands in a panel that has nothing to show yet: a sentence that says what to do."""
+"""What is shown in a panel that has nothing to show yet: a sentence that states what to do."""
 
 from __future__ import annotations
 

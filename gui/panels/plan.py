@@ -10,13 +10,13 @@ from PySide6.QtWidgets import QBoxLayout, QLabel, QPushButton, QVBoxLayout, QWid
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.fitting.parametrize import Chart
+from geofit.fitting.parametrize import Parametrization
 from geofit.geometry.frame import Frame, map_frame
-from geofit.gui.panels.core_box import CoreBox, chart_of, taken
+from geofit.gui.panels.core_box import CoreBox, parametrization_of, taken
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.plan_view import PlanData, PlanView
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.report.style import horizon_colours
 from geofit.report.view import rims
 
@@ -54,7 +54,7 @@ class PlanPanel(QWidget):
             button.setToolTip(about)
             button.setCheckable(key in {"auto", "all", "none", "draw"})
             button.setAutoDefault(False)
-            # Narrow enough for all to stand in two lines of a dock.
+            # Narrow enough for all to are set in two lines of a dock.
             button.setMinimumWidth(button.fontMetrics().horizontalAdvance(words) + 22)
             button.setMaximumWidth(button.fontMetrics().horizontalAdvance(words) + 34)
             tools.addWidget(button)
@@ -86,7 +86,7 @@ class PlanPanel(QWidget):
         self.view.pointer_moved.connect(self.pointer_moved)
         self._name, self._settings = "", FitSettings()
         self._why = ""
-        self._chart: Chart | None = None
+        self._parametrization: Parametrization | None = None
         self._past: list[CoreBox | None] = []
         self._last: CoreBox | None = None
         self.show_surface(None, "", None, FitSettings())
@@ -99,8 +99,8 @@ class PlanPanel(QWidget):
             return
         same, self._name, self._settings = name == self._name, name, settings
         points = site.horizons[name] if surface is None else surface.points
-        chart = self._chart = chart_of(points, settings, site.boundary, surface)
-        frame = map_frame(points) if chart is None else chart.frame
+        parametrization = self._parametrization = parametrization_of(points, settings, site.boundary, surface)
+        frame = map_frame(points) if parametrization is None else parametrization.frame
         self._past.clear()
         self._last = self._box(surface, frame)
         exact = np.zeros(len(points), bool)
@@ -127,13 +127,13 @@ class PlanPanel(QWidget):
         for word in ("auto", "all", "none"):
             self.buttons[word].setChecked(settings.core == word)
         if surface is not None and surface.partition is not None:
-            self._why = spoken(surface.partition.reason)
+            self._why = translated(surface.partition.reason)
         else:
             self._why = self.tr("Not fitted yet: the core is found when the horizon is fitted.")
         if self.view.locked:
-            more = self.tr("A rectangle can be drawn only for a surface that is laid over the map.")
+            more = self.tr("A rectangle can be drawn only for a surface fitted over the map.")
             self._why = f"{self._why}\n{more}"
-        self._settle()
+        self._update_state()
         self.pages.reveal()
 
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
@@ -149,13 +149,13 @@ class PlanPanel(QWidget):
         if self._past:
             self._last = self._past.pop()
             self.view.show_box(self._last)
-        self._settle()
+        self._update_state()
 
     def use(self) -> None:
         """Make the rectangle the core of the next fit."""
         if self._last is not None:
             self._past.clear()
-            self._settle()
+            self._update_state()
             corners = tuple((float(x), float(y)) for x, y in self._last.corners)
             self.core_changed.emit(self._name, corners)
 
@@ -170,7 +170,7 @@ class PlanPanel(QWidget):
         for key in ("auto", "all", "none"):
             self.buttons[key].setChecked(key == word)
         self._past.clear()
-        self._settle()
+        self._update_state()
         if self._settings.core != word:
             self.core_changed.emit(self._name, word)
 
@@ -180,15 +180,15 @@ class PlanPanel(QWidget):
             self.view.setFocus()
             self.reason.setText(self.tr("Press and drag in the plan to draw the core's rectangle."))
         else:
-            self._settle()
+            self._update_state()
 
     def _dragged(self, box: CoreBox) -> None:
         self._past.append(self._last)
         self._last = box
         self.buttons["draw"].setChecked(False)
-        self._settle()
+        self._update_state()
 
-    def _settle(self) -> None:
+    def _update_state(self) -> None:
         self.buttons["undo"].setEnabled(bool(self._past))
         self.buttons["use"].setEnabled(bool(self._past) and self._last is not None)
         if self._past and self._last is not None:
@@ -199,10 +199,10 @@ class PlanPanel(QWidget):
     def _tell_pending(self, box: CoreBox) -> None:
         """Say what the fit would take, while the rectangle is dragged."""
         total = len(self.view.data.points)
-        if self._chart is None:
+        if self._parametrization is None:
             inside, widened = int(box.holds(self.view.data.points).sum()), False
         else:
-            inside, widened = taken(self._chart, box)
+            inside, widened = taken(self._parametrization, box)
         width, height = box.size
         words = self.tr("{width:.0f} m × {height:.0f} m: {inside} points inside, {outside} outside.").format(
             width=width, height=height, inside=inside, outside=total - inside

@@ -24,7 +24,7 @@ from PySide6.QtWidgets import QWidget
 
 from geofit.gui.panels.core_box import CoreBox
 from geofit.gui.panels.marks import readable
-from geofit.gui.panels.plan_ink import draw_cloud, draw_labels, draw_north, draw_scale_bar, draw_title
+from geofit.gui.panels.plan_painter import draw_cloud, draw_labels, draw_north, draw_scale_bar, draw_title
 from geofit.report.style import CORE, QUIET
 
 __all__ = ["PERIPHERY", "PlanData", "PlanView"]
@@ -79,7 +79,7 @@ class PlanView(QWidget):
         self._centre, self._scale = np.zeros(2), 1.0
         self._fitted = self._moved = False
         self._layer: QPixmap | None = None
-        self._grip: int | str | None = None
+        self._grasped: int | str | None = None
         self._from = np.zeros(2)
         self._start: CoreBox | None = None
 
@@ -257,7 +257,7 @@ class PlanView(QWidget):
     def _line(self, xy: Floats) -> QPolygonF:
         return QPolygonF([QPointF(x, y) for x, y in self.to_widget(xy).tolist()])
 
-    def _grip_at(self, place: QPointF) -> int | str | None:
+    def _handle_at(self, place: QPointF) -> int | str | None:
         if self.box is None or self.locked:
             return None
         away = np.abs(self.to_widget(self.box.corners) - [place.x(), place.y()]).max(axis=1)
@@ -273,19 +273,19 @@ class PlanView(QWidget):
         if self.drawing and self.blank is not None:
             place = self.blank.frame.plan(self._from[None])[0]
             self.box = CoreBox(self.blank.frame, place, place + 1e-3)
-            self._grip = "new"
+            self._grasped = "new"
         else:
-            self._grip = self._grip_at(event.position())
-            self._grip = "plan" if self._grip is None else self._grip
+            self._grasped = self._handle_at(event.position())
+            self._grasped = "plan" if self._grasped is None else self._grasped
         self._start = self.box
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Drag what is held; show what could be held."""
         place = self.to_map(event.position())
         self.pointer_moved.emit(float(place[0]), float(place[1]))
-        if self._grip is None:
-            self._show_cursor(self._grip_at(event.position()))
-        elif self._grip == "plan":
+        if self._grasped is None:
+            self._show_cursor(self._handle_at(event.position()))
+        elif self._grasped == "plan":
             self._centre = self._centre + self._from - place
             self._layer, self._moved = None, True
             self.update()
@@ -296,7 +296,7 @@ class PlanView(QWidget):
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Let go."""
-        held, self._grip = self._grip, None
+        held, self._grasped = self._grasped, None
         changed = self.box is not self._start
         if held not in {None, "plan"} and changed:
             self.box_dragged.emit(self.box)
@@ -304,19 +304,19 @@ class PlanView(QWidget):
             self.show_box(None)
 
     def _dragged(self, start: CoreBox, place: Floats) -> CoreBox:
-        if self._grip == "new":
+        if self._grasped == "new":
             return CoreBox.around(start.frame, np.stack([self._from, place]))
-        if self._grip == "box":
+        if self._grasped == "box":
             return start.moved(place - self._from)
-        assert isinstance(self._grip, int)
-        return start.with_corner(self._grip, place)
+        assert isinstance(self._grasped, int)
+        return start.with_corner(self._grasped, place)
 
-    def _show_cursor(self, grip: int | str | None) -> None:
+    def _show_cursor(self, handle: int | str | None) -> None:
         if self.drawing:
             self.setCursor(Qt.CursorShape.CrossCursor)
-        elif isinstance(grip, int):
+        elif isinstance(handle, int):
             self.setCursor(Qt.CursorShape.PointingHandCursor)
-        elif grip == "box":
+        elif handle == "box":
             self.setCursor(Qt.CursorShape.SizeAllCursor)
         else:
             self.unsetCursor()

@@ -15,7 +15,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, level_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import natural
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.report.digits import metres
 from geofit.report.style import horizon_colours
 
@@ -154,15 +154,15 @@ class ProjectTree(QWidget):
         a, old = surface.accuracy, name in stale
         judged = verdict or verdict_of(a)
         words = self.tr("{name}: {verdict}; patches: {patches}, points: {n}").format(
-            name=name, verdict=spoken(judged.word), patches=len(surface.patches), n=a.n
+            name=name, verdict=translated(judged.word), patches=len(surface.patches), n=a.n
         )
-        words = "\n".join((words, *(f"{spoken(lamp.title)}: {spoken(lamp.text)}" for lamp in judged.lamps)))
+        words = "\n".join((words, *(f"{translated(lamp.title)}: {translated(lamp.text)}" for lamp in judged.lamps)))
         title = name
         if old:
             title = self.tr("{name} (stale)").format(name=name)
             words += "\n" + self.tr("Older than the settings: press Fit")
         row = _row(title, count, icon("stale" if old else level_mark(judged.level)), ("horizon", name), words)
-        row[0].setData(f"{name}, {spoken(judged.word)}", Qt.ItemDataRole.AccessibleTextRole)
+        row[0].setData(f"{name}, {translated(judged.word)}", Qt.ItemDataRole.AccessibleTextRole)
         if old:
             font = row[0].font()
             font.setItalic(True)
@@ -171,11 +171,11 @@ class ProjectTree(QWidget):
             group = a.by_patch.get(patch.name)
             rows, columns = patch.control.shape[:2]
             about = self.tr("Patch {name}: {rows} × {columns} control points, largest |d| {most} m").format(
-                name=spoken(patch.name), rows=rows, columns=columns, most=metres(group.max_abs if group else 0.0)
+                name=translated(patch.name), rows=rows, columns=columns, most=metres(group.max_abs if group else 0.0)
             )
             row[0].appendRow(
                 _row(
-                    spoken(patch.name),
+                    translated(patch.name),
                     group.n if group else 0,
                     icon(f"patch:{colour}"),
                     ("patch", f"{name}\n{patch.name}"),

@@ -15,7 +15,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.tables import Column, DataTable, spoken_words
+from geofit.gui.panels.tables import Column, DataTable, translated_column
 from geofit.project.listing import Listing
 from geofit.project.listing import listing as list_points
 from geofit.project.provenance import Row
@@ -33,7 +33,7 @@ class _Table(DataTable):
     """The table with what can be done to its points."""
 
     exclude_requested = Signal()
-    pull_requested = Signal()
+    move_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,11 +46,11 @@ class _Table(DataTable):
         again = bool(chosen) and bool(self.excluded[chosen].all())
         words = self.tr("Include in the fit again: {n}") if again else self.tr("Exclude from the fit: {n}")
         exclude = menu.addAction(words.format(n=len(chosen)))
-        pull = menu.addAction(self.tr("Pull the surface to this point"))
+        move_to = menu.addAction(self.tr("Move the surface to this point"))
         exclude.setEnabled(bool(chosen))
-        pull.setEnabled(self.current is not None)
+        move_to.setEnabled(self.current is not None)
         exclude.triggered.connect(self.exclude_requested)
-        pull.triggered.connect(self.pull_requested)
+        move_to.triggered.connect(self.move_requested)
         menu.addSeparator()
         menu.addAction(self.copy_action)
         menu.addAction(self.export_action)
@@ -70,12 +70,12 @@ class _Shown:
 class ResidualTable(QWidget):
     """All points of a horizon with their residuals; excluded rows are greyed and struck through.
 
-    Points are known by their rows: ``point_chosen`` and ``pull_requested`` carry a Row, ``exclude_requested`` a tuple.
+    Points are known by their rows: ``point_chosen`` and ``move_requested`` carry a Row, ``exclude_requested`` a tuple.
     """
 
     point_chosen = Signal(object)
     exclude_requested = Signal(object)
-    pull_requested = Signal(object)
+    move_requested = Signal(object)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -83,15 +83,15 @@ class ResidualTable(QWidget):
         self.search.setPlaceholderText(self.tr("Filter by hole, section, kind, patch or file"))
         self.search.setAccessibleName(self.tr("Filter of the residual table"))
         self.only_over = QCheckBox(self.tr("Over tolerance"))
-        self.only_loose = QCheckBox(self.tr("Not exact"))
-        self.only_loose.setToolTip(self.tr("Leave out the core's points, which the surface meets exactly."))
+        self.only_approximated = QCheckBox(self.tr("Not exact"))
+        self.only_approximated.setToolTip(self.tr("Leave out the core's points, which the surface meets exactly."))
         self.only_excluded = QCheckBox(self.tr("Excluded"))
         self.only_excluded.setToolTip(self.tr("Only rows that take no part in the fit."))
         self.count = QLabel()
         self.table = _Table()
         self.table.setAccessibleName(self.tr("Residuals of all points"))
         head = FlowLayout()
-        for widget in (self.search, self.only_over, self.only_loose, self.only_excluded, self.count):
+        for widget in (self.search, self.only_over, self.only_approximated, self.only_excluded, self.count):
             head.addWidget(widget)
         content = QWidget()
         column = QVBoxLayout(content)
@@ -104,11 +104,11 @@ class ResidualTable(QWidget):
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._filter)
         self.search.textChanged.connect(self._pause.start)
-        for box in (self.only_over, self.only_loose, self.only_excluded):
+        for box in (self.only_over, self.only_approximated, self.only_excluded):
             box.toggled.connect(self._filter)
         self.table.chosen.connect(lambda index: self.point_chosen.emit(self._row(index)))
         self.table.exclude_requested.connect(lambda: self.exclude_requested.emit(self.chosen_rows()))
-        self.table.pull_requested.connect(self._pull)
+        self.table.move_requested.connect(self._pull)
         self._shown: _Shown | None = None
         self.show_surface(None)
 
@@ -124,7 +124,7 @@ class ResidualTable(QWidget):
             self.table.show_columns(())
             empty = surface is not None and not len(surface.points)
             self.pages.say(
-                self.tr("This surface came without points: there are no residuals.")
+                self.tr("This surface was read without points: there are no residuals.")
                 if empty
                 else self.tr("No surface yet: press Fit to see how far each point lies from it.")
             )
@@ -132,7 +132,7 @@ class ResidualTable(QWidget):
         first, chosen = self._shown is None, self.chosen_rows() if self._shown is not None else ()
         listed = listing or list_points(surface.points, (), surface)
         points = listed.points
-        kinds, patches = spoken_words(points.kind), spoken_words(listed.patch)
+        kinds, patches = translated_column(points.kind), translated_column(listed.patch)
         parts = (points.hole, points.section, kinds, patches, points.file)
         distance = np.abs(listed.residual)
         self._shown = _Shown(listed, _joined(parts), distance, surface.settings.interior_tolerance)
@@ -169,7 +169,7 @@ class ResidualTable(QWidget):
 
     def _pull(self) -> None:
         if self.table.current is not None:
-            self.pull_requested.emit(self._row(self.table.current))
+            self.move_requested.emit(self._row(self.table.current))
 
     def _columns(self, surface: HorizonFit, listed: Listing) -> list[Column]:
         points, a = listed.points, surface.accuracy
@@ -189,10 +189,10 @@ class ResidualTable(QWidget):
                 _marks(surface, listed.residual, self),
             ),
             Column(self.tr("|d|, m"), np.abs(listed.residual), 4, self.tr("Distance without its sign.")),
-            Column(self.tr("Kind"), spoken_words(points.kind)),
+            Column(self.tr("Kind"), translated_column(points.kind)),
             Column(self.tr("Hole"), points.hole),
             Column(self.tr("Section"), points.section),
-            Column(self.tr("Patch"), spoken_words(listed.patch)),
+            Column(self.tr("Patch"), translated_column(listed.patch)),
             Column(self.tr("Core"), exact, tooltip=self.tr("Whether the surface meets the point exactly.")),
             Column(self.tr("Easting, m"), points.xyz[:, 0], 3),
             Column(self.tr("Northing, m"), points.xyz[:, 1], 3),
@@ -211,7 +211,7 @@ class ResidualTable(QWidget):
             keep &= np.char.find(self._shown.words, words) >= 0
         if self.only_over.isChecked():
             keep &= self._shown.distance > self._shown.tolerance
-        if self.only_loose.isChecked():
+        if self.only_approximated.isChecked():
             keep &= ~listed.core
         if self.only_excluded.isChecked():
             keep &= listed.excluded

@@ -19,10 +19,10 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.view3d.annotations import theme_of
+from geofit.gui.view3d.layer_names import layer_title, word
 from geofit.gui.view3d.layers import Layer, Layers, Legend
 from geofit.gui.view3d.overlay import draw_legend, legend_size
-from geofit.gui.view3d.words import layer_title, word
-from geofit.gui.view3d.writing import theme_of
 
 __all__ = ["SceneList"]
 

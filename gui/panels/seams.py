@@ -12,7 +12,7 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.tables import Column, DataTable, spoken_words
+from geofit.gui.panels.tables import Column, DataTable, translated_column
 from geofit.gui.view3d.colouring import seam_colours
 
 __all__ = ["SeamTable", "seam_holds"]
@@ -66,8 +66,8 @@ class SeamTable(QWidget):
         self.head.setText(words.format(n=len(seams), gap=1000 * gap, angle=ANGLE_LIMIT))
         self.table.show_columns(
             [
-                Column(self.tr("Patch"), spoken_words([seam.first for seam in seams])),
-                Column(self.tr("Meets"), spoken_words([seam.second for seam in seams])),
+                Column(self.tr("Patch"), translated_column([seam.first for seam in seams])),
+                Column(self.tr("Meets"), translated_column([seam.second for seam in seams])),
                 Column(
                     self.tr("Gap, mm"),
                     np.array([1000 * seam.gap for seam in seams]),

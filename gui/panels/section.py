@@ -16,11 +16,11 @@ from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QV
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.panels.canvas import Canvas, Ink, place
+from geofit.gui.panels.canvas import Canvas, PlotColours, place
 from geofit.gui.panels.curtain import Curtain, Meshes, Traces, extent, trace
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.section_ink import (
+from geofit.gui.panels.section_painter import (
     SectionData,
     draw_section,
     explain,
@@ -29,7 +29,7 @@ from geofit.gui.panels.section_ink import (
     thin_names,
 )
 from geofit.gui.panels.section_scale import automatic, grown, window
-from geofit.gui.words import failure
+from geofit.gui.translate import failure
 from geofit.gui.worker import Task, run
 from geofit.project.provenance import Row
 
@@ -96,7 +96,7 @@ class SectionPanel(QWidget):
         self._meshes: Meshes = {}
         self._task: Task | None = None
         self._again = self._due = False
-        self._grip: tuple[float, float] | None = None
+        self._grasped: tuple[float, float] | None = None
         # Size of the drawing, its edges and exaggeration; magnified or moved, they stay until another line is shown.
         self._size, self._edges, self._shown, self._moved = (1.0, 1.0), ((0.0, 1.0), (0.0, 1.0)), 1.0, False
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
@@ -259,7 +259,7 @@ class SectionPanel(QWidget):
             )
         )
 
-    def _paint(self, ink: Ink) -> None:
+    def _paint(self, colours: PlotColours) -> None:
         if self._data is None:
             return
         words = {
@@ -267,13 +267,13 @@ class SectionPanel(QWidget):
             "band": self.tr("90 % band"),
             "elevation": self.tr("Elevation, m"),
         }
-        draw_section(self.canvas.axes(1)[0], self._data, ink, words)
+        draw_section(self.canvas.axes(1)[0], self._data, colours, words)
 
-    def _arrange(self, ink: Ink) -> None:
+    def _arrange(self, colours: PlotColours) -> None:
         """Put the drawing beside or above its legend, with all of the section in it unless somebody moved it."""
         assert self._data is not None
         axes = self.canvas.figure.axes[0]
-        note, room = explain(self.canvas.figure, ink, narrow=self.canvas.narrow)
+        note, room = explain(self.canvas.figure, colours, narrow=self.canvas.narrow)
         # Other limits have other numbers, which may leave more or less room.
         for _ in range(2):
             size = self._place(axes, room)
@@ -288,7 +288,7 @@ class SectionPanel(QWidget):
         note.set_text(self.tr("Vertical {factor}×").format(factor=f"{self._shown:g}"))
 
     def _place(self, axes: Axes, room: tuple[float, float, float, float]) -> tuple[float, float]:
-        """Place the drawing; where it is low, what the distances are stands beside their numbers, not below."""
+        """Place the drawing; where it is low, what the distances are is next to their numbers, not below."""
         low = room[3] < LOW and not self.canvas.narrow
         axes.set_xlabel("" if low else self.tr("Distance along the section, m"), ha="left" if low else "center")
         size = place(axes, *room)
@@ -321,21 +321,21 @@ class SectionPanel(QWidget):
         if event.dblclick:
             self._show_all()
         elif event.inaxes is not None and event.xdata is not None and event.ydata is not None:
-            self._grip = (event.xdata, event.ydata)
+            self._grasped = (event.xdata, event.ydata)
             self._pressed = (event.x, event.y)
 
     def _move(self, event: MouseEvent) -> None:
-        if self._grip is None or event.inaxes is None or event.xdata is None or event.ydata is None:
+        if self._grasped is None or event.inaxes is None or event.xdata is None or event.ydata is None:
             return
         axes = event.inaxes
         if np.hypot(event.x - self._pressed[0], event.y - self._pressed[1]) < 4:
             return
-        beside = [x + self._grip[0] - event.xdata for x in axes.get_xlim()]
-        levels = [z + self._grip[1] - event.ydata for z in axes.get_ylim()]
+        beside = [x + self._grasped[0] - event.xdata for x in axes.get_xlim()]
+        levels = [z + self._grasped[1] - event.ydata for z in axes.get_ylim()]
         self._look_at(axes, (beside[0], beside[1]), (levels[0], levels[1]))
 
     def _release(self, event: MouseEvent) -> None:
-        held, self._grip = self._grip, None
+        held, self._grasped = self._grasped, None
         if held is None or event.inaxes is None or self._data is None:
             return
         if np.hypot(event.x - self._pressed[0], event.y - self._pressed[1]) < 4:

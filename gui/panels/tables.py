@@ -32,9 +32,9 @@ from PySide6.QtWidgets import QAbstractItemView, QApplication, QFileDialog, QHea
 
 from geofit.data.files import replacing, spreadsheet_cell
 from geofit.gui.preferences import Preferences
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 
-__all__ = ["ArrayModel", "Column", "DataTable", "natural", "spoken_words"]
+__all__ = ["ArrayModel", "Column", "DataTable", "natural", "translated_column"]
 
 #: Pixels that are put between columns where there is room.
 GAP = 12
@@ -57,10 +57,10 @@ def natural(text: str) -> tuple[tuple[int, int, str], ...]:
     return tuple((0, int(part), "") if part.isdecimal() else (1, 0, part) for part in parts if part)
 
 
-def spoken_words(values: ArrayLike) -> NDArray[np.str_]:
+def translated_column(values: ArrayLike) -> NDArray[np.str_]:
     """Return words of the core (kinds, patches) in the language of the windows, each asked for once."""
     words, place = np.unique(np.asarray(values, dtype=np.str_), return_inverse=True)
-    return np.array([spoken(str(word)) for word in words], dtype=np.str_)[place]
+    return np.array([translated(str(word)) for word in words], dtype=np.str_)[place]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""The verdict: a word and three lamps with the figures behind them, told by shape and word as well as colour."""
+"""The verdict: a word and three lamps with the figures behind them, shown by shape and word as well as colour."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QSizePolicy, QWidget
 from geofit.data.accuracy import Accuracy
 from geofit.data.verdict import Lamp, Level, Verdict, verdict_of
 from geofit.gui.panels.marks import is_dark, level_mark, paint, readable
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.report.digits import count, given, metres
 from geofit.report.style import FAIL, PASS, QUIET, WARNING
 
@@ -80,7 +80,7 @@ class VerdictBadge(QFrame):
     ) -> None:
         """Show the check of a surface, None while there is none; ``verdict`` has what else is known of it.
 
-        ``waiting`` says that there is a surface, which is still being read or made.
+        ``waiting`` states that there is a surface, which is still being read or made.
         """
         self._stale = stale and accuracy is not None
         judged = verdict_of(accuracy) if verdict is None and accuracy is not None else verdict
@@ -93,7 +93,7 @@ class VerdictBadge(QFrame):
             self._more.setText(
                 self.tr("It is part of the project, and its verdict follows in a moment.")
                 if waiting
-                else self.tr("Press Fit to lay one and check it against ε.")
+                else self.tr("Press Fit to fit one and check it against ε.")
             )
             self.setToolTip("")
         else:
@@ -122,8 +122,8 @@ class VerdictBadge(QFrame):
             mark.setVisible(shown)
             label.setVisible(shown)
             mark.name = level_mark(lamps[k].level) if shown else "none"
-            label.setText(spoken(lamps[k].text) if shown else "")
-            label.setToolTip(spoken(lamps[k].title) if shown else "")
+            label.setText(translated(lamps[k].text) if shown else "")
+            label.setToolTip(translated(lamps[k].title) if shown else "")
             mark.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
@@ -158,4 +158,4 @@ class VerdictBadge(QFrame):
 
 def verdict_word(verdict: Verdict) -> str:
     """Return the word of a verdict in the language of the windows."""
-    return spoken(verdict.word)
+    return translated(verdict.word)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
-from geofit.gui.panels.canvas import Canvas, Ink, recolour
+from geofit.gui.panels.canvas import Canvas, PlotColours, recolour
 from geofit.project.pore_view import GreyVolume
 
 __all__ = ["VolumeSlices"]
@@ -75,7 +75,7 @@ class VolumeSlices(QWidget):
         self.canvas.repaint_figure()
         self.moved.emit()
 
-    def _paint(self, ink: Ink) -> None:
+    def _paint(self, colours: PlotColours) -> None:
         if self.volume is None:
             return
         picture, histogram = self.canvas.axes(2)
@@ -94,18 +94,18 @@ class VolumeSlices(QWidget):
         counts = self.volume.counts
         middle, width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
         inside = np.zeros(len(middle), bool) if self.range is None else self._within(middle)
-        shades = np.where(inside, ink.of(PORE), ink.muted)
+        shades = np.where(inside, colours.of(PORE), colours.muted)
         histogram.bar(middle, counts / counts.sum() * 100, 0.9 * width, color=shades.tolist())
         histogram.set_ylabel(self.tr("voxels, %"))
         histogram.set_xlabel(self.tr("value of a voxel"))
         for axes in (picture, histogram):
-            recolour(axes, ink)
+            recolour(axes, colours)
 
     def _within(self, middle: NDArray[np.float64]) -> NDArray[np.bool_]:
         assert self.range is not None
         return (middle >= self.range[0]) & (middle <= self.range[1])
 
-    def _arrange(self, ink: Ink) -> None:
+    def _arrange(self, colours: PlotColours) -> None:
         if len(self.canvas.figure.axes) == 2:
             picture, histogram = self.canvas.figure.axes
             picture.set_position((0.02, 0.36, 0.96, 0.62))

@@ -23,7 +23,7 @@ class WeightBox(QWidget):
         self.value.setAlignment(Qt.AlignmentFlag.AlignRight)
         self.value.setAccessibleName(self.tr("Weight", "WeightBox"))
         self.value.setToolTip(
-            self.tr("1 is neutral; above 1 the surface is drawn to the control point, below 1 it is let go.")
+            self.tr("1 is neutral; above 1 the control point attracts the surface, below 1 it attracts it less.")
         )
         self.button = QPushButton(self.tr("Set"))
         self.button.setToolTip(self.tr("Give the control point this weight. Undo takes it back."))

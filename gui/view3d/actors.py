@@ -22,7 +22,7 @@ Ints = NDArray[np.int64]
 
 #: Colour of places without a value.
 UNKNOWN = (0.62, 0.64, 0.66, 1.0)
-#: The canvas's sun and lamp (the eye is taken to stand above) as unit vectors, with their shares of the light.
+#: The canvas's sun and lamp (the viewpoint is taken to be above) as unit vectors, with their shares of the light.
 AMBIENT = 0.34
 LIGHTS = ((np.array([-0.557, 0.501, 0.662]), 0.42), (np.array([-0.3, -0.45, 0.84]), 0.39))
 
@@ -33,7 +33,7 @@ WIDE, FAINT = 12.0, 0.15
 
 @dataclass(eq=False)
 class Part:
-    """An actor; ``detail`` says whether it belongs to the still picture ("full"), the moving one ("coarse") or both.
+    """An actor; ``detail`` shows whether it belongs to the still picture ("full"), the moving one ("coarse") or both.
 
     ``width`` and ``size`` are the widths of its lines and points in logical pixels; ``opacity`` times the layer's.
     ``spacing`` is set for a net of so many metres: seen from afar it is drawn fainter, so that it hides nothing.

@@ -1,4 +1,4 @@
-"""The eye: turns about the vertical like a turntable, so that north and up are never lost."""
+"""The viewpoint: turns about the vertical like a turntable, so that north and up are never lost."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["VIEWS", "Eye", "between", "framed"]
+__all__ = ["VIEWS", "Viewpoint", "between", "framed"]
 
 Floats = NDArray[np.float64]
 
 #: Angle of view, degrees.
 ANGLE = 28.0
-#: From where the standard views look: azimuth of the eye (clockwise from north) and its height, degrees.
+#: From where the standard views look: azimuth of the viewpoint (clockwise from north) and its height, degrees.
 VIEWS = {
     "top": (180.0, 90.0),
     "north": (0.0, 0.0),
@@ -24,13 +24,13 @@ VIEWS = {
     "west": (270.0, 0.0),
     "iso": (212.0, 32.0),
 }
-#: The eye comes no nearer than this to what it looks at, metres.
+#: The viewpoint comes no nearer than this to what it looks at, metres.
 NEAREST = 0.5
 
 
 @dataclass(frozen=True, eq=False)
-class Eye:
-    """Where the eye stands: about ``centre`` (scene coordinates), at an azimuth and height (degrees), so far away."""
+class Viewpoint:
+    """Where the viewpoint is: about ``centre`` (scene coordinates), at an azimuth and height (degrees), so far away."""
 
     centre: Floats
     azimuth: float
@@ -40,7 +40,7 @@ class Eye:
 
     @property
     def axes(self) -> Floats:
-        """Unit vectors to the right, upwards in the picture, and towards the eye, as rows."""
+        """Unit vectors to the right, upwards in the picture, and towards the viewpoint, as rows."""
         a, h = math.radians(self.azimuth), math.radians(self.height)
         towards = [math.sin(a) * math.cos(h), math.cos(a) * math.cos(h), math.sin(h)]
         up = [-math.sin(a) * math.sin(h), -math.cos(a) * math.sin(h), math.cos(h)]
@@ -51,24 +51,24 @@ class Eye:
         """Half the height of the picture at the centre, metres."""
         return self.distance * math.tan(math.radians(ANGLE / 2))
 
-    def turned(self, right: float, up: float) -> Eye:
-        """Return the eye moved round the centre by degrees."""
+    def turned(self, right: float, up: float) -> Viewpoint:
+        """Return the viewpoint moved round the centre by degrees."""
         height = min(max(self.height + up, -90.0), 90.0)
         return replace(self, azimuth=(self.azimuth + right) % 360, height=height)
 
-    def shifted(self, right: float, up: float) -> Eye:
-        """Return the eye moved sideways by metres of the scene."""
+    def shifted(self, right: float, up: float) -> Viewpoint:
+        """Return the viewpoint moved sideways by metres of the scene."""
         axes = self.axes
         return replace(self, centre=self.centre + right * axes[0] + up * axes[1])
 
-    def nearer(self, factor: float, right: float = 0.0, up: float = 0.0) -> Eye:
-        """Return the eye ``factor`` times nearer; the place ``right``, ``up`` (metres at the centre) stays in place."""
+    def nearer(self, factor: float, right: float = 0.0, up: float = 0.0) -> Viewpoint:
+        """Return the viewpoint ``factor`` times nearer; the place ``right``, ``up`` (metres at the centre) stays."""
         distance = max(self.distance / factor, NEAREST)
         stay = 1 - distance / self.distance
         return replace(self.shifted(right * stay, up * stay), distance=distance)
 
-    def seen_from(self, view: str) -> Eye:
-        """Return the eye at a standard view (see VIEWS)."""
+    def seen_from(self, view: str) -> Viewpoint:
+        """Return the viewpoint at a standard view (see VIEWS)."""
         azimuth, height = VIEWS[view]
         return replace(self, azimuth=azimuth, height=height)
 
@@ -83,23 +83,23 @@ class Eye:
         camera.SetParallelProjection(self.parallel)
 
 
-def framed(eye: Eye, box: Floats, aspect: float) -> Eye:
-    """Return the eye so that a box (2, 3) of the scene fills the picture, seen from where it looks now."""
+def framed(viewpoint: Viewpoint, box: Floats, aspect: float) -> Viewpoint:
+    """Return the viewpoint so that a box (2, 3) of the scene fills the picture, seen from where it looks now."""
     corners = np.array([[box[i, 0], box[j, 1], box[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
     centre = box.mean(axis=0)
-    seen = (corners - centre) @ eye.axes.T
+    seen = (corners - centre) @ viewpoint.axes.T
     middle = (seen[:, :2].max(axis=0) + seen[:, :2].min(axis=0)) / 2
-    centre = centre + middle @ eye.axes[:2]
+    centre = centre + middle @ viewpoint.axes[:2]
     seen[:, :2] -= middle
     slope = math.tan(math.radians(ANGLE / 2))
-    depth = 0.0 if eye.parallel else seen[:, 2]
+    depth = 0.0 if viewpoint.parallel else seen[:, 2]
     across = np.abs(seen[:, 0]) / max(aspect, 1e-3)
     needed = np.maximum(across, np.abs(seen[:, 1])) / slope + depth
-    return replace(eye, centre=centre, distance=max(1.12 * float(needed.max()), NEAREST))
+    return replace(viewpoint, centre=centre, distance=max(1.12 * float(needed.max()), NEAREST))
 
 
-def between(start: Eye, end: Eye, share: float) -> Eye:
-    """Return the eye on its way from one place to another: slow, fast, slow; it turns the shorter way."""
+def between(start: Viewpoint, end: Viewpoint, share: float) -> Viewpoint:
+    """Return the viewpoint on its way from one place to another: slow, fast, slow; it turns the shorter way."""
     s = share * share * (3 - 2 * share)
     turn = (end.azimuth - start.azimuth + 180) % 360 - 180
     return replace(

@@ -13,20 +13,21 @@ from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkLight
 
-from geofit.gui.view3d.camera import Eye, between
+from geofit.gui.view3d.camera import Viewpoint, between
 from geofit.gui.view3d.projector import Projector
 
 __all__ = ["Canvas"]
 
 Floats = NDArray[np.float64]
 
-#: The full detail comes back when the eye has rested so long, milliseconds.
+#: The full detail comes back when the viewpoint has rested so long, milliseconds.
 REST = 150
 #: A flight to another place takes so long, seconds; a frame of it is asked for every so many milliseconds.
 FLIGHT, FRAME = 0.35, 15
 #: Degrees a pixel of dragging, share of the distance a notch of the wheel.
 TURN, NOTCH = 0.35, 1.2
-#: While the eye moves, a frame that takes longer than SLOW is followed by one with half, then a third of the pixels a
+#: While the viewpoint moves, a frame that takes longer than SLOW is followed by one with half, then a third of the
+#: pixels a
 #: side; below QUICK they come back. Seconds.
 SLOW, QUICK, LEAST = 0.022, 0.006, 3
 #: Every so many frames one is timed to its end; the others let Qt write while OpenGL still draws.
@@ -43,10 +44,10 @@ _KEYS = {
 
 
 class Canvas(QtInteractor):
-    """A render window whose camera is an :class:`Eye`.
+    """A render window whose camera is an :class:`Viewpoint`.
 
     Left drag turns, middle or right drag (or Shift with left) moves sideways, the wheel comes nearer to what is under
-    the pointer. ``clicked`` and ``hovered`` tell the pointer's place in logical pixels. ``grip``, if set, is asked
+    the pointer. ``clicked`` and ``hovered`` tell the pointer's place in logical pixels. ``handle``, if set, is asked
     first: ``press(pos) -> bool``, then ``drag(pos)`` and ``release()``.
     """
 
@@ -54,7 +55,7 @@ class Canvas(QtInteractor):
     double_clicked = Signal(QPointF)
     hovered = Signal(QPointF)
     left = Signal()
-    eye_changed = Signal()
+    viewpoint_changed = Signal()
     detail_changed = Signal(bool)
     pixels_changed = Signal(float)
 
@@ -62,26 +63,26 @@ class Canvas(QtInteractor):
         super().__init__(parent, auto_update=False, multi_samples=0, lighting="none")
         self.setAcceptDrops(False)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.eye = Eye(np.zeros(3), 212.0, 32.0, 1000.0)
+        self.viewpoint = Viewpoint(np.zeros(3), 212.0, 32.0, 1000.0)
         self.origin: Floats = np.zeros(3)
         self.stretch = 1.0
         self.full = True
         self.frames = 0
         self.shrink = 1
-        self.grip: Any = None
+        self.handle: Any = None
         self._held: str | None = None
         self._pressed = self._last = QPointF()
         self._still = QTimer(self, interval=REST, singleShot=True)
         self._still.timeout.connect(self.rest)
         self._fly = QTimer(self, interval=FRAME)
         self._fly.timeout.connect(self._step)
-        self._from, self._to, self._began = self.eye, self.eye, 0.0
+        self._from, self._to, self._began = self.viewpoint, self.viewpoint, 0.0
         # VTK would render at every event and Qt once more to show it: here only paintGL renders.
         self.ren_win.GetInteractor().EnableRenderOff()
         self._lights()
 
     def _lights(self) -> None:
-        # The sun of a hill-shaded map stands in the north-west; a light at the eye lifts the shadows.
+        # The sun of a hill-shaded map is in the north-west; a light at the viewpoint lifts the shadows.
         sun, lamp = vtkLight(), vtkLight()
         sun.SetLightTypeToSceneLight()
         sun.SetPosition(-1.0, 0.9, 1.1)
@@ -115,7 +116,7 @@ class Canvas(QtInteractor):
         interactor.EnableRenderOff()
         self.frames += 1
         if not self.full:
-            # The rest counts from the end of the frame: a slow frame is no rest.
+            # The rest counts from the end of the frame: a slow frame is not a rest.
             self._still.start()
             if self.frames % TIMED == 0:
                 self.finish()
@@ -123,7 +124,7 @@ class Canvas(QtInteractor):
                 self.shrink = min(max(self.shrink + (took > SLOW) - (took < QUICK), 1), LEAST)
 
     def _resize(self) -> None:
-        """Give VTK fewer pixels while the eye moves on a slow machine; Qt spreads them over the widget."""
+        """Give VTK fewer pixels while the viewpoint moves on a slow machine; Qt spreads them over the widget."""
         ratio = self.devicePixelRatioF() / (1 if self.full else self.shrink)
         size = max(round(self.width() * ratio), 1), max(round(self.height() * ratio), 1)
         if tuple(self.ren_win.GetSize()) != size:
@@ -135,8 +136,8 @@ class Canvas(QtInteractor):
         self._ensure_initialized()  # type: ignore[no-untyped-call]
 
     def place(self) -> None:
-        """Give the camera the eye's place."""
-        self.eye.put(self.renderer.GetActiveCamera())
+        """Give the camera the viewpoint's place."""
+        self.viewpoint.put(self.renderer.GetActiveCamera())
         self.renderer.ResetCameraClippingRange()
 
     def set_background_colour(self, colour: QColor) -> None:
@@ -153,29 +154,29 @@ class Canvas(QtInteractor):
         values = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
         return Projector(values, width, height, self.origin, self.stretch)
 
-    # The eye -------------------------------------------------------------------------------------------------
+    # The viewpoint -------------------------------------------------------------------------------------------------
 
     @property
-    def target(self) -> Eye:
-        """Where the eye is, or is on its way to."""
-        return self._to if self._fly.isActive() else self.eye
+    def target(self) -> Viewpoint:
+        """Where the viewpoint is, or is on its way to."""
+        return self._to if self._fly.isActive() else self.viewpoint
 
-    def look(self, eye: Eye, *, moving: bool = False) -> None:
-        """Put the eye somewhere; ``moving`` draws less until it rests."""
+    def look(self, viewpoint: Viewpoint, *, moving: bool = False) -> None:
+        """Put the viewpoint somewhere; ``moving`` draws less until it rests."""
         if not moving:
             self._fly.stop()
-        self.eye = eye
+        self.viewpoint = viewpoint
         if moving:
             self._move()
-        self.eye_changed.emit()
+        self.viewpoint_changed.emit()
         self.render()
 
-    def fly(self, eye: Eye) -> None:
-        """Move the eye smoothly."""
+    def fly(self, viewpoint: Viewpoint) -> None:
+        """Move the viewpoint smoothly."""
         if not self.isVisible():
-            self.look(eye)
+            self.look(viewpoint)
             return
-        self._from, self._to, self._began = self.eye, eye, time.monotonic()
+        self._from, self._to, self._began = self.viewpoint, viewpoint, time.monotonic()
         self._fly.start()
 
     def land(self) -> None:
@@ -214,7 +215,7 @@ class Canvas(QtInteractor):
 
     def metres(self) -> float:
         """Metres of a logical pixel at the centre."""
-        return 2 * self.eye.half / max(self.height(), 1)
+        return 2 * self.viewpoint.half / max(self.height(), 1)
 
     # Mouse and keys ------------------------------------------------------------------------------------------
 
@@ -223,8 +224,8 @@ class Canvas(QtInteractor):
         self._pressed = self._last = event.position()
         self._fly.stop()
         left = event.button() == Qt.MouseButton.LeftButton
-        if left and self.grip is not None and self.grip.press(event.position()):
-            self._held = "grip"
+        if left and self.handle is not None and self.handle.press(event.position()):
+            self._held = "handle"
         elif left and not event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
             self._held = "turn"
         else:
@@ -236,20 +237,20 @@ class Canvas(QtInteractor):
         step, self._last = here - self._last, here
         if self._held is None:
             self.hovered.emit(here)
-        elif self._held == "grip":
-            self.grip.drag(here)
+        elif self._held == "handle":
+            self.handle.drag(here)
         elif self._held == "turn":
             if (here - self._pressed).manhattanLength() >= CLICK or not self.full:
-                self.look(self.eye.turned(-TURN * step.x(), TURN * step.y()), moving=True)
+                self.look(self.viewpoint.turned(-TURN * step.x(), TURN * step.y()), moving=True)
         else:
             metres = self.metres()
-            self.look(self.eye.shifted(-metres * step.x(), metres * step.y()), moving=True)
+            self.look(self.viewpoint.shifted(-metres * step.x(), metres * step.y()), moving=True)
 
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Let go; a press that did not move is a click."""
         held, self._held = self._held, None
-        if held == "grip":
-            self.grip.release()
+        if held == "handle":
+            self.handle.release()
         elif held == "turn" and (event.position() - self._pressed).manhattanLength() < CLICK:
             self.clicked.emit(event.position())
 
@@ -262,15 +263,15 @@ class Canvas(QtInteractor):
         """Come nearer to what is under the pointer, or go back."""
         metres, at = self.metres(), event.position()
         right, up = (at.x() - self.width() / 2) * metres, (self.height() / 2 - at.y()) * metres
-        self.look(self.eye.nearer(NOTCH ** (event.angleDelta().y() / 120), right, up), moving=True)
+        self.look(self.viewpoint.nearer(NOTCH ** (event.angleDelta().y() / 120), right, up), moving=True)
         event.accept()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
         """Turn by the arrow keys, come nearer by plus and minus."""
         if (turn := _KEYS.get(Qt.Key(event.key()))) is not None:
-            self.look(self.eye.turned(*turn), moving=True)
+            self.look(self.viewpoint.turned(*turn), moving=True)
         elif event.text() in ("+", "-"):
-            self.look(self.eye.nearer(NOTCH if event.text() == "+" else 1 / NOTCH), moving=True)
+            self.look(self.viewpoint.nearer(NOTCH if event.text() == "+" else 1 / NOTCH), moving=True)
         else:
             event.ignore()
 

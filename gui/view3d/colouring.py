@@ -74,7 +74,7 @@ def legible(colour: str, dark: bool) -> str:
 
 
 def ramp(by: str, values: Floats) -> Ramp:
-    """Return the colours for values (nan left out); the ends stand at their least and largest."""
+    """Return the colours for values (nan left out); the ends are at their least and largest."""
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
     if by == "standard deviation":

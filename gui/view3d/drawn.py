@@ -28,7 +28,7 @@ BAND = 1.6449
 class Drawn:
     """A surface as triangles; ``sd`` at the vertices of the fine and the coarse ones, metres, and the 90 % bounds.
 
-    ``supported`` says which triangles, fine and coarse, lie below the ground and within the hull of the points.
+    ``supported`` names which triangles, fine and coarse, lie below the ground and within the hull of the points.
     """
 
     shape: Shape
@@ -54,8 +54,8 @@ def drawn_of(
     shape = shape_of(surface)
     if len(surface.points):
         support = support_of(surface.points.xyz, ground)
-        parted, rough = split(shape, support.depth(shape.xyz)), shape.coarse or shape
-        shape = replace(parted, coarse=parted if rough is shape else split(rough, support.depth(rough.xyz)))
+        divided, rough = split(shape, support.depth(shape.xyz)), shape.coarse or shape
+        shape = replace(divided, coarse=divided if rough is shape else split(rough, support.depth(rough.xyz)))
     coarse = shape.coarse or shape
     held = _supported(surface, ground, shape), _supported(surface, ground, coarse)
     if uncertainty is None:

@@ -170,10 +170,10 @@ def control_item(surface: HorizonFit, layer: Layer, look: Look) -> tuple[Item, l
         start += nu * nv
     xyz = np.concatenate(points)
     mesh = min(_spacing(patch.control) for patch in surface.patches)
-    net = lines(poly(xyz - look.origin, runs=runs), look.ink)
+    net = lines(poly(xyz - look.origin, runs=runs), look.text)
     parts = [
         Part(net, "full", width=1.0, opacity=0.4, spacing=mesh),
-        Part(dots(poly(xyz - look.origin), look.ink, balls=False), size=CONTROL, opacity=0.9, spacing=mesh),
+        Part(dots(poly(xyz - look.origin), look.text, balls=False), size=CONTROL, opacity=0.9, spacing=mesh),
     ]
     return Item(parts, extent(xyz), targets=xyz), known
 

@@ -25,7 +25,7 @@ class Look:
     dark: bool
 
     @property
-    def ink(self) -> str:
+    def text(self) -> str:
         """Colour of thin lines that belong to no horizon."""
         return "#dfe6ec" if self.dark else "#1c2733"
 

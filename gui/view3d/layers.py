@@ -14,7 +14,7 @@ Listener = Callable[[str, str], None]
 
 @dataclass(frozen=True)
 class Swatch:
-    """One line of a legend: a colour, and a text that is told as it is (``plain``) or translated by the window."""
+    """One line of a legend: a colour, and a text that is shown as it is (``plain``) or translated by the window."""
 
     colour: str
     text: str
@@ -25,7 +25,7 @@ class Swatch:
 class Legend:
     """What the colours of a layer mean: single colours, or a ramp from ``low`` to ``high`` in ``unit``.
 
-    ``title`` is a way of colouring (see Layer.colour_by). ``count`` is how many points each swatch stands for.
+    ``title`` is a way of colouring (see Layer.colour_by). ``count`` is how many points each swatch represents.
     """
 
     title: str
@@ -128,7 +128,7 @@ class Layers:
         self._tell("cleared", "")
 
     def change(self, key: str, **changes: Any) -> None:
-        """Change fields of a layer; nobody is told where nothing changes.
+        """Change fields of a layer; no signal is sent where nothing changes.
 
         Raises
         ------

@@ -19,7 +19,7 @@ VERSION = (3, 2)
 
 
 class NoOpenGLError(MissingDependencyError):
-    """There is no OpenGL for a 3D view; the text says what is missing."""
+    """There is no OpenGL for a 3D view; the text states what is missing."""
 
 
 def require_opengl() -> None:

@@ -15,9 +15,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen
 
 from geofit.gui.view3d.axes import Mark, grouped, nice
+from geofit.gui.view3d.layer_names import word
 from geofit.gui.view3d.layers import Legend
 from geofit.gui.view3d.projector import Projector
-from geofit.gui.view3d.words import word
 
 __all__ = ["Content", "Ring", "Theme", "draw", "draw_legend", "legend_size", "legend_title", "merged"]
 
@@ -34,7 +34,7 @@ ARM, BAR, RAMP = 30.0, 160.0, 150.0
 class Theme:
     """Colours of what is written: letters, quiet letters, the ground behind them, and what is pointed at."""
 
-    ink: QColor
+    text: QColor
     quiet: QColor
     paper: QColor
     mark: QColor
@@ -100,7 +100,7 @@ def _marks(painter: QPainter, marks: Sequence[Mark], theme: Theme) -> None:
         tip = QPointF(mark.x + 5 * mark.out[0], mark.y + 5 * mark.out[1])
         painter.drawLine(QPointF(mark.x, mark.y), tip)
         wide, high = metrics.horizontalAdvance(mark.text), metrics.height()
-        # The nearest corner or side of the text's box stands at the tick.
+        # The nearest corner or side of the text's box is at the tick.
         x = max(tip.x() + 3 * mark.out[0] - wide * (1 - mark.out[0]) / 2, 2.0)
         y = tip.y() + 3 * mark.out[1] - high * (1 - mark.out[1]) / 2
         painter.drawText(QRectF(x, y, wide + 1, high), Qt.AlignmentFlag.AlignCenter, mark.text)
@@ -127,7 +127,7 @@ def _names(painter: QPainter, view: Projector, groups: Sequence[tuple[Floats, Se
         if taken.isdisjoint(cells):
             taken |= cells
             _plate(painter, box, theme, 150)
-            painter.setPen(theme.ink)
+            painter.setPen(theme.text)
             painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
 
@@ -172,7 +172,7 @@ def _tag(painter: QPainter, view: Projector, at: QPointF, text: str, theme: Them
     y = min(max(at.y() - high, MARGIN), view.height - high - MARGIN)
     box = QRectF(x, y, wide, high)
     _plate(painter, box, theme, 235, theme.mark)
-    painter.setPen(theme.ink)
+    painter.setPen(theme.text)
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
 
 
@@ -219,7 +219,7 @@ def draw_legend(painter: QPainter, box: QRectF, title: str, legend: Legend, them
             shade.setColorAt(k / (len(legend.ramp) - 1), QColor(colour))
         painter.fillRect(QRectF(x, y + 2, wide, 10), shade)
         y += 14
-        painter.setPen(theme.ink)
+        painter.setPen(theme.text)
         ends = QRectF(x, y, wide, line)
         digits = 2 if legend.high - legend.low < 10 else 1
         painter.drawText(ends, Qt.AlignmentFlag.AlignLeft, f"{legend.low:.{digits}f}".replace("-", "−"))
@@ -227,7 +227,7 @@ def draw_legend(painter: QPainter, box: QRectF, title: str, legend: Legend, them
         painter.drawText(ends, Qt.AlignmentFlag.AlignRight, last)
     for swatch in legend.swatches:
         painter.fillRect(QRectF(x, y + line / 2 - 5, 12, 10), QColor(swatch.colour))
-        painter.setPen(theme.ink)
+        painter.setPen(theme.text)
         text = swatch.text if swatch.plain else word(swatch.text)
         painter.drawText(QRectF(x + 20, y, wide - 20, line), Qt.AlignmentFlag.AlignVCenter, text)
         y += line
@@ -248,7 +248,7 @@ def merged(legends: Sequence[tuple[str, Legend]]) -> list[tuple[str, Legend]]:
 
 
 def _directions(painter: QPainter, view: Projector, axes: Floats, theme: Theme) -> None:
-    """Draw east, north and up as the eye sees them (rows right, up and towards the eye; columns E, N, Z)."""
+    """Draw east, north and up as seen from the viewpoint (rows right, up and towards it; columns E, N, Z)."""
     centre = QPointF(view.width - MARGIN - ARM - 12, view.height - MARGIN - ARM - 12)
     order = sorted(range(3), key=lambda k: axes[2, k])
     for k in order:
@@ -257,7 +257,7 @@ def _directions(painter: QPainter, view: Projector, axes: Floats, theme: Theme) 
         painter.drawLine(centre, tip)
         far = QPointF(centre.x() + (ARM + 9) * axes[0, k], centre.y() - (ARM + 9) * axes[1, k])
         if math.hypot(axes[0, k], axes[1, k]) > 0.25:
-            painter.setPen(theme.mark if k == 1 else theme.ink)
+            painter.setPen(theme.mark if k == 1 else theme.text)
             painter.drawText(QRectF(far.x() - 10, far.y() - 10, 20, 20), Qt.AlignmentFlag.AlignCenter, "ENZ"[k])
 
 
@@ -268,12 +268,12 @@ def _note(painter: QPainter, view: Projector, content: Content, theme: Theme) ->
     high = metrics.height() + 8
     box = QRectF(MARGIN, view.height - MARGIN - high, wide, high)
     _plate(painter, box, theme, 215, theme.quiet)
-    painter.setPen(theme.ink)
+    painter.setPen(theme.text)
     painter.drawText(box, Qt.AlignmentFlag.AlignCenter, content.note)
     if content.metres is not None:
         length = nice(BAR * content.metres)
         x, y, pixels = box.right() + 16, box.center().y() + 4, length / content.metres
-        painter.setPen(QPen(theme.ink, 2))
+        painter.setPen(QPen(theme.text, 2))
         painter.drawPolyline([QPointF(x, y - 6), QPointF(x, y), QPointF(x + pixels, y), QPointF(x + pixels, y - 6)])
         text = f"{grouped(length)} m"
         painter.drawText(

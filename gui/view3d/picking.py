@@ -28,7 +28,7 @@ REACH, EXACT = 8.0, 3.0
 
 @dataclass(frozen=True, eq=False)
 class Hit:
-    """Something under the pointer: its layer, its number or name, where it is, and how far from the eye (0 to 1)."""
+    """Something under the pointer: its layer, number or name, where it is, how far from the viewpoint (0 to 1)."""
 
     layer: Layer
     which: Any

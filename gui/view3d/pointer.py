@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QPointF, QTimer, Signal
 
+from geofit.gui.translate import translated
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.contents import Contents
+from geofit.gui.view3d.layer_names import word
 from geofit.gui.view3d.overlay import Ring
 from geofit.gui.view3d.picking import Hit, Sights, nearest_target, nearest_way
 from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, Measure
-from geofit.gui.view3d.words import word
-from geofit.gui.words import spoken
 from geofit.project.provenance import Row
 
 __all__ = ["Pointer"]
@@ -34,7 +34,7 @@ def _nothing() -> Ring | None:
 
 
 class Pointer(QObject):
-    """Listens to the canvas's mouse; ``changed`` tells that the ring or the measure is another one."""
+    """Listens to the canvas's mouse; ``changed`` signals that the ring or the measure is another one."""
 
     point_picked = Signal(str, object)
     control_picked = Signal(str, str, int, int)
@@ -113,7 +113,7 @@ class Pointer(QObject):
         if surface is None or patch is None or i >= patch.control.shape[0] or j >= patch.control.shape[1]:
             return None
         place = patch.control[i, j] + surface.origin
-        return Ring(place, f"{spoken(name)} [{i}, {j}] · {place[2]:.2f} m", solid=True)
+        return Ring(place, f"{translated(name)} [{i}, {j}] · {place[2]:.2f} m", solid=True)
 
     def set_measuring(self, on: bool) -> None:
         """Let clicks measure, or pick again."""

@@ -83,7 +83,7 @@ class PoreScene(QWidget):
         self._paint()
         box = np.array([[0.0] * 3, np.array(network.shape) * network.edges])
         self._outline(box)
-        self.canvas.look(framed(self.canvas.eye, box, self.width() / max(self.height(), 1)))
+        self.canvas.look(framed(self.canvas.viewpoint, box, self.width() / max(self.height(), 1)))
 
     def set_colour(self, colour: Colour) -> None:
         """Colour by the radius of pores in voxels, or by the axes along which they percolate."""

@@ -35,7 +35,7 @@ class Projector:
     stretch: float
 
     def screen(self, xyz: Floats) -> Floats:
-        """Return (n, 3) pixel columns, rows and depths (0 near, 1 far; nan behind the eye) of map coordinates."""
+        """Return (n, 3) pixel columns, rows and depths (0 near, 1 far; nan behind the viewpoint) of map coordinates."""
         scene = (np.atleast_2d(np.asarray(xyz, float)) - self.origin) * (1.0, 1.0, self.stretch)
         clip = scene @ self.matrix[:, :3].T + self.matrix[:, 3]
         w = np.where(clip[:, 3] > 1e-9, clip[:, 3], np.nan)

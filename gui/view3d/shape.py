@@ -118,7 +118,7 @@ def _width(surface: HorizonFit) -> float:
 
 
 def _shape(surface: HorizonFit, mesh: Mesh) -> Shape:
-    normals = _patch_normals(surface.patches, mesh) if surface.patches else _facet_normals(mesh)
+    normals = _patch_normals(surface.patches, mesh) if surface.patches else _triangle_normals(mesh)
     lost = ~np.isfinite(normals).all(axis=1)
     normals[lost] = (0.0, 0.0, 1.0)
     normals *= np.where(normals[:, 2:] < 0, -1.0, 1.0)
@@ -140,7 +140,7 @@ def _patch_normals(patches: Sequence[Patch], mesh: Mesh) -> Floats:
     return normals
 
 
-def _facet_normals(mesh: Mesh) -> Floats:
+def _triangle_normals(mesh: Mesh) -> Floats:
     a, b, c = (mesh.points[mesh.triangles[:, k]] for k in range(3))
     cross = np.cross(b - a, c - a)
     total = np.zeros(mesh.points.shape)
@@ -157,7 +157,7 @@ def sd_at(surface: HorizonFit, uncertainty: Uncertainty, xyz: Floats) -> Floats:
         return grid.elevation(xyz[:, 0], xyz[:, 1])
     if surface.model is None:
         return np.full(len(xyz), np.nan)
-    local = surface.model.problem.chart.frame.to_local(xyz)
+    local = surface.model.problem.parametrization.frame.to_local(xyz)
     return grid.elevation(local[:, 0], local[:, 1])
 
 
@@ -165,7 +165,7 @@ def across(surface: HorizonFit, uncertainty: Uncertainty) -> Floats:
     """Return the unit vector along which the standard deviation is measured: upwards, or across the best plane."""
     if uncertainty.frame == "map" or surface.model is None:
         return np.array([0.0, 0.0, 1.0])
-    return np.asarray(surface.model.problem.chart.frame.axes[2])
+    return np.asarray(surface.model.problem.parametrization.frame.axes[2])
 
 
 def next_below(surface: HorizonFit, shape: Shape, others: Sequence[HorizonFit]) -> HorizonFit | None:

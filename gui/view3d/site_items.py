@@ -70,7 +70,7 @@ def boundary_item(boundary: Floats, ground: Ground | None, level: float, layer: 
 
 def sections_item(sections: Sequence[Section], ground: Ground | None, level: float, layer: Layer, look: Look) -> Item:
     """Lines of the section drawings, with their names at their starts."""
-    item = _draped([np.asarray(s.line, float) for s in sections], ground, level, look.ink, look, 1.5)
+    item = _draped([np.asarray(s.line, float) for s in sections], ground, level, look.text, look, 1.5)
     starts = np.array([np.asarray(s.line, float)[0] for s in sections])
     item.places = _on_ground(starts, ground, level)
     item.names = tuple(section.name for section in sections) if layer.labels else ()
@@ -157,7 +157,7 @@ def dips_item(dips: Orientations, width: float, layer: Layer, look: Look) -> Ite
     rings = [np.append(np.arange(e, e + CORNERS), e) for e in ends]
     parts = [
         Part(triangles(poly(xyz - look.origin, faces=fan, normals=normals), colour), opacity=0.85),
-        Part(lines(poly(xyz - look.origin, runs=rings), look.ink), width=1.0),
+        Part(lines(poly(xyz - look.origin, runs=rings), look.text), width=1.0),
     ]
     names = [f"{azimuth:03.0f}/{dip:02.0f}" for azimuth, dip in zip(dips.azimuth, dips.dip, strict=True)]
     return Item(parts, extent(xyz), places=dips.xyz, names=tuple(names) if layer.labels else ())

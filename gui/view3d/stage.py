@@ -59,7 +59,7 @@ class Stage:
             return None
         return np.stack([np.min([b[0] for b in boxes], axis=0), np.max([b[1] for b in boxes], axis=0)])
 
-    def dress(self, look: Look) -> None:
+    def set_look(self, look: Look) -> None:
         """Build everything anew for another origin or background."""
         self.look = look
         self._built.clear()
@@ -82,7 +82,7 @@ class Stage:
         self._apply_all()
 
     def set_metres(self, metres: float) -> None:
-        """Set how many metres a logical pixel has where the eye looks; it changes at every step of a flight."""
+        """Set how many metres a logical pixel has where the viewpoint looks; it changes at every step of a flight."""
         self._metres = metres
         for layer in self.layers:
             for part in self._items[layer.key].parts if layer.key in self._items else ():
@@ -95,7 +95,7 @@ class Stage:
         self._apply_all()
 
     def set_extra(self, name: str, parts: list[Part]) -> None:
-        """Draw something that is no layer (axes, a tool) in place of what it was; it is never clipped."""
+        """Draw something that is not a layer (axes, a tool) in place of what it was; it is never clipped."""
         self._take(self._extras.pop(name, []))
         if parts:
             self._extras[name] = parts

@@ -11,7 +11,7 @@ from vtkmodules.vtkCommonDataModel import vtkPlane, vtkPlaneCollection
 
 from geofit.gui.view3d.actors import Part, lines, poly, triangles
 from geofit.gui.view3d.axes import grouped
-from geofit.gui.view3d.grips import Grip
+from geofit.gui.view3d.handles import Handle
 from geofit.gui.view3d.item import Look
 
 __all__ = ["ClipBox", "Measure", "SectionPlane"]
@@ -89,7 +89,7 @@ class SectionPlane:
         rim = np.concatenate([np.arange(n), np.arange(2 * n - 1, n - 1, -1), [0]])
         return xyz, faces, rim
 
-    def grips(self, box: Floats) -> list[Grip]:
+    def handles(self, box: Floats) -> list[Handle]:
         """Return a handle at each corner of the line, and one at its middle that moves the whole."""
         if self.line is None:
             return []
@@ -104,8 +104,8 @@ class SectionPlane:
 
             return moved
 
-        grips = [Grip(np.append(line[k], top), corner(k)) for k in range(len(line))]
-        return [*grips, Grip(np.append(middle, top), lambda xyz: self._set(line + xyz[:2] - middle))]
+        handles = [Handle(np.append(line[k], top), corner(k)) for k in range(len(line))]
+        return [*handles, Handle(np.append(middle, top), lambda xyz: self._set(line + xyz[:2] - middle))]
 
     def _set(self, line: Floats) -> None:
         self.line = line
@@ -155,18 +155,18 @@ class ClipBox:
         runs = [np.array([0, 1, 2, 3, 0]), np.array([4, 5, 6, 7, 4]), *(np.array([k, k + 4]) for k in range(4))]
         return [Part(lines(poly(corners - look.origin, runs=runs), PLANE), width=1.5)]
 
-    def grips(self) -> list[Grip]:
+    def handles(self) -> list[Handle]:
         """Return a handle in the middle of each side."""
         if self.box is None:
             return []
         middle = self.box.mean(axis=0)
-        grips = []
+        handles = []
         for end in (0, 1):
             for axis in range(3):
                 place = middle.copy()
                 place[axis] = self.box[end, axis]
-                grips.append(Grip(place, self._mover(end, axis), np.eye(3)[axis]))
-        return grips
+                handles.append(Handle(place, self._mover(end, axis), np.eye(3)[axis]))
+        return handles
 
     def _mover(self, end: int, axis: int) -> Callable[[Floats], None]:
         def moved(xyz: Floats) -> None:

@@ -16,22 +16,22 @@ from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.actors import Part, lines, poly
+from geofit.gui.view3d.annotations import Annotations, theme_of
 from geofit.gui.view3d.axes import floor_lines, marks, nice
-from geofit.gui.view3d.camera import Eye, framed
+from geofit.gui.view3d.camera import Viewpoint, framed
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.contents import Contents
 from geofit.gui.view3d.drawn import Drawn
-from geofit.gui.view3d.grips import Grip, Grips
+from geofit.gui.view3d.handles import Handle, Handles
 from geofit.gui.view3d.item import Look
 from geofit.gui.view3d.layers import Layers
 from geofit.gui.view3d.opengl import require_opengl
 from geofit.gui.view3d.overlay import Content, merged
 from geofit.gui.view3d.pointer import Pointer
 from geofit.gui.view3d.projector import Projector
-from geofit.gui.view3d.shoot import shoot
+from geofit.gui.view3d.screenshot import write_screenshot
 from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, SectionPlane
-from geofit.gui.view3d.writing import Writing, theme_of
 from geofit.project.listing import Listing
 from geofit.project.provenance import Row
 from geofit.sampling.cut import section_line
@@ -42,7 +42,7 @@ Floats = NDArray[np.float64]
 
 #: A chosen point is looked at from no farther than this many times the scene's width.
 CLOSE = 0.9
-#: A dragged section is told of at most so often, milliseconds.
+#: A dragged section is reported at most so often, milliseconds.
 SECTION = 50
 #: About so many coordinate lines cross the picture.
 LINES = 6
@@ -81,7 +81,7 @@ class SceneView(QWidget):
         self._section, self._clip = SectionPlane(self._section_moved), ClipBox(self._clip_moved)
         self.pointer = Pointer(self.canvas, self._stage, self.contents, self._clip, self)
         self._step, self._framed, self._closed = 0.0, False, False
-        self._writing = Writing(self, self.canvas.projector, self._content)
+        self._annotations = Annotations(self, self.canvas.projector, self._content)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.canvas)
@@ -95,8 +95,8 @@ class SceneView(QWidget):
 
     def _connect(self) -> None:
         canvas = self.canvas
-        canvas.grip = Grips(self._grips, canvas.projector, self._tell_section)
-        canvas.eye_changed.connect(self._eye_moved)
+        canvas.handle = Handles(self._handles, canvas.projector, self._tell_section)
+        canvas.viewpoint_changed.connect(self._viewpoint_moved)
         canvas.detail_changed.connect(self._set_detail)
         canvas.pixels_changed.connect(self._stage.set_pixels)
         pointer = self.pointer
@@ -105,7 +105,7 @@ class SceneView(QWidget):
         pointer.hole_picked.connect(self.hole_picked)
         pointer.moved.connect(self.pointer_moved)
         pointer.measured.connect(self.measured)
-        pointer.changed.connect(self._writing.update)
+        pointer.changed.connect(self._annotations.update)
 
     # What is shown -------------------------------------------------------------------------------------------
 
@@ -193,16 +193,16 @@ class SceneView(QWidget):
         if not (factor > 0 and math.isfinite(factor)):
             raise ValueError(f"The vertical exaggeration is {factor}; give a number above 0.")
         canvas = self.canvas
-        eye = canvas.target
-        eye = replace(eye, centre=eye.centre * (1.0, 1.0, factor / canvas.stretch))
+        viewpoint = canvas.target
+        viewpoint = replace(viewpoint, centre=viewpoint.centre * (1.0, 1.0, factor / canvas.stretch))
         canvas.stretch = factor
         self._stage.set_stretch(factor)
         if self._clip.box is not None:
             self._clip_moved()
-        canvas.look(eye)
+        canvas.look(viewpoint)
 
     def focus_point(self, horizon: str, row: Row) -> None:
-        """Choose a point and move the eye to it, keeping the direction."""
+        """Choose a point and move the viewpoint to it, keeping the direction."""
         self.highlight_point(horizon, row)
         points = self.contents.points[horizon]
         index = row.find(points)
@@ -210,7 +210,7 @@ class SceneView(QWidget):
             self._focus(points.xyz[index])
 
     def focus_hole(self, name: str) -> None:
-        """Move the eye to the middle of a borehole or adit, keeping the direction."""
+        """Move the viewpoint to the middle of a borehole or adit, keeping the direction."""
         holes = self.contents.site.holes if self.contents.site is not None else ()
         hole = next((hole for hole in holes if hole.name == name), None)
         if hole is not None:
@@ -218,7 +218,7 @@ class SceneView(QWidget):
             self._focus((hole.xyz.min(axis=0) + hole.xyz.max(axis=0)) / 2)
 
     def focus_place(self, x: float, y: float, z: float) -> None:
-        """Move the eye to a place, keeping the direction."""
+        """Move the viewpoint to a place, keeping the direction."""
         self._focus(np.array([x, y, z]))
 
     def highlight_point(self, horizon: str, row: Row | None) -> None:
@@ -231,9 +231,9 @@ class SceneView(QWidget):
 
     def set_dark(self, dark: bool) -> None:
         """Follow the theme: a dark or a light background."""
-        self._writing.dark = dark
+        self._annotations.dark = dark
         self.canvas.set_background_colour(theme_of(self.palette(), dark).paper)
-        self._stage.dress(Look(self.canvas.origin, dark))
+        self._stage.set_look(Look(self.canvas.origin, dark))
         self._changed()
 
     # Tools ---------------------------------------------------------------------------------------------------
@@ -265,7 +265,7 @@ class SceneView(QWidget):
         self.pointer.set_measuring(on)
 
     def screenshot(self, path: str | PathLike[str], scale: float = 2.0) -> QImage:
-        """Write the scene as PNG with ``scale`` times the pixels of the widget, and all that stands over it.
+        """Write the scene as PNG with ``scale`` times the pixels of the widget, and all that is drawn over it.
 
         Raises
         ------
@@ -274,7 +274,7 @@ class SceneView(QWidget):
         """
         self.canvas.land()
         self._refresh()
-        return shoot(self.canvas, self._stage, path, scale, self._writing.write)
+        return write_screenshot(self.canvas, self._stage, path, scale, self._annotations.write)
 
     # Keeping up ----------------------------------------------------------------------------------------------
 
@@ -291,7 +291,7 @@ class SceneView(QWidget):
         self._stage.set_extra("clip", self._clip.parts(self._stage.look))
         self._changes.stop()
         self.canvas.render()
-        self._writing.update()
+        self._annotations.update()
 
     def _placed(self) -> None:
         """Keep the scene's zero near the data, and bring the first things shown into the picture."""
@@ -300,36 +300,36 @@ class SceneView(QWidget):
             middle, reach = (known.min(axis=0) + known.max(axis=0)) / 2, np.ptp(known, axis=0).max()
             if np.abs(middle - self.canvas.origin).max() > max(10.0 * float(reach), 1.0) or not self._framed:
                 self.canvas.origin = np.round(middle)
-                self._stage.dress(Look(self.canvas.origin, self._stage.look.dark))
+                self._stage.set_look(Look(self.canvas.origin, self._stage.look.dark))
             if not self._framed:
                 self._framed = True
-                self.canvas.eye = framed(self.canvas.eye, self._in_scene(self._box()), self._aspect())
+                self.canvas.viewpoint = framed(self.canvas.viewpoint, self._in_scene(self._box()), self._aspect())
         self._changed()
 
-    def _eye_moved(self) -> None:
+    def _viewpoint_moved(self) -> None:
         self._axes()
-        self._writing.update()
+        self._annotations.update()
 
     def _set_detail(self, full: bool) -> None:
         self._stage.set_detail(full)
-        self._writing.update()
+        self._annotations.update()
 
     def _axes(self, force: bool = False) -> None:
         """Draw the coordinate lines anew where their spacing has changed."""
-        eye = self.canvas.eye
+        viewpoint = self.canvas.viewpoint
         self._stage.set_metres(self.canvas.metres())
-        step = nice(2 * eye.half * max(self._aspect(), 1.0) / LINES)
+        step = nice(2 * viewpoint.half * max(self._aspect(), 1.0) / LINES)
         if force or step != self._step:
             self._step = step
             parts = []
             if (box := self._stage.box()) is not None:
                 points, runs = floor_lines(self._padded(box), step)
                 data = poly(points - self.canvas.origin, runs=runs)
-                parts = [Part(lines(data, self._stage.look.ink, 0.0), width=1.0, opacity=0.16)]
+                parts = [Part(lines(data, self._stage.look.text, 0.0), width=1.0, opacity=0.16)]
             self._stage.set_extra("axes", parts)
 
     def _content(self, view: Projector) -> Content:
-        eye = self.canvas.eye
+        viewpoint = self.canvas.viewpoint
         box = self._stage.box()
         seen, pointer = list(self._stage.items()), self.pointer
         return Content(
@@ -337,17 +337,17 @@ class SceneView(QWidget):
             rings=[pointer.ring] if pointer.ring is not None else [],
             path=np.array(pointer.measure.places) if pointer.measure.places else None,
             path_text=pointer.measure_text(),
-            handles=[grip.xyz for grip in self._grips()],
+            handles=[handle.xyz for handle in self._handles()],
             legends=merged([(layer.horizon, layer.legend) for layer, _ in seen if layer.legend is not None]),
             marks=marks(self._padded(box), self._step, view) if box is not None and self._step else [],
             note=self.tr("Vertical {factor}×").format(factor=f"{self.canvas.stretch:g}"),
-            directions=eye.axes,
-            metres=self.canvas.metres() if eye.parallel else None,
+            directions=viewpoint.axes,
+            metres=self.canvas.metres() if viewpoint.parallel else None,
         )
 
-    def _grips(self) -> list[Grip]:
+    def _handles(self) -> list[Handle]:
         box = self._stage.box()
-        return [] if box is None else [*self._section.grips(box), *self._clip.grips()]
+        return [] if box is None else [*self._section.handles(box), *self._clip.handles()]
 
     def _section_moved(self) -> None:
         self._changed()
@@ -368,11 +368,13 @@ class SceneView(QWidget):
     def _focus(self, place: Floats) -> None:
         box = self._stage.box()
         reach = float(np.ptp(box, axis=0).max()) if box is not None else 100.0
-        eye = self.canvas.target
-        self.canvas.fly(replace(eye, centre=self._in_scene(place), distance=min(eye.distance, CLOSE * reach)))
+        viewpoint = self.canvas.target
+        self.canvas.fly(
+            replace(viewpoint, centre=self._in_scene(place), distance=min(viewpoint.distance, CLOSE * reach))
+        )
 
-    def _frame(self, eye: Eye) -> None:
-        self.canvas.fly(framed(eye, self._in_scene(self._box()), self._aspect()))
+    def _frame(self, viewpoint: Viewpoint) -> None:
+        self.canvas.fly(framed(viewpoint, self._in_scene(self._box()), self._aspect()))
 
     def _box(self) -> Floats:
         box = self._stage.box()
@@ -391,8 +393,8 @@ class SceneView(QWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802 - Qt's name
         """Keep the writing over the canvas."""
         super().resizeEvent(event)
-        self._writing.setGeometry(self.rect())
-        self._writing.raise_()
+        self._annotations.setGeometry(self.rect())
+        self._annotations.raise_()
         self._changed()
 
     def closeEvent(self, event: QCloseEvent) -> None:  # noqa: N802 - Qt's name

@@ -30,10 +30,10 @@ PLAIN = ("ground", "grid", "drawing", "skip", "")
 class Draft:
     """One table of one file, with what its rows are and which column holds which role.
 
-    ``roles`` maps a role to the number of its column, counted from 0; ``changed`` marks what the user said.
+    ``roles`` maps a role to the number of its column, counted from 0; ``changed`` marks what the user set.
     ``horizons`` are the columns that hold one horizon each, elevations or depths as ``source.measure`` says.
     ``source`` holds what is stated of encoding, separator, decimal mark and unit; None is found at reading. ``fault``
-    tells why the file cannot be read, in which case it is left out.
+    states why the file cannot be read, in which case it is left out.
     """
 
     source: Source
@@ -178,7 +178,7 @@ def drafts_of(
 ) -> tuple[Draft, ...]:
     """Preview every table of some files; a header that was mapped before is mapped as it was then.
 
-    A file that is missing, empty or damaged is left out, and its draft says so.
+    A file that is missing, empty or damaged is left out, and its draft reports it.
     """
     drafts = []
     for k, file in enumerate(files):

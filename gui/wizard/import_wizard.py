@@ -27,18 +27,18 @@ from PySide6.QtWidgets import (
 
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon
+from geofit.gui.translate import user_language
 from geofit.gui.wizard.draft import Draft, drafts_of, free_name, read_again
 from geofit.gui.wizard.memory import Memory
 from geofit.gui.wizard.result_page import ResultPage
 from geofit.gui.wizard.table_page import TablePage
 from geofit.gui.wizard.words import kind_name
-from geofit.gui.words import spoken_language
 from geofit.io.source import Source
 from geofit.project.importing import Import, import_files
 
 __all__ = ["ImportWizard", "memory_file"]
 
-#: Tables that are named where many are to be settled.
+#: Tables that are named where many are to be resolved.
 NAMED = 4
 
 
@@ -81,7 +81,7 @@ class ImportWizard(TaskDialog):
         self.fields = (self.pages,)
         layout = QVBoxLayout(self)
         layout.addWidget(self.pages, 1)
-        layout.addLayout(self.said)
+        layout.addLayout(self.message_row)
         layout.addLayout(self.foot(self.back))
         self.resize(QSize(1060, 640).boundedTo(self.screen().availableSize()))
         self._hint()
@@ -94,7 +94,7 @@ class ImportWizard(TaskDialog):
         new = [file for path in files for file in _files_of(Path(path)) if file not in known]
         if new:
             self.begin(
-                drafts_of, new, self._memory.recall(), on_done=self._added, on_stopped=self._stopped, apart=False
+                drafts_of, new, self._memory.recall(), on_done=self._added, on_stopped=self._stopped, in_process=False
             )
 
     def drafts(self) -> tuple[Draft, ...]:
@@ -217,7 +217,7 @@ class ImportWizard(TaskDialog):
             self.say(self.tr("The site is written; Cancel takes it away again.") if ready else "", "passed")
         elif wanting:
             names = ", ".join(wanting[:NAMED]) + (f" … ({len(wanting)})" if len(wanting) > NAMED else "")
-            self.say(self.tr("To be settled: {names}").format(names=names), "failed")
+            self.say(self.tr("Unresolved: {names}").format(names=names), "failed")
         elif not self._drafts:
             self.say(self.tr("Add files, or drop them here."))
         elif not self._ready:
@@ -241,7 +241,7 @@ class ImportWizard(TaskDialog):
 
     def _read_again(self, source: Source, kind: str) -> None:
         draft = self._drafts[self.list.currentRow()]
-        self.begin(read_again, draft, source, kind, on_done=self._put, on_stopped=self._stopped, apart=False)
+        self.begin(read_again, draft, source, kind, on_done=self._put, on_stopped=self._stopped, in_process=False)
 
     def _put(self, draft: Draft) -> None:
         self._drafts[self.list.currentRow()] = draft
@@ -280,10 +280,10 @@ class ImportWizard(TaskDialog):
         self.site_file = self._target()
         files = list(dict.fromkeys(draft.source.path for draft in self._drafts if draft.source.path.exists()))
         mappings = tuple(draft.mapping for draft in self._drafts)
-        work = partial(import_files, mappings=mappings, crs=self.crs.text().strip(), language=spoken_language())
+        work = partial(import_files, mappings=mappings, crs=self.crs.text().strip(), language=user_language())
         self.say(self.tr("Reading the files…"))
         self.begin(
-            work, files, self.site_file, apart=False,
+            work, files, self.site_file, in_process=False,
             on_done=partial(self._imported, self.site_file.exists()), on_stopped=self._stopped,
         )  # fmt: skip
 

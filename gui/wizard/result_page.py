@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 
 from geofit.gui.panels.marks import icon
 from geofit.gui.panels.tables import Column, DataTable
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.importing import Import
 
 __all__ = ["ResultPage"]
@@ -105,8 +105,8 @@ class ResultPage(QWidget):
                 Column(self.tr("Row"), np.array([one.row or np.nan for one in issues], float), 0),
                 Column(self.tr("Column"), np.array([one.column for one in issues], str)),
                 Column(self.tr("Value"), np.array([one.value for one in issues], str)),
-                Column(self.tr("Reason"), np.array([spoken(one.reason) for one in issues], str)),
-                Column(self.tr("What to do"), np.array([spoken(one.remedy) for one in issues], str)),
+                Column(self.tr("Reason"), np.array([translated(one.reason) for one in issues], str)),
+                Column(self.tr("What to do"), np.array([translated(one.remedy) for one in issues], str)),
             )
         )
         header = self.issues.horizontalHeader()

@@ -23,9 +23,9 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.gui.panels.marks import is_dark
+from geofit.gui.translate import failure
 from geofit.gui.wizard.draft import Draft
 from geofit.gui.wizard.words import kind_name, role_name
-from geofit.gui.words import failure
 from geofit.io.mapping import KINDS
 from geofit.io.source import Source
 
@@ -85,14 +85,14 @@ class TablePage(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addLayout(form)
-        said = QHBoxLayout()
-        said.addWidget(self.message, 1)
-        said.addWidget(self.exchange, 0, Qt.AlignmentFlag.AlignBottom)
-        layout.addLayout(said)
+        message_row = QHBoxLayout()
+        message_row.addWidget(self.message, 1)
+        message_row.addWidget(self.exchange, 0, Qt.AlignmentFlag.AlignBottom)
+        layout.addLayout(message_row)
         layout.addWidget(self.table, 1)
 
     def show_draft(self, draft: Draft, *, ground: bool) -> None:
-        """Show a table; ``ground`` tells that collars without an elevation can stand on one."""
+        """Show a table; ``ground`` signals that collars without an elevation can stand on one."""
         last = self._draft
         same = last is not None and last.preview is draft.preview and last.kind == draft.kind
         self._draft = draft
@@ -168,7 +168,7 @@ class TablePage(QWidget):
                 role = draft.role_of(column)
                 box.setCurrentIndex(max(box.findData(role), 0))
                 share = draft.confidence(role) if role else None
-                guessed = self.tr("Guessed, {share:.0%} sure").format(share=share) if share is not None else ""
+                guessed = self.tr("Guessed, {share:.0%} confidence").format(share=share) if share is not None else ""
                 box.setToolTip(guessed)
             for row in range(len(draft.preview.rows)):
                 item = self.table.item(row + 1, column)
@@ -176,10 +176,10 @@ class TablePage(QWidget):
                     continue
                 wrong = (row, column) in bad
                 item.setData(Qt.ItemDataRole.BackgroundRole, red if wrong else None)
-                told = self.tr("No number: the row will be listed, not used.")
+                notes = self.tr("No number: the row will be listed, not used.")
                 if column in draft.horizons:
-                    told = self.tr("No number: it makes no pick.")
-                item.setToolTip(told if wrong else "")
+                    notes = self.tr("Not a number: it gives no pick.")
+                item.setToolTip(notes if wrong else "")
 
     def _sentences(self, draft: Draft, ground: bool) -> list[str]:
         """Say what is known of a table, what is still needed, and what looks wrong."""
@@ -194,33 +194,34 @@ class TablePage(QWidget):
         missing = draft.missing(ground=ground)
         if missing:
             names = ", ".join(role_name(role) for role in missing)
-            told = [self.tr("Still needed: {roles}. Name the column above the rows.").format(roles=names)]
+            notes = [self.tr("Still needed: {roles}. Name the column above the rows.").format(roles=names)]
             if draft.kind == "collar" and missing == ("z",):
-                told.append(self.tr("Or add the ground, a grid of elevations: the collars will stand on it."))
-            return told
-        told = [
+                notes.append(self.tr("Or add the ground, a grid of elevations: collars are placed on it."))
+            return notes
+        notes = [
             self.tr("{count} rows, the first {shown} shown.").format(
                 count=f"{draft.preview.read:,}", shown=len(draft.preview.rows)
             )
         ]
         if draft.remembered and not draft.changed:
-            told.append(self.tr("Columns are named as the last time this header came."))
+            notes.append(self.tr("Columns are named as the last time this header came."))
         if draft.kind == "intervals" and "from" not in draft.roles:
-            told.append(self.tr("No column holds upper limits: they are taken from the row above, 0 at the first."))
+            notes.append(self.tr("No column contains upper limits: they are taken from the row above, 0 at the first."))
         if draft.kind == "picks" and "horizon" not in draft.roles:
             name = draft.source.path.stem
-            told.append(self.tr("No column names a horizon: all points are of '{name}'.").format(name=name))
+            notes.append(self.tr("No column names a horizon: all points are of '{name}'.").format(name=name))
         if bad := sum(column not in draft.horizons for _, column in draft.bad_cells()):
-            told.append(
-                self.tr("Red cells are no numbers ({count} shown): such rows will be listed, not used.").format(
-                    count=bad
-                )
+            notes.append(
+                self.tr("Red cells are not numbers ({count} shown): such rows are listed, not used.").format(count=bad)
             )
         if draft.exchanged:
-            told.append(
-                self.tr("Easting and northing look exchanged: in many Chinese tables X is the northing, Y the easting.")
+            notes.append(
+                self.tr(
+                    "Easting and northing appear to be exchanged: in many Chinese tables X is the "
+                    "northing, Y the easting."
+                )
             )
-        return told
+        return notes
 
     def _read_again(self) -> None:
         draft = self._draft

@@ -96,7 +96,7 @@ def drawing_of(path: str | PathLike[str], layers: Sequence[str]) -> Iterator[Dra
 
     options: Any = ezdxf.options
     before = options.write_fixed_meta_data_for_testing
-    # Otherwise the time of writing and a random identifier stand in the header.
+    # Otherwise the time of writing and a random identifier are written in the header.
     options.write_fixed_meta_data_for_testing = True
     try:
         document = ezdxf.new("R2010", units=METRES)

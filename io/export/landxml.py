@@ -24,7 +24,7 @@ def write_landxml(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None
     Raises
     ------
     InputError
-        If a surface stands over a place more than once, or upright: a TIN has one elevation a place.
+        If a surface is not single-valued, or upright: a TIN has one elevation a place.
     """
     lines = [
         '<?xml version="1.0" encoding="UTF-8"?>',

@@ -316,6 +316,6 @@ def _rows(folder: Path, name: str) -> list[list[str]]:
             return [line.split() for line in data.decode("ascii").splitlines() if line.strip()]
     raise InputError(
         message("export.network-four-files", "a network needs four files, and this one is missing"),
-        message("export.put-beside", "Put it beside the others."),
+        message("export.put-beside", "Put it next to the others."),
         file=str(folder / name),
     )

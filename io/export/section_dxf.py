@@ -33,7 +33,7 @@ def write_sheet_dxf(
 
     Layers: one a horizon, with ``_inferred`` (dashed: above the ground or beyond the data), ``_band`` and ``_points``;
     one a lithology code, ``LITH_code``; GROUND, HOLES, FRAME, TEXT. Each section is drawn in true metres below the one
-    before it; ``exaggeration`` stretches elevations, and the title says so.
+    before it; ``exaggeration`` stretches elevations, and the title reports it.
 
     Raises
     ------

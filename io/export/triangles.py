@@ -75,18 +75,18 @@ def write_ply(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None:
 
 
 def write_stl(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Floats:
-    """Write binary STL, relative to an origin; return the origin, which stands in ``FILE.origin.txt`` too."""
+    """Write binary STL, relative to an origin; return the origin, which is in ``FILE.origin.txt`` too."""
     origin = common_origin(_given(meshes, path))
     kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-    facets = []
+    triangles = []
     for mesh in meshes.values():
         corners = (mesh.points + (mesh.origin - origin))[mesh.triangles]
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        facet = np.zeros(len(corners), kind)
-        facet["normal"] = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-        facet["corners"] = corners
-        facets.append(facet)
-    every = np.concatenate(facets)
+        triangle = np.zeros(len(corners), kind)
+        triangle["normal"] = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+        triangle["corners"] = corners
+        triangles.append(triangle)
+    every = np.concatenate(triangles)
     head = b"metres relative to the origin in the text file beside".ljust(80)
     with replacing(path) as part:
         part.write_bytes(head + np.uint32(len(every)).astype("<u4").tobytes() + every.tobytes())

@@ -29,7 +29,7 @@ Surfaces = Mapping[str, Surface]
 class Format:
     """A format: what its writer ``module.function`` (in geofit) takes, its endings, and what it can state.
 
-    The first format with an ending is the one that the ending stands for; the others have to be named.
+    The first format with an ending is the one that the ending represents; the others have to be named.
     """
 
     takes: Literal["surfaces", "meshes", "contours", "grid", "vtp", "measured", "site"]
@@ -185,7 +185,7 @@ def write_surface(
 
 
 def format_of(path: str | PathLike[str]) -> str:
-    """Return the name of the format that a file's ending stands for.
+    """Return the name of the format that a file's ending represents.
 
     Parameters
     ----------
@@ -310,7 +310,7 @@ def _need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
         raise InputError(
             message(
                 "export.triangle-mesh-holds-nurbs",
-                "'{name}' is a triangle mesh; {to} holds NURBS surfaces, which would have to be fitted",
+                "'{name}' is a triangle mesh; {to} stores NURBS surfaces, so it would have to be fitted first",
                 name=meshes[0],
                 to=to,
             ),

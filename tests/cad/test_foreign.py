@@ -15,7 +15,7 @@ import pytest
 from surfaces import horizon, nine
 
 from geofit.cad import foreign
-from geofit.cad.foreign import READERS, _load, _save, child, read_apart
+from geofit.cad.foreign import READERS, _load, _save, child, read_in_child
 from geofit.cad.iges_brep import brep_surfaces
 from geofit.cad.step import read_step, step_surfaces, write_step
 from geofit.data.errors import InputError
@@ -84,7 +84,7 @@ def test_a_reader_that_never_returns_is_ended(step, monkeypatch):
     monkeypatch.setattr(foreign, "SECONDS_MB", 0.0)
     before = time.monotonic()
     with pytest.raises(InputError, match="takes longer"):
-        read_apart(step, "step")
+        read_in_child(step, "step")
     assert time.monotonic() - before < 20
 
 
@@ -93,7 +93,7 @@ def test_a_reader_that_needs_too_much_memory_is_ended(step, monkeypatch):
     monkeypatch.setattr(foreign, "MEMORY", 30_000_000)
     monkeypatch.setattr(foreign, "MEMORY_BYTE", 0)
     with pytest.raises(InputError, match=r"damaged|memory"):
-        read_apart(step, "step")
+        read_in_child(step, "step")
 
 
 @pytest.mark.parametrize("seed", range(4))

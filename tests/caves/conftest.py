@@ -1,4 +1,4 @@
-"""The real survey, where the folder of real data is at hand."""
+"""The real survey, where the folder of real data is available."""
 
 from __future__ import annotations
 

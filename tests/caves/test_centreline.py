@@ -73,7 +73,7 @@ def test_a_negative_size_is_missing_and_a_repeated_station_is_listed(table):
 @pytest.mark.parametrize(
     ("text", "match"),
     [
-        ("x,y,z\n0,0,0\n1,0,0\n", "no size of the section"),
+        ("x,y,z\n0,0,0\n1,0,0\n", "does not give the size of the section"),
         ("x,y,z,radius\n0,0,0,1\n", "two usable stations"),
     ],
 )

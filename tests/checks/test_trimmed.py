@@ -1,4 +1,4 @@
-"""What lies beyond the loops of a file's faces is no part of the surface: no check asks it, and none misses what is."""
+"""What lies beyond the loops of a file's faces is not part of the surface: no check asks it, none misses what is."""
 
 from __future__ import annotations
 

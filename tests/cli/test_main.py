@@ -22,7 +22,7 @@ from geofit.cli.main import main
 from geofit.data.errors import Cancelled
 from geofit.data.messages import message
 from geofit.data.site import ImportIssue, Site
-from geofit.project import run as deliver
+from geofit.project import run as run_horizons
 
 WEST, SOUTH = 500_000.0, 3_100_000.0
 
@@ -94,7 +94,7 @@ def test_report_writes_html_pdf_and_json_of_one_run(picks, tmp_path, monkeypatch
     assert code == 0, err
     data = json.loads((tmp_path / "o" / "report.json").read_text(encoding="utf-8"))
     assert (data["date"], data["horizons"][0]["verdict"]) == ("2023-11-14", "PASS")
-    assert data["horizons"][0]["off_data"]["left_out"]
+    assert data["horizons"][0]["prediction"]["left_out"]
     assert data["horizons"][0]["read_back"]["valid"] is True
     digest = hashlib.sha256((tmp_path / "o" / "T3_T2.step").read_bytes()).hexdigest()
     assert data["horizons"][0]["read_back"]["sha256"] == digest
@@ -299,7 +299,7 @@ def test_a_listener_that_says_stop_stops_the_run(picks, tmp_path):
     found = read_points(picks)
     site = Site(name="picks", horizons=found.horizons)
     with pytest.raises(Cancelled):
-        deliver.deliver(site, tmp_path / "o", progress=lambda stage, fraction: False)
+        run_horizons.run_horizons(site, tmp_path / "o", progress=lambda stage, fraction: False)
     assert not list(tmp_path.glob("o/*.step"))
 
 
@@ -326,14 +326,20 @@ def test_other_import_errors_are_not_hidden():
 def test_only_the_first_findings_are_told(capsys):
     issues = [
         ImportIssue(
-            "a.csv", i, "z", "?", "error", message(f"test.kind-{i}", "no number"), message("test.text", "write metres")
+            "a.csv",
+            i,
+            "z",
+            "?",
+            "error",
+            message(f"test.kind-{i}", "not a number"),
+            message("test.text", "write metres"),
         )
         for i in range(9)
     ]
     console.print_issues(issues, "out/import_issues.csv")
     told = capsys.readouterr().err
     assert "Import: 9 errors. All of them: out/import_issues.csv" in told
-    assert told.count("no number") == console.FIRST_ISSUES
+    assert told.count("not a number") == console.FIRST_ISSUES
     assert "and 4 more" in told
 
 

@@ -1,4 +1,4 @@
-"""One unforeseen error costs one examination, and is reported; stopping is no failure."""
+"""One unforeseen error costs one examination, and is reported; stopping is not a failure."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from geofit.data.languages import ZH, translate
 from geofit.data.messages import message
 from geofit.prediction import crossval
 from geofit.prediction.examine import examine
-from geofit.project.run import deliver
+from geofit.project.run import run_horizons
 from geofit.site import fit_site as sitefit
 
 
@@ -68,7 +68,7 @@ def test_a_method_that_fails_costs_its_own_figure_only(monkeypatch):
     whole = examine(surface)
     monkeypatch.setattr(crossval, "krige_left_out", broken)
     without = examine(surface)
-    assert [set(one.peers) for one in without.left_out] == [{"thin plate"}] * len(whole.left_out)
+    assert [set(one.references) for one in without.left_out] == [{"thin plate"}] * len(whole.left_out)
     assert [one.rms for one in without.left_out] == [one.rms for one in whole.left_out]
     np.testing.assert_array_equal(without.uncertainty.sd, whole.uncertainty.sd)
     (note, *_) = [note for note in without.notes if note.code == "prediction.method-not-compared"]
@@ -111,7 +111,7 @@ def test_a_horizon_that_fails_leaves_the_others_of_the_run(tmp_path, monkeypatch
     monkeypatch.setattr(sitefit, "fit_horizon", sometimes)
     monkeypatch.setattr("geofit.checks.storage.equal_accuracy", broken)
     site = geofit.Site("two", {"bad": cloud(), "good": cloud(seed=1)})
-    done = deliver(site, tmp_path)
+    done = run_horizons(site, tmp_path)
     assert [result.name for result in done.results] == ["good"]
     assert done.failures["bad"].code == "error.unforeseen"
     assert done.failures["bad"].params["kind"] == "ZeroDivisionError"
@@ -123,7 +123,7 @@ def test_an_order_that_fails_is_reported(tmp_path, monkeypatch):
     site = geofit.Site("two", {"top": cloud(), "base": cloud(seed=1)})
     site = replace(site, order=("top", "base"))
     monkeypatch.setattr("geofit.site.fit_site.compare_horizons", broken)
-    done = deliver(site, tmp_path)
+    done = run_horizons(site, tmp_path)
     assert len(done.results) == 2
     (note,) = [note for note in done.warnings if note.code == "run.order-horizons-not-examined"]
     assert note.params["reason"].code == "error.unforeseen"

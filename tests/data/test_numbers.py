@@ -29,7 +29,7 @@ def test_a_value_of_any_length_can_be_shown():
 
 
 @pytest.mark.parametrize("value", [LONG, pytest.param(16**5000, id="longest"), "1", None, True, float("nan")])
-@pytest.mark.parametrize("name", ["epsilon", "smoothing", "conflict_distance", "max_iterations"])
+@pytest.mark.parametrize("name", ["epsilon", "smoothing", "coincidence_distance", "max_iterations"])
 def test_settings_refuse_what_no_double_holds(name, value):
     with pytest.raises(SettingsError):
         FitSettings(**{name: value})

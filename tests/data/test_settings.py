@@ -19,7 +19,7 @@ from geofit.data.messages import message
 from geofit.data.setting_texts import SETTINGS
 from geofit.data.settings import named
 
-LENGTHS = ("epsilon", "interior_tolerance", "boundary_tolerance", "conflict_distance")
+LENGTHS = ("epsilon", "interior_tolerance", "boundary_tolerance", "coincidence_distance")
 
 
 def test_the_defaults_are_the_papers():

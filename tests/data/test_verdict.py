@@ -9,7 +9,7 @@ import pytest
 
 from geofit.data.accuracy import Accuracy, Check
 from geofit.data.messages import message
-from geofit.data.prediction import LeftOut, OffData
+from geofit.data.prediction import LeftOut, PredictionResult
 from geofit.data.verdict import verdict_of
 
 EPSILON = 0.5
@@ -26,15 +26,15 @@ def accuracy(sigma=0.03, checks=(GOOD, SILENT)):
     )  # fmt: skip
 
 
-def off_data(rms=0.2, inside=0.9, others=()):
+def prediction(rms=0.2, inside=0.9, others=()):
     def one(scheme, rms, inside):
         return LeftOut(scheme, 5, np.full(9, ""), np.zeros(9), np.ones(9), rms, rms, 0.0, 2 * rms, inside, inside, {})
 
-    return OffData((one("hole", rms, inside), *(one(*other) for other in others)), None, (), ())
+    return PredictionResult((one("hole", rms, inside), *(one(*other) for other in others)), None, (), ())
 
 
 def test_all_green():
-    found = verdict_of(accuracy(), off_data())
+    found = verdict_of(accuracy(), prediction())
     assert [lamp.level for lamp in found.lamps] == ["pass", "pass", "pass"]
     assert found.word == "PASS"
     assert found.checks.text.params["total"] == 1, "a check that does not apply is not counted"
@@ -43,11 +43,11 @@ def test_all_green():
 @pytest.mark.parametrize(
     ("given", "level", "lamp"),
     [
-        ((accuracy(sigma=0.6), off_data()), "fail", "data"),
-        ((accuracy(checks=(GOOD, BAD)), off_data()), "warning", "checks"),
-        ((accuracy(), off_data(rms=0.8)), "warning", "away"),
-        ((accuracy(), off_data(inside=0.7)), "warning", "away"),
-        ((accuracy(), off_data(others=[("block", 0.3, 0.6)])), "warning", "away"),
+        ((accuracy(sigma=0.6), prediction()), "fail", "data"),
+        ((accuracy(checks=(GOOD, BAD)), prediction()), "warning", "checks"),
+        ((accuracy(), prediction(rms=0.8)), "warning", "away"),
+        ((accuracy(), prediction(inside=0.7)), "warning", "away"),
+        ((accuracy(), prediction(others=[("block", 0.3, 0.6)])), "warning", "away"),
     ],
 )
 def test_the_word_follows_from_the_worst_lamp(given, level, lamp):
@@ -57,7 +57,7 @@ def test_the_word_follows_from_the_worst_lamp(given, level, lamp):
 
 
 def test_a_left_out_error_of_ten_epsilons_is_red_and_said():
-    found = verdict_of(accuracy(), off_data(others=[("section", 10 * EPSILON, 0.9)]))
+    found = verdict_of(accuracy(), prediction(others=[("section", 10 * EPSILON, 0.9)]))
     assert found.away.level == "fail"
     assert found.word == "WARNING"
     error = found.away.text.params["error"]

@@ -10,7 +10,7 @@ from geofit import FitSettings, PointSet, fit_horizon
 from geofit.checks.check import sigma
 from geofit.fitting.adjust import adjust
 from geofit.fitting.core import fit_with_core
-from geofit.fitting.parametrize import choose_chart
+from geofit.fitting.parametrize import parametrize
 from geofit.fitting.partition import split_auto
 
 
@@ -23,50 +23,50 @@ def fitted():
     """A fit whose given smoothing is far too stiff for its periphery."""
     truth = paper_arrangement(4)
     settings = FitSettings(smoothing=10.0)
-    chart = choose_chart(truth.points, settings, truth.boundary)
-    split = split_auto(chart.plane, chart.area)
+    parametrization = parametrize(truth.points, settings, truth.boundary)
+    split = split_auto(parametrization.plane, parametrization.area)
     kept = np.ones(len(truth.points), bool)
     # As fit_horizon does: on small banded systems threads wait for each other.
     with threadpool_limits(limits=1):
-        net = fit_with_core(truth.points, chart, split, kept, settings, silent)
-    return net, chart, split
+        net = fit_with_core(truth.points, parametrization, split, kept, settings, silent)
+    return net, parametrization, split
 
 
-def residuals(net, chart):
-    return chart.values - net.space.matrix(chart.plane / net.unit) @ net.coefficients
+def residuals(net, parametrization):
+    return parametrization.values - net.space.matrix(parametrization.plane / net.unit) @ net.coefficients
 
 
 def test_sigma_falls_and_the_core_stays_bit_for_bit(fitted):
-    net, chart, split = fitted
-    before = residuals(net, chart)
-    better = adjust(net, chart, ~split.inside, before)
-    assert sigma(residuals(better, chart)) < 0.6 * sigma(before)
+    net, parametrization, split = fitted
+    before = residuals(net, parametrization)
+    better = adjust(net, parametrization, ~split.inside, before)
+    assert sigma(residuals(better, parametrization)) < 0.6 * sigma(before)
     assert net.frozen.any()
     np.testing.assert_array_equal(better.coefficients[net.frozen], net.coefficients[net.frozen])
-    np.testing.assert_allclose(residuals(better, chart)[split.inside], 0, atol=1e-7)
+    np.testing.assert_allclose(residuals(better, parametrization)[split.inside], 0, atol=1e-7)
 
 
 def test_nothing_moves_outside_the_supports_near_the_worst_points(fitted):
-    net, chart, split = fitted
+    net, parametrization, split = fitted
     movable = np.flatnonzero(~split.inside)
     # Two bad points and all others good: only these are pulled.
-    d = np.full(len(chart.values), 1e-6)
+    d = np.full(len(parametrization.values), 1e-6)
     bad = movable[[0, 40]]
     d[bad] = 5.0
-    better = adjust(net, chart, ~split.inside, d)
+    better = adjust(net, parametrization, ~split.inside, d)
     moved = better.coefficients != net.coefficients
     acting = np.zeros(net.space.size, bool)
-    acting[net.space.rows(chart.plane[bad] / net.unit)[0].ravel()] = True
+    acting[net.space.rows(parametrization.plane[bad] / net.unit)[0].ravel()] = True
     assert moved.any()
     assert not (moved & ~acting).any()
     assert not (moved & net.frozen).any()
 
 
 def test_points_that_may_not_be_pulled_are_not(fitted):
-    net, chart, split = fitted
-    nobody = np.zeros(len(chart.values), bool)
-    assert adjust(net, chart, nobody, residuals(net, chart)) is None
-    assert adjust(net, chart, ~split.inside, np.zeros(len(chart.values))) is None
+    net, parametrization, split = fitted
+    nobody = np.zeros(len(parametrization.values), bool)
+    assert adjust(net, parametrization, nobody, residuals(net, parametrization)) is None
+    assert adjust(net, parametrization, ~split.inside, np.zeros(len(parametrization.values))) is None
 
 
 def stiff_cloud(n=120, spikes=4, seed=0):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from geofit.fitting.approximate import approximate, borrowed, solved_beside
+from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import TensorSpace
@@ -36,7 +36,7 @@ def scattered(n, seed=0):
 
 
 def run(space, plane, height, tolerance=0.05, rounds=20, core=CORE, start=None, smoothing=1e-3):
-    frozen = borrowed(space, core).ravel() if core else np.zeros(space.size, bool)
+    frozen = fixed_by_core(space, core).ravel() if core else np.zeros(space.size, bool)
     start = np.random.default_rng(5).normal(size=(space.size, *height.shape[1:])) if start is None else start
     energy = smoothing * MaternPrecision(space, 3).band(0.5)
     beside = solved_beside(space, energy, start, frozen, plane, height, np.ones(len(plane)))
@@ -47,13 +47,13 @@ def test_borrowed_control_points_are_those_that_act_in_the_core():
     space = space_of()
     inside = np.stack(np.meshgrid(np.linspace(3.001, 4.999, 60), np.linspace(2.001, 5.999, 60)), axis=-1).reshape(-1, 2)
     acting = (np.abs(space.matrix(inside).toarray()).max(axis=0) > 0).reshape(space.shape)
-    np.testing.assert_array_equal(borrowed(space, CORE), acting)
+    np.testing.assert_array_equal(fixed_by_core(space, CORE), acting)
 
 
 def test_a_full_knot_at_the_seam_lends_the_edge_row_alone():
     knots = bspline.clamped_knots(np.arange(9.0), 3, [1, 1, 3, 1, 3, 1, 1])
     space = TensorSpace(knots, bspline.clamped_knots(np.arange(9.0), 3))
-    rows = np.flatnonzero(borrowed(space, (3.0, 5.0, 0.0, 8.0)).any(axis=1))
+    rows = np.flatnonzero(fixed_by_core(space, (3.0, 5.0, 0.0, 8.0)).any(axis=1))
     greville = bspline.greville(space.knots_u, 3)[rows]
     assert greville[0] == pytest.approx(3)
     assert greville[-1] == pytest.approx(5)
@@ -73,7 +73,7 @@ def test_borrowed_control_points_stay_bit_for_bit(columns):
 @pytest.mark.parametrize("core", [None, CORE])
 def test_every_point_comes_within_a_tolerance_that_can_be_held(core):
     space, plane = space_of(16, 16), scattered(60, seed=1)
-    # Three spans beside the core nothing is borrowed; nearer to it some points may be out of reach.
+    # Three spans beside the core nothing is fixed_by_core; nearer to it some points may be out of reach.
     plane = plane[~((plane > (1.5, 0.5)) & (plane < (6.5, 7.5))).all(axis=1)]
     grid = np.stack(np.meshgrid(np.linspace(0, 8, 40), np.linspace(0, 8, 40)), axis=-1).reshape(-1, 2)
     start = np.linalg.lstsq(space.matrix(grid).toarray(), wave(grid), rcond=None)[0]

@@ -9,12 +9,12 @@ from scipy.spatial import KDTree
 from scipy.spatial.distance import pdist
 
 from geofit import PointSet
-from geofit.fitting.conflicts import near_pairs, settle
+from geofit.fitting.conflicts import near_pairs, resolve_conflicts
 
 
 def settled(xyz, distance=0.01, **columns):
     points = PointSet(np.asarray(xyz, float), **columns)
-    return settle(points, points.xyz[:, :2], points.xyz[:, 2], distance)
+    return resolve_conflicts(points, points.xyz[:, :2], points.xyz[:, 2], distance)
 
 
 def test_points_apart_are_all_kept():
@@ -80,7 +80,7 @@ def test_the_first_of_equals_is_kept():
 
 
 def test_in_a_chain_the_middle_gives_way_only_to_a_better_one():
-    """A - B - C, each 0.8 of the distance from the next: A and C are no conflict."""
+    """A - B - C, each 0.8 of the distance from the next: A and C are not conflict."""
     xyz = [[0, 0, 1], [0.008, 0, 2], [0.016, 0, 3]]
     kept, conflicts = settled(xyz, accuracy=[0.1, 0.2, 0.3])
     assert kept.tolist() == [True, False, True]

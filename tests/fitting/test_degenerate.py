@@ -9,7 +9,7 @@ from truth import EASTING, NORTHING, hills, paper_arrangement, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError, PointsError
-from geofit.fitting.parametrize import choose_chart
+from geofit.fitting.parametrize import parametrize
 
 ALL, NONE = FitSettings(core="all"), FitSettings(core="none")
 CORES = pytest.mark.parametrize("settings", [FitSettings(), ALL, NONE], ids=["auto", "all", "none"])
@@ -156,7 +156,7 @@ def vertical(n=60, roughness=1.0):
 
 
 def test_a_vertical_plane_is_fitted_over_itself():
-    assert choose_chart(vertical(), FitSettings(), None).frame.kind == "best-plane"
+    assert parametrize(vertical(), FitSettings(), None).frame.kind == "best-plane"
 
 
 def test_a_vertical_plane_is_fitted_over_itself_when_asked():
@@ -232,7 +232,7 @@ def test_tiny_and_huge_sites(scale, settings):
     xyz = cloud(60)
     centre = xyz.mean(axis=0)
     points = PointSet((xyz - centre) * scale + centre)
-    surface = fit_horizon(points, FitSettings(core=settings.core, conflict_distance=0.01 * min(scale, 1)))
+    surface = fit_horizon(points, FitSettings(core=settings.core, coincidence_distance=0.01 * min(scale, 1)))
     assert surface.accuracy.max_abs < 0.1
     assert np.isfinite(surface.patches[0].control).all()
 

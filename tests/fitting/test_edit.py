@@ -1,4 +1,4 @@
-"""Changes by hand: local, exact where it must be, and with closed, tangent seams."""
+"""Manual edits: local, exact where it must be, and with closed, tangent seams."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_a_control_point_moves_by_dz_and_nothing_outside_its_support(name):
     xy = lattice(surface)
     before, after = (s.elevation(xy[..., 0], xy[..., 1]) for s in (surface, moved))
     u0, u1, v0, v1 = support(surface, name, i, j)
-    local = surface.model.problem.chart.frame.plan(xy.reshape(-1, 2)).reshape(xy.shape)
+    local = surface.model.problem.parametrization.frame.plan(xy.reshape(-1, 2)).reshape(xy.shape)
     u, v = local[..., 0], local[..., 1]
     outside = (u < u0) | (u > u1) | (v < v0) | (v > v1)
     assert 0 < (~outside).mean() < 0.5
@@ -128,11 +128,11 @@ def test_the_surface_is_pulled_through_a_peripheral_point_and_the_core_stays_exa
     distance = np.abs(surface.accuracy.residuals)
     worst = worst_of_the_periphery(surface)
     assert distance[worst] > 1e-3
-    pulled = surface.pull_to(worst)
+    pulled = surface.move_to(worst)
     assert abs(pulled.accuracy.residuals[worst]) < 1e-9
     assert np.abs(pulled.accuracy.residuals[surface.core]).max() <= 1e-6
     assert_seams_hold(pulled)
-    half = surface.pull_to(worst, share=0.5)
+    half = surface.move_to(worst, share=0.5)
     assert abs(half.accuracy.residuals[worst]) == pytest.approx(distance[worst] / 2, rel=0.01)
     assert pulled.diagnostics["by_hand"] == 1
     assert pulled.accuracy.notes[-1].code == "edit.hand-pulled-distance"
@@ -142,7 +142,7 @@ def test_the_surface_is_pulled_to_a_place_in_the_map_even_in_the_core():
     surface = fitted()
     x, y = surface.points.xyz[surface.core].mean(axis=0)[:2] + np.array([7.0, 11.0])
     z = float(surface.elevation(x, y)) + 0.05
-    pulled = surface.pull_to((x, y, z))
+    pulled = surface.move_to((x, y, z))
     assert float(pulled.elevation(x, y)) == pytest.approx(z, abs=1e-9)
     assert np.abs(pulled.accuracy.residuals[surface.core]).max() <= 1e-6
     assert_seams_hold(pulled)
@@ -152,15 +152,15 @@ def test_what_cannot_be_pulled_says_why():
     surface = fitted()
     exact = surface.points.xyz[surface.core][0] + np.array([0.0, 0.0, 3.0])
     with refused(ExactnessError, "edit.surface-cannot-pulled-points"):
-        surface.pull_to(exact)
+        surface.move_to(exact)
     with refused(FitError, "edit.point-lies-beside-surface"):
-        surface.pull_to((0.0, 0.0, 0.0))
+        surface.move_to((0.0, 0.0, 0.0))
     with refused(FitError, "edit.points-given"):
-        surface.pull_to(10**6)
+        surface.move_to(10**6)
     with refused(FitError, "edit.finite-number-needed", name="share"):
-        surface.pull_to(0, share=float("nan"))
+        surface.move_to(0, share=float("nan"))
     with refused(FitError, "edit.point-three-finite-map"):
-        surface.pull_to((1.0, 2.0))
+        surface.move_to((1.0, 2.0))
     with refused(FitError, "edit.no-patch-patches", patch="nowhere"):
         surface.adjust("nowhere", 0, 0, 1.0)
     with refused(FitError, "edit.patch-control-points-given"):
@@ -181,10 +181,10 @@ def test_a_weight_draws_the_surface_to_its_control_point():
     assert heavy_gap < 0.6 * light_gap
     assert_seams_hold(heavy)
     with refused(FitError, "edit.control-points-weights-act"):
-        heavy.pull_to((x, y, z))
+        heavy.move_to((x, y, z))
     neutral = heavy.weigh(name, i, j, 1.0)
     assert neutral.elevation(x, y) == pytest.approx(moved.elevation(x, y), abs=1e-9)
-    assert float(neutral.pull_to((x, y, z)).elevation(x, y)) == pytest.approx(z, abs=1e-9)
+    assert float(neutral.move_to((x, y, z)).elevation(x, y)) == pytest.approx(z, abs=1e-9)
 
 
 def test_weights_that_would_open_a_seam_are_refused():
@@ -200,7 +200,7 @@ def test_a_core_that_is_straight_across_its_sections_keeps_to_them():
     surface = fitted(across="linear")
     middle = surface.points.xyz[surface.core].mean(axis=0)
     with refused(FitError, "edit.core-straight-section-curves"):
-        surface.pull_to(middle)
+        surface.move_to(middle)
 
 
 def test_undoing_a_change_by_its_opposite_gives_the_surface_back():
@@ -216,5 +216,5 @@ def test_a_changed_surface_is_stitched_and_its_file_reads_back(tmp_path):
     surface = fitted()
     worst = worst_of_the_periphery(surface)
     rows, columns, _ = patch_of(surface, "north").control.shape
-    changed = surface.pull_to(worst).weigh("north", rows // 2, columns - 4, 3.0)
+    changed = surface.move_to(worst).weigh("north", rows // 2, columns - 4, 3.0)
     assert changed.write_step(tmp_path / "changed.step").passed

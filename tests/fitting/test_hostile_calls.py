@@ -120,13 +120,13 @@ def test_control_points_are_named_by_whole_numbers(index):
 @pytest.mark.parametrize("point", [[np.nan, 0, 0], [*CORNER, 1e300], "abc", [1, 2], [LONG, 0, 0], None])
 def test_the_surface_is_pulled_to_places_only(point):
     with refused(FitError, "edit.point-three-finite-map"):
-        fitted().pull_to(point)
+        fitted().move_to(point)
 
 
 @pytest.mark.parametrize("core", ["auto", "all", "none"])
 def test_a_site_of_two_millimetres_is_that_of_two_metres_in_small(core):
     small, large = (
-        fit_horizon(cloud(size), FitSettings(core=core, conflict_distance=1e-6 * size)) for size in (2e-3, 2.0)
+        fit_horizon(cloud(size), FitSettings(core=core, coincidence_distance=1e-6 * size)) for size in (2e-3, 2.0)
     )
     assert small.accuracy.passed
     assert np.isfinite(small.accuracy.residuals).all()
@@ -136,7 +136,7 @@ def test_a_site_of_two_millimetres_is_that_of_two_metres_in_small(core):
 
 
 def test_a_site_of_two_millimetres_goes_to_step_and_back(tmp_path):
-    back = fit_horizon(cloud(2e-3), FitSettings(conflict_distance=1e-8)).write_step(tmp_path / "small.step")
+    back = fit_horizon(cloud(2e-3), FitSettings(coincidence_distance=1e-8)).write_step(tmp_path / "small.step")
     assert back.brep_valid
     assert back.max_abs < 1e-3
 

@@ -7,7 +7,7 @@ from truth import EASTING, NORTHING, fold_at, folded, hills, paper_arrangement, 
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError
-from geofit.fitting.parametrize import choose_chart
+from geofit.fitting.parametrize import parametrize
 from geofit.geometry.frame import best_plane_frame
 
 SETTINGS = FitSettings()
@@ -46,15 +46,15 @@ def level(n=80, slope=0.1):
     ids=["gentle", "paper", "30", "50", "72", "85", "fold", "fold drawn both ways", "turned fold"],
 )
 def test_the_frame_follows_the_surface(points, kind):
-    chart = choose_chart(points, SETTINGS, None)
-    assert chart.frame.kind == kind
-    assert chart.parametric == (kind == "sections")
-    assert chart.notes[0]
+    parametrization = parametrize(points, SETTINGS, None)
+    assert parametrization.frame.kind == kind
+    assert parametrization.parametric == (kind == "sections")
+    assert parametrization.notes[0]
 
 
 def test_a_vertical_fault_seen_by_scattered_points_is_no_height_field():
-    chart = choose_chart(fault(90, n=80), SETTINGS, None)
-    assert chart.frame.kind == "best-plane"
+    parametrization = parametrize(fault(90, n=80), SETTINGS, None)
+    assert parametrization.frame.kind == "best-plane"
 
 
 def test_one_section_is_a_height_field_over_the_map():
@@ -64,11 +64,11 @@ def test_one_section_is_a_height_field_over_the_map():
         section="S1",
         kind="section",
     )
-    chart = choose_chart(points, SETTINGS, None)
-    assert chart.frame.kind == "map"
+    parametrization = parametrize(points, SETTINGS, None)
+    assert parametrization.frame.kind == "map"
     # v runs along the line, and the area is a strip around it.
-    np.testing.assert_allclose(np.abs(chart.frame.axes[1, :2]), [0.6, 0.8], atol=1e-6)
-    u0, u1, v0, v1 = chart.area
+    np.testing.assert_allclose(np.abs(parametrization.frame.axes[1, :2]), [0.6, 0.8], atol=1e-6)
+    u0, u1, v0, v1 = parametrization.area
     assert v1 - v0 == pytest.approx(800)
     assert 0 < u1 - u0 < 200
 
@@ -77,9 +77,9 @@ def test_one_section_is_a_height_field_over_the_map():
 def test_collinear_points_get_a_strip_to_stand_on(azimuth):
     a, t = np.radians(azimuth), np.linspace(0, 500, 12)
     points = PointSet(np.column_stack([EASTING + t * np.cos(a), NORTHING + t * np.sin(a), 300 + 0.1 * t]))
-    chart = choose_chart(points, SETTINGS, None)
-    assert chart.frame.kind == "map"
-    u0, u1, v0, v1 = chart.area
+    parametrization = parametrize(points, SETTINGS, None)
+    assert parametrization.frame.kind == "map"
+    u0, u1, v0, v1 = parametrization.area
     assert u1 > u0
     assert v1 > v0
     assert min(u1 - u0, v1 - v0) >= 0.05 * 400
@@ -88,37 +88,43 @@ def test_collinear_points_get_a_strip_to_stand_on(azimuth):
 @pytest.mark.parametrize("kind", ["map", "best-plane"])
 def test_a_frame_is_taken_as_asked(kind):
     for points in (level(), fault(72)):
-        assert choose_chart(points, FitSettings(frame=kind), None).frame.kind == kind
+        assert parametrize(points, FitSettings(frame=kind), None).frame.kind == kind
 
 
 def test_sections_without_sections_are_a_fit_error():
     with refused(FitError, "fit.frame-sections-needs-least", lines=0):
-        choose_chart(level(), FitSettings(frame="sections"), None)
+        parametrize(level(), FitSettings(frame="sections"), None)
     with refused(FitError, "fit.frame-sections-needs-least", lines=1):
-        choose_chart(folded(lines=1), FitSettings(frame="sections"), None)
+        parametrize(folded(lines=1), FitSettings(frame="sections"), None)
 
 
 def test_places_and_values_give_the_points_back():
     for points in (level(), fault(72), folded()):
-        chart = choose_chart(points, SETTINGS, None)
-        local = chart.values if chart.parametric else np.column_stack([chart.plane, chart.values])
-        np.testing.assert_allclose(chart.frame.turn_back(local) + chart.frame.origin, points.xyz, atol=1e-8)
-        u0, u1, v0, v1 = chart.area
-        assert (chart.plane >= (u0 - 1e-9, v0 - 1e-9)).all()
-        assert (chart.plane <= (u1 + 1e-9, v1 + 1e-9)).all()
+        parametrization = parametrize(points, SETTINGS, None)
+        local = (
+            parametrization.values
+            if parametrization.parametric
+            else np.column_stack([parametrization.plane, parametrization.values])
+        )
+        np.testing.assert_allclose(
+            parametrization.frame.turn_back(local) + parametrization.frame.origin, points.xyz, atol=1e-8
+        )
+        u0, u1, v0, v1 = parametrization.area
+        assert (parametrization.plane >= (u0 - 1e-9, v0 - 1e-9)).all()
+        assert (parametrization.plane <= (u1 + 1e-9, v1 + 1e-9)).all()
 
 
 def test_the_study_area_widens_the_rectangle_and_points_beyond_it_are_told():
     points = level()
     low, high = points.xyz[:, :2].min(axis=0), points.xyz[:, :2].max(axis=0)
     wide = np.array([low - 100, [high[0] + 100, low[1] - 100], high + 100, [low[0] - 100, high[1] + 100]])
-    assert choose_chart(points, SETTINGS, wide).area[1] - choose_chart(points, SETTINGS, wide).area[0] == pytest.approx(
+    assert parametrize(points, SETTINGS, wide).area[1] - parametrize(points, SETTINGS, wide).area[0] == pytest.approx(
         high[0] - low[0] + 200
     )
     small = np.array([low + 200, [high[0] - 200, low[1] + 200], high - 200, [low[0] + 200, high[1] - 200]])
-    chart = choose_chart(points, SETTINGS, small)
-    assert with_code(chart.notes, "fit.points-beyond-study-area").params["count"] > 0
-    assert (chart.plane >= (chart.area[0], chart.area[2])).all()
+    parametrization = parametrize(points, SETTINGS, small)
+    assert with_code(parametrization.notes, "fit.points-beyond-study-area").params["count"] > 0
+    assert (parametrization.plane >= (parametrization.area[0], parametrization.area[2])).all()
 
 
 def test_without_sections_v_follows_a_turned_study_area():
@@ -126,8 +132,10 @@ def test_without_sections_v_follows_a_turned_study_area():
     turn = np.array([[np.cos(a), -np.sin(a)], [np.sin(a), np.cos(a)]])
     corners = np.array([[0, 0], [900, 0], [900, 300], [0, 300.0]]) @ turn.T + (EASTING, NORTHING)
     plan = np.random.default_rng(0).uniform(0, (900, 300), (90, 2)) @ turn.T + (EASTING, NORTHING)
-    chart = choose_chart(PointSet(np.column_stack([plan, np.full(90, 300.0)])), SETTINGS, corners)
-    sides = sorted((chart.area[1] - chart.area[0], chart.area[3] - chart.area[2]))
+    parametrization = parametrize(PointSet(np.column_stack([plan, np.full(90, 300.0)])), SETTINGS, corners)
+    sides = sorted(
+        (parametrization.area[1] - parametrization.area[0], parametrization.area[3] - parametrization.area[2])
+    )
     np.testing.assert_allclose(sides, [300, 900], atol=1)
 
 
@@ -184,7 +192,7 @@ def test_a_cloud_that_is_no_plane_is_laid_over_the_map():
     rng = np.random.default_rng(4)
     a, d, w = rng.uniform(0, 300, 60), rng.uniform(0, 800, 60), rng.uniform(-80, 80, 60)
     points = PointSet(np.column_stack([a + EASTING, w + 0.2 * d + NORTHING, d]))
-    chart = choose_chart(points, SETTINGS, None)
-    assert chart.frame.kind == "map"
-    assert "fit.cloud-not-plane" in {note.code for note in chart.notes}
+    parametrization = parametrize(points, SETTINGS, None)
+    assert parametrization.frame.kind == "map"
+    assert "fit.cloud-not-plane" in {note.code for note in parametrization.notes}
     assert np.isfinite(fit_horizon(points).elevation(*points.xyz[:, :2].T)).all()

@@ -9,7 +9,7 @@ from truth import EASTING, NORTHING, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError
-from geofit.fitting.skin import damped_change, least_change, ruled, section_lines, separate
+from geofit.fitting.skin import minimum_norm_correction, refine_knots, regularized_correction, ruled, section_lines
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -36,7 +36,7 @@ def test_the_least_change_is_exact_and_the_smallest(n):
     space = space_of()
     plane, misfit = spread(n)
     matrix = space.matrix(plane)
-    change = least_change(matrix, misfit)
+    change = minimum_norm_correction(matrix, misfit)
     np.testing.assert_allclose(matrix @ change, misfit, atol=1e-12)
     np.testing.assert_allclose(change, np.linalg.pinv(matrix.toarray()) @ misfit, atol=1e-9)
 
@@ -45,9 +45,9 @@ def test_coordinates_change_column_by_column():
     plane, _ = spread(10)
     matrix = space_of().matrix(plane)
     misfit = np.random.default_rng(1).normal(size=(10, 3))
-    change = least_change(matrix, misfit)
+    change = minimum_norm_correction(matrix, misfit)
     for k in range(3):
-        np.testing.assert_allclose(change[:, k], least_change(matrix, misfit[:, k]), atol=1e-12)
+        np.testing.assert_allclose(change[:, k], minimum_norm_correction(matrix, misfit[:, k]), atol=1e-12)
 
 
 def test_frozen_control_points_do_not_move():
@@ -55,12 +55,12 @@ def test_frozen_control_points_do_not_move():
     plane, misfit = spread(15)
     free = np.random.default_rng(2).uniform(size=space.size) < 0.8
     matrix = space.matrix(plane)
-    change = least_change(matrix, misfit, free)
+    change = minimum_norm_correction(matrix, misfit, free)
     assert (change[~free] == 0).all()
     np.testing.assert_allclose(matrix @ change, misfit, atol=1e-11)
     wanted = np.linalg.pinv(matrix.toarray()[:, free]) @ misfit
     np.testing.assert_allclose(change[free], wanted, atol=1e-8)
-    assert (damped_change(matrix, misfit, free)[~free] == 0).all()
+    assert (regularized_correction(matrix, misfit, free)[~free] == 0).all()
 
 
 @pytest.mark.parametrize("case", ["contradiction", "crowd", "frozen"])
@@ -73,17 +73,17 @@ def test_points_that_cannot_all_be_met_are_a_fit_error(case):
     elif case == "frozen":
         free = np.zeros(space.size, bool)
     with refused(FitError, "fit.core-cannot-interpolated-points"):
-        least_change(space.matrix(plane), misfit, free)
+        minimum_norm_correction(space.matrix(plane), misfit, free)
 
 
 def test_a_damped_change_takes_most_of_a_misfit_and_leaves_contradictions():
     space = space_of()
     plane, misfit = spread(12)
     matrix, free = space.matrix(plane), np.ones(space.size, bool)
-    left = misfit - matrix @ damped_change(matrix, misfit, free)
+    left = misfit - matrix @ regularized_correction(matrix, misfit, free)
     assert np.abs(left).max() < 0.4 * np.abs(misfit).max()
     twice = space.matrix(np.array([[3.0, 2], [3.0001, 2]]))
-    change = damped_change(twice, np.array([-1.0, 1.0]), free)
+    change = regularized_correction(twice, np.array([-1.0, 1.0]), free)
     assert np.abs(change).max() < 0.1
 
 
@@ -96,7 +96,7 @@ def test_separate_lowers_the_strain_of_close_neighbours():
     plane = np.concatenate([plane, plane[:1] + np.array((0.0, 0.02))])
     misfit = np.append(misfit, misfit[0] + 1.0)
     u, v = np.arange(7.0), np.arange(6.0)
-    new_u, new_v = separate(u, v, plane, misfit, 3, lambda shape: True, 20)
+    new_u, new_v = refine_knots(u, v, plane, misfit, 3, lambda shape: True, 20)
     assert np.isin(u, new_u).all()
     assert np.isin(v, new_v).all()
     assert len(new_v) > len(v)
@@ -107,13 +107,13 @@ def test_separate_lowers_the_strain_of_close_neighbours():
 def test_separate_leaves_calm_knots_and_minds_the_cap():
     plane, misfit = spread(8)
     u, v = np.arange(7.0), np.arange(6.0)
-    calm = separate(u, v, plane, misfit, 3, lambda shape: True, 20)
+    calm = refine_knots(u, v, plane, misfit, 3, lambda shape: True, 20)
     np.testing.assert_array_equal(calm[0], u)
     np.testing.assert_array_equal(calm[1], v)
     plane = np.concatenate([plane, plane[:1] + np.array((0.0, 0.001))])
     misfit = np.append(misfit, misfit[0] + 1.0)
     for most in (60, 100, 150):
-        new_u, new_v = separate(u, v, plane, misfit, 3, lambda shape, most=most: shape[0] * shape[1] <= most, 50)
+        new_u, new_v = refine_knots(u, v, plane, misfit, 3, lambda shape, most=most: shape[0] * shape[1] <= most, 50)
         assert space_of(new_u, new_v).size <= max(most, space_of(u, v).size)
 
 

@@ -5,7 +5,7 @@ import pytest
 from surfaces import fold, height_field, nine, wave
 
 from geofit.geometry import projection as distance
-from geofit.geometry.foot_points import feet_over_plan
+from geofit.geometry.foot_points import foot_points_over_plan
 
 
 def beside(patch, n, spread, seed=0):
@@ -21,7 +21,7 @@ def beside(patch, n, spread, seed=0):
 def test_proven_feet_are_those_of_the_search(spread, turn):
     patch = height_field(turn=turn)
     xyz = beside(patch, 3000, spread)
-    found, searched = feet_over_plan([patch], xyz), distance._searched([patch], xyz)
+    found, searched = foot_points_over_plan([patch], xyz), distance._searched([patch], xyz)
     sure = found.converged
     assert sure.mean() > 0.9
     np.testing.assert_allclose(found.distance[sure], searched.distance[sure], atol=1e-10)
@@ -32,7 +32,7 @@ def test_proven_feet_are_those_of_the_search(spread, turn):
 def test_every_patch_of_a_surface_has_its_own_feet():
     _, patches = nine()
     xyz = np.concatenate([beside(patch, 200, 0.1, seed) for seed, patch in enumerate(patches)])
-    found, searched = feet_over_plan(patches, xyz), distance._searched(patches, xyz)
+    found, searched = foot_points_over_plan(patches, xyz), distance._searched(patches, xyz)
     sure = found.converged
     assert sure.mean() > 0.9
     assert np.unique(found.patch[sure]).tolist() == list(range(len(patches)))
@@ -43,7 +43,7 @@ def test_every_patch_of_a_surface_has_its_own_feet():
 def test_what_may_have_another_foot_is_left_to_the_search():
     patch = height_field()
     far, rim, off = [500.0, 300.0, 300.0], [0.01, 300.0, 3.0], [-5.0, 300.0, 0.0]
-    assert not feet_over_plan([patch], np.array([far, rim, off])).converged.any()
+    assert not foot_points_over_plan([patch], np.array([far, rim, off])).converged.any()
 
 
 def test_creases_folds_and_patches_over_each_other_prove_nothing():
@@ -51,4 +51,4 @@ def test_creases_folds_and_patches_over_each_other_prove_nothing():
     creased = height_field(nu=24, nv=18, multiplicity=3)
     above = height_field(z=lambda x, y: 1 + wave(x, y))
     for patches in ([creased], [fold()], [height_field(), above], [height_field(), height_field(turn=0.3)]):
-        assert not feet_over_plan(patches, xyz).converged.any()
+        assert not foot_points_over_plan(patches, xyz).converged.any()

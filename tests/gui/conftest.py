@@ -75,7 +75,7 @@ def nothing_left(request):
 
 
 class Driver:
-    """The whole application in a test: failures that a dialog would tell of are kept in ``failures``."""
+    """The whole application in a test: failures that a dialog would reports are kept in ``failures``."""
 
     def __init__(self, desktop, qtbot):
         self.desktop, self.qtbot = desktop, qtbot

@@ -24,7 +24,7 @@ from geofit.project.commands import (
     Command,
     ExcludeRows,
     IncludeRows,
-    PullToPoint,
+    MoveToPoint,
     RenameSite,
     SetCore,
     SetOrder,
@@ -69,7 +69,7 @@ def steps(seed: int):
                 RenameSite(f"坝址 {rng.random()}"),
                 "fit",
                 AdjustControlPoint(name, "core", rng.randint(0, 3), 1, rng.uniform(-1, 1)),
-                PullToPoint(name, rng.randint(0, 11), rng.random()),
+                MoveToPoint(name, rng.randint(0, 11), rng.random()),
             ]
         )
 
@@ -100,7 +100,7 @@ class Player:
             if self.journal:
                 self.journal.redone()
         else:
-            command = SetSurface(self.document.recipe(self.document.horizons[0])) if step == "fit" else step
+            command = SetSurface(self.document.provenance(self.document.horizons[0])) if step == "fit" else step
             assert isinstance(command, Command)
             try:
                 command.redo(self.document)

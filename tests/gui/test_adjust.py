@@ -32,7 +32,7 @@ def inside(plane, box):
 
 def free_control(surface):
     """A control point that acts on points, none of which is exact."""
-    plane = surface.model.problem.chart.plane
+    plane = surface.model.problem.parametrization.plane
     for patch in surface.patches[1:]:
         for i in range(2, patch.control.shape[0]):
             u0, u1, v0, v1 = support(surface, patch.name, i, 2)
@@ -135,9 +135,9 @@ def test_a_data_point_is_pulled_by_a_share(panel, qtbot):
     panel.choose_point(worst)
     assert str(surface.points.describe(worst)) in panel.point.about.text()
     assert f"{surface.accuracy.residuals[worst]:+.3f}" in panel.point.about.text()
-    with qtbot.waitSignal(panel.pull_wanted, timeout=2000):
+    with qtbot.waitSignal(panel.move_wanted, timeout=2000):
         panel.point.share.setValue(50)
-    with qtbot.waitSignal(panel.pull_requested) as told:
+    with qtbot.waitSignal(panel.move_requested) as told:
         click(qtbot, panel.apply_button)
     assert told.args == [Row.of(surface.points, worst), 0.5]
     exact = int(np.flatnonzero(surface.core)[0])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from panel_samples import failing, fitted, off_data
+from panel_samples import failing, fitted, prediction
 from PySide6.QtWidgets import QApplication
 
 from geofit.data.accuracy import Check, Conflict, ReadBack
@@ -56,10 +56,10 @@ def test_a_failed_check_differs_in_word_and_mark(panel):
 
 
 def test_a_conflict_leads_to_its_point(panel, qtbot):
-    panel.show_surface(changed(conflicts=(Conflict(3, 9, 0.4, "the outcrop gave way"),)))
+    panel.show_surface(changed(conflicts=(Conflict(3, 9, 0.4, "the outcrop was dropped"),)))
     row = groups(panel)["Conflicts"][0]
     assert str(fitted().points.describe(9)) in row.text(0)
-    assert "gave way" in row.text(4)
+    assert "dropped" in row.text(4)
     with qtbot.waitSignal(panel.point_chosen) as told:
         panel.tree.setCurrentItem(row)
     assert told.args == [Row.of(fitted().points, 9)]
@@ -76,7 +76,7 @@ def test_a_check_with_a_place_leads_there(panel, qtbot):
 def test_order_off_data_and_read_back_have_their_groups(panel):
     order = Order("T3-T2", "T2-T1", 100.0, 4.5, 6.0, 9.0, (0.0, 0.0), (1.0, 1.0), ())
     back = ReadBack("a.step", "0" * 64, 9, 0.03, 0.0, 0.1, (), True, 12, 12, 1e-7, False, ())
-    panel.show_surface(fitted(), off_data(len(fitted().points)), (order,), back)
+    panel.show_surface(fitted(), prediction(len(fitted().points)), (order,), back)
     found = groups(panel)
     assert found["Order of horizons"][0].text(1) == "passed"
     assert "4.50 to 9.00 m" in found["Order of horizons"][0].text(4)

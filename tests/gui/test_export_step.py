@@ -47,7 +47,7 @@ def test_two_horizons_in_one_file_of_millimetres_are_read_back_and_judged(qtbot,
     (file,) = dialog.files
     assert file.path == tmp_path / "dam.step"
     assert "SI_UNIT(.MILLI.,.METRE.)" in file.path.read_text("ascii").replace("\n", "")
-    assert "Every check of the file holds" in dialog.message.text()
+    assert "The file passes every check" in dialog.message.text()
     assert dialog.table.isVisible()
     assert set(column(dialog, "Horizon")) == {WITH_PERIPHERY, FAULT}
     assert "failed" not in column(dialog, "Result")
@@ -103,7 +103,7 @@ def test_a_check_that_fails_is_named_above_the_table(qtbot, tmp_path):
     bad = Check("read-back seam gap", False, 0.02, 1e-6, "m", "a gap")
     back = replace(file.read_back[FAULT], checks=(bad,))
     dialog._written([replace(file, read_back={FAULT: back})])
-    assert f"does not hold what it should for: {FAULT}" in dialog.message.text()
+    assert f"fails its checks for: {FAULT}" in dialog.message.text()
     assert column(dialog, "Result").count("failed") == 1
 
 

@@ -20,7 +20,7 @@ HOLES = 12
 
 
 def write_tables(folder):
-    """Write the tables of a site as they come: GB18030, a column that nobody can guess, a cell that is no number."""
+    """Write the tables of a site as they come: GB18030, a column that nobody can guess, a cell that is not a number."""
     points = sample_site().horizons["T2-T1"]
     folder.mkdir()
     with (folder / "contacts.csv").open("w", newline="", encoding="utf-8") as file:
@@ -90,7 +90,7 @@ def export(qtbot, dialog, path):
     dialog.target.setText(str(path))
     qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
-    assert "Every check of the file holds" in dialog.message.text()
+    assert "The file passes every check" in dialog.message.text()
 
 
 def report(qtbot, dialog, folder):
@@ -146,7 +146,7 @@ def test_the_way_of_a_first_user(app, qtbot, tmp_path, monkeypatch):
     assert str(surface.points.describe(worst)) in window.statusBar().currentMessage()
 
     # Pull the surface there by hand; only the neighbourhood moves; undo.
-    panels.adjust.pull_requested.emit(Row.of(surface.points, worst), 1.0)
+    panels.adjust.move_requested.emit(Row.of(surface.points, worst), 1.0)
     app.idle()
     pulled = document.surface("T2-T1")
     assert abs(pulled.accuracy.residuals[worst]) < 1e-9
@@ -179,7 +179,7 @@ def test_the_way_of_a_first_user(app, qtbot, tmp_path, monkeypatch):
     app.idle()
     assert not document.stale("T2-T1")
 
-    # How far the rock may lie off the data; the seams, one of them gone to; a section across.
+    # How far the rock may lie away from the data; the seams, one of them gone to; a section across.
     app.trigger("examine")
     app.idle()
     assert "upper:T2-T1" in panels.view.layers

@@ -46,7 +46,7 @@ def test_without_a_horizon_it_says_so(panel):
         FitSettings(
             epsilon=0.25, interior_tolerance=0.05, boundary_tolerance=0.002, across="linear", seam="position",
             core=CORNERS, frame="best-plane", smoothing=0.3, robust=True, max_iterations=7, max_control_points=900,
-            conflict_distance=0.2,
+            coincidence_distance=0.2,
         ),
         FitSettings(core="none", frame="sections", epsilon=1e-7),
     ],
@@ -78,7 +78,7 @@ def test_the_drawn_core_of_another_horizon_is_forgotten(panel):
         ("epsilon", "abc", "'abc'"),
         ("epsilon", "0,5", "0.5, not 0,5"),
         ("max_iterations", "2.5", "whole number"),
-        ("conflict_distance", "", "above 0"),
+        ("coincidence_distance", "", "above 0"),
         ("interior_tolerance", "nan", "finite"),
     ],
 )

@@ -260,7 +260,7 @@ def test_axes_that_look_exchanged_are_told_and_one_button_mends_them(qtbot, tmp_
     (tmp_path / "collars.csv").write_text(f"hole,x,y,z,depth\n{feet}", encoding="utf-8")
     wizard = opened(qtbot, tmp_path, tmp_path / "孔.csv", tmp_path / "collars.csv")
     assert [draft.exchanged for draft in wizard.drafts()] == [True, False]
-    assert "look exchanged" in wizard.page.message.text()
+    assert "appear to be exchanged" in wizard.page.message.text()
     press(qtbot, wizard, wizard.page.exchange)
     assert roles_shown(wizard)[1:3] == ["y", "x"]
     assert not wizard.page.exchange.isVisible()

@@ -200,7 +200,7 @@ def test_rows_not_used_are_listed(qtbot):
             "z",
             "abc",
             "error",
-            message("import.no-number", "This is no number"),
+            message("import.no-number", "This is not a number"),
             message("test.text", "Correct it."),
         ),
         ImportIssue("a.csv", 0, "", "", "note", message("test.text", "Taken as picks")),
@@ -210,7 +210,7 @@ def test_rows_not_used_are_listed(qtbot):
     model = dialog.table.model()
     assert dialog.balance.text() == "Rows read: 10 = 9 used + 1 listed here."
     row = [model.index(0, column).data() for column in range(7)]
-    assert row == ["not used", "b.csv", "9", "z", "abc", "This is no number", "Correct it."]
+    assert row == ["not used", "b.csv", "9", "z", "abc", "This is not a number", "Correct it."]
 
 
 def test_shortcuts_are_listed_by_menu(app):

@@ -1,4 +1,4 @@
-"""The must-haves of the desktop application, each driven in its real window; details stand in the other tests.
+"""The must-haves of the desktop application, each driven in its real window; details are in the other tests.
 
 1 library without Qt; 2 import wizard; 3 import error table; 4 project tree; 5 scene list; 6 fit panel; 7 worker;
 8 residual table linked with the view; 9 deviation map and badge; 10 undo; 11 project file; 12 recovery;
@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from panel_samples import SITE, fitted, off_data, sample_site
+from panel_samples import SITE, fitted, prediction, sample_site
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
@@ -32,9 +32,9 @@ def shown(app):
     app.desktop.session.begin(sample_site(), SITE)
     document = app.document
     document.select(NAME)
-    recipe = document.recipe(NAME)
-    document.put(recipe, fitted())
-    app.window.fitting.push(SetSurface(recipe))
+    provenance = document.provenance(NAME)
+    document.put(provenance, fitted())
+    app.window.fitting.push(SetSurface(provenance))
     app.idle()
     app.panels, app.view = app.window.panels, app.window.panels.view
     app.view.canvas.land()
@@ -363,8 +363,8 @@ def test_20_errors_say_what_to_do_and_the_dark_theme_reaches_the_view(shown, qtb
 
 def test_standard_deviation_and_bounds_come_with_the_examination(shown):
     document = shown.document
-    found = replace(off_data(3), left_out=())
-    document.put_offdata(document.state.recipes[NAME], found)
+    found = replace(prediction(3), left_out=())
+    document.put_prediction(document.state.provenances[NAME], found)
     shown.idle()
     layers = shown.view.layers
     assert "standard deviation" in layers[f"surface:{NAME}"].choices
@@ -373,5 +373,5 @@ def test_standard_deviation_and_bounds_come_with_the_examination(shown):
     if found.suggestions:
         assert not layers[f"suggestions:{NAME}"].visible
         hole = found.suggestions[0]
-        shown.panels.offdata.suggestion_chosen.emit(hole.x, hole.y, hole.z)
+        shown.panels.prediction.suggestion_chosen.emit(hole.x, hole.y, hole.z)
         assert layers[f"suggestions:{NAME}"].visible

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from panel_samples import SITE, fitted, off_data, sample_site
+from panel_samples import SITE, fitted, prediction, sample_site
 from PySide6.QtCore import Qt
 
 from geofit.data.accuracy import Check
@@ -23,15 +23,15 @@ FAILED = Check("trend", False, 9.0, 1.0, "m", message("test.text", "it runs away
 
 @pytest.fixture
 def shown(app):
-    """The sample site with one surface of which a check fails, examined off its data."""
+    """The sample site with one surface of which a check fails, examined away from its data."""
     document = app.document
     # The holes of the samples of panels have other names than their interval tables.
     app.desktop.session.begin(replace(sample_site(), holes=read_site(SITE).holes), SITE)
     document.select(NAME)
-    recipe, surface = document.recipe(NAME), fitted()
+    provenance, surface = document.provenance(NAME), fitted()
     accuracy = replace(surface.accuracy, checks=(*surface.accuracy.checks, FAILED))
-    document.put(recipe, surface.with_(accuracy=accuracy))
-    app.window.fitting.push(SetSurface(recipe))
+    document.put(provenance, surface.with_(accuracy=accuracy))
+    app.window.fitting.push(SetSurface(provenance))
     app.idle()
     app.panels, app.view = app.window.panels, app.window.panels.view
     return app
@@ -78,9 +78,9 @@ def test_a_failed_check_is_amber_everywhere_and_in_the_same_words(shown, qtbot, 
 
 def test_what_is_known_away_from_the_data_reaches_badge_and_tree(shown):
     document = shown.document
-    found = off_data(3)
+    found = prediction(3)
     worst = replace(found.left_out[0], rms=10 * 0.5)
-    document.put_offdata(document.state.recipes[NAME], replace(found, left_out=(worst, *found.left_out[1:])))
+    document.put_prediction(document.state.provenances[NAME], replace(found, left_out=(worst, *found.left_out[1:])))
     shown.idle()
     assert "10.0 ε" in str(shown.panels.verdict.text)
     assert shown.panels.verdict.lamps[2][0].name == "failed"

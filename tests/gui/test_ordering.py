@@ -43,14 +43,14 @@ def test_horizons_are_pushed_apart_and_back_as_one_step_that_can_be_made_again(c
     document, stack = crossing.document, crossing.window.session.stack
     before, steps = dict(document.surfaces()), stack.count()
     assert crossed(crossing) > 0
-    crossing.window.ordering.repair(0.05)
+    crossing.window.ordering.separate(0.05)
     crossing.idle()
     assert crossed(crossing) == 0
     assert stack.count() == steps + 1
-    assert stack.undoText().startswith("Push apart")
+    assert stack.undoText().startswith("Separate")
     name = next(name for name in before if document.surface(name) is not before[name])
-    recipe, moved = document.state.recipes[name], document.surface(name)
-    again = make(recipe, document.given_for(recipe))
+    provenance, moved = document.state.provenances[name], document.surface(name)
+    again = make(provenance, document.given_for(provenance))
     np.testing.assert_allclose(again.patches[0].control, moved.patches[0].control, atol=1e-12)
     assert not document.stale(name)
     stack.undo()

@@ -18,7 +18,7 @@ from geofit.data.settings import FitSettings
 from geofit.geometry.frame import map_frame
 from geofit.gui.panels.core_box import CoreBox
 from geofit.gui.panels.plan import PlanPanel
-from geofit.gui.panels.plan_ink import draw_labels, round_length
+from geofit.gui.panels.plan_painter import draw_labels, round_length
 from geofit.gui.panels.plan_view import PERIPHERY
 from geofit.report.style import CORE
 
@@ -173,7 +173,7 @@ def test_a_fault_over_its_plane_has_no_rectangle_to_drag(panel):
     panel.show_surface(sample_site(), FAULT, fitted(FAULT), fitted(FAULT).settings)
     assert panel.view.locked
     assert not panel.buttons["draw"].isEnabled()
-    assert "laid over the map" in panel.reason.text()
+    assert "fitted over the map" in panel.reason.text()
 
 
 def test_a_cloud_is_painted_in_both_colours(panel):

@@ -18,9 +18,9 @@ def shown(app, qtbot):
     """The window with a surface, active."""
     app.desktop.session.begin(sample_site(), SITE)
     app.document.select("T3-T2")
-    recipe = app.document.recipe("T3-T2")
-    app.document.put(recipe, fitted())
-    app.window.fitting.push(SetSurface(recipe))
+    provenance = app.document.provenance("T3-T2")
+    app.document.put(provenance, fitted())
+    app.window.fitting.push(SetSurface(provenance))
     app.idle()
     app.window.activateWindow()
     qtbot.waitUntil(app.window.isActiveWindow)

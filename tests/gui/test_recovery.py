@@ -15,7 +15,7 @@ import pytest
 
 from geofit.data.settings import FitSettings
 from geofit.project.building import make
-from geofit.project.commands import PullToPoint, RenameSite, SetSettings, SetSurface
+from geofit.project.commands import MoveToPoint, RenameSite, SetSettings, SetSurface
 from geofit.project.document import Document
 from geofit.project.journal import FORMAT, Journal, unfinished
 
@@ -151,10 +151,10 @@ def test_surfaces_come_back_to_the_last_bit(tmp_path):
         journal.done(command)
 
     do(SetSettings("W", FitSettings(core="none", epsilon=0.05)))
-    do(SetSurface(document.recipe("W")))
-    do(PullToPoint("W", 3, 0.5))
-    recipe = document.state.recipes["W"]
-    document.put(recipe, make(recipe, document.given_for(recipe)))
+    do(SetSurface(document.provenance("W")))
+    do(MoveToPoint("W", 3, 0.5))
+    provenance = document.state.provenances["W"]
+    document.put(provenance, make(provenance, document.given_for(provenance)))
     journal._stream.close()  # as the end of the process does
 
     (session,) = unfinished(tmp_path)

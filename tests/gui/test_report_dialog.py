@@ -53,10 +53,10 @@ def test_the_report_in_chinese_with_its_date_and_what_was_examined(qtbot, tmp_pa
     assert "2025-03-09" in html
     data = json.loads((tmp_path / "out" / "report.json").read_text("utf-8"))
     assert data["horizons"][0]["sigma"] == pytest.approx(fitted(FAULT).accuracy.sigma)
-    assert data["horizons"][0]["off_data"] is not None
+    assert data["horizons"][0]["prediction"] is not None
     assert dialog.view.isVisible()
     assert [one.scheme for one in examined[FAULT].left_out] == [
-        one["scheme"] for one in data["horizons"][0]["off_data"]["left_out"]
+        one["scheme"] for one in data["horizons"][0]["prediction"]["left_out"]
     ]
     assert not dialog.examine.isVisible(), "it is known now"
 

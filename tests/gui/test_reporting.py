@@ -84,7 +84,7 @@ def test_the_window_s_report_says_what_the_command_line_s_says(app, qtbot, site_
         assert [one["horizon"] for one in data["horizons"]] == list(NAMES)
         for one in data["horizons"]:
             assert one["storage"]["tin_points"] > 0
-            assert one["off_data"] is not None
+            assert one["prediction"] is not None
             assert one["read_back"]["file"] == f"{prefix}{one['horizon']}.step"
             # The header of a STEP file has the file's name.
             for key in ("file", "sha256", "bytes"):
@@ -93,9 +93,9 @@ def test_the_window_s_report_says_what_the_command_line_s_says(app, qtbot, site_
 
     # What the report found out belongs to the document, and its panel shows it.
     for name in NAMES:
-        assert app.document.offdata(name) is not None
+        assert app.document.prediction(name) is not None
     app.document.select("lower")
     app.idle()
-    panel = app.window.panels.offdata
-    assert panel.left_out.rows.total == len(app.document.offdata("lower").left_out)
+    panel = app.window.panels.prediction
+    assert panel.left_out.rows.total == len(app.document.prediction("lower").left_out)
     assert panel.left_out.rows.total > 0

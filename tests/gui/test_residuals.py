@@ -80,7 +80,7 @@ def test_the_filters_keep_what_they_name(panel, qtbot):
     surface = cloud(5_000)
     panel.show_surface(surface)
     panel.only_over.setChecked(True)
-    panel.only_loose.setChecked(True)
+    panel.only_approximated.setChecked(True)
     wanted = (np.abs(surface.accuracy.residuals) > surface.settings.interior_tolerance) & ~surface.core
     assert panel.table.rows.rowCount() == wanted.sum()
     assert f"{wanted.sum()} of 5000" in panel.count.text()
@@ -115,7 +115,7 @@ def test_copy_gives_tab_separated_text_of_the_selected_rows(panel):
 
 def test_export_writes_every_row_that_is_shown(panel, tmp_path):
     panel.show_surface(fitted())
-    panel.only_loose.setChecked(True)
+    panel.only_approximated.setChecked(True)
     panel.table.export(tmp_path / "残差.csv")
     text = (tmp_path / "残差.csv").read_text(encoding="utf-8-sig")
     rows = list(csv.DictReader(io.StringIO(text)))
@@ -133,7 +133,7 @@ def test_the_menu_excludes_and_pulls(panel, qtbot):
     assert len(words) == 4
     with qtbot.waitSignal(panel.exclude_requested) as excluded:
         menu.actions()[0].trigger()
-    with qtbot.waitSignal(panel.pull_requested) as pulled:
+    with qtbot.waitSignal(panel.move_requested) as pulled:
         menu.actions()[1].trigger()
     row = Row.of(fitted().points, 17)
     assert excluded.args == [(row,)]

@@ -44,7 +44,7 @@ def here(monkeypatch):
     """Run tasks in a thread: a process of its own takes seconds to start."""
     from geofit.gui.dialogs import task_dialog
 
-    monkeypatch.setattr(task_dialog, "run_apart", task_dialog.run)
+    monkeypatch.setattr(task_dialog, "run_in_process", task_dialog.run)
 
 
 def test_labels_are_never_guessed_and_the_voxel_is_asked_for(qtbot, dialog, tmp_path):

@@ -10,7 +10,7 @@ from panel_samples import fitted
 from geofit.data.accuracy import Seam
 from geofit.data.settings import FitSettings
 from geofit.gui.panels.seams import SeamTable, seam_holds
-from geofit.gui.words import speak, spoken
+from geofit.gui.translate import speak, translated
 
 
 @pytest.fixture
@@ -59,6 +59,6 @@ def test_patches_are_named_in_the_language_of_the_windows(panel):
     speak("zh_CN")
     try:
         panel.show_surface(fitted())
-        assert panel.table.rows.columns[0].text(0) == spoken("core") != "core"
+        assert panel.table.rows.columns[0].text(0) == translated("core") != "core"
     finally:
         speak("en")

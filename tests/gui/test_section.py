@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from panel_samples import FAULT, WITH_PERIPHERY, fitted, off_data, sample_site
+from panel_samples import FAULT, WITH_PERIPHERY, fitted, prediction, sample_site
 from PySide6.QtCore import QPoint, Qt
 
 from geofit.data.prediction import Uncertainty
 from geofit.gui import worker
 from geofit.gui.panels.curtain import Curtain, extent
 from geofit.gui.panels.section import SectionPanel
-from geofit.gui.panels.section_ink import near_points
+from geofit.gui.panels.section_painter import near_points
 from geofit.gui.panels.section_scale import Extent, automatic, window
 
 #: Triangles of the surfaces, made once for all tests.
@@ -130,7 +130,7 @@ def test_the_band_is_ninety_per_cent_wide(panel, qtbot):
     at = np.abs(vertices[:, 0] - 400) < 40
     z = np.interp(vertices[at, 0], *np.array(lines(panel)[WITH_PERIPHERY].get_data()))
     assert np.abs(np.abs(vertices[at, 1] - z) - 2 * 1.6449).max() < 0.05
-    assert off_data(3).uncertainty.frame == "map"
+    assert prediction(3).uncertainty.frame == "map"
 
 
 def test_exaggeration_is_what_is_drawn(panel, qtbot):

@@ -16,9 +16,9 @@ NAME = "T3-T2"
 @pytest.fixture
 def shown(app):
     app.desktop.session.begin(sample_site(), SITE)
-    recipe = app.document.recipe(NAME)
-    app.document.put(recipe, fitted())
-    app.window.fitting.push(SetSurface(recipe))
+    provenance = app.document.provenance(NAME)
+    app.document.put(provenance, fitted())
+    app.window.fitting.push(SetSurface(provenance))
     app.idle()
     return app
 

@@ -14,11 +14,11 @@ def test_a_click_goes_back_to_a_step_and_forward_again(app, qtbot):
     app.desktop.session.begin(sample_site(), SITE)
     document, fitting = app.document, app.window.fitting
     states = [document.state]
-    recipe = document.recipe(NAME)
-    document.put(recipe, fitted())
+    provenance = document.provenance(NAME)
+    document.put(provenance, fitted())
     points = document.site.horizons[NAME]
     for do in (
-        lambda: fitting.push(SetSurface(recipe)),
+        lambda: fitting.push(SetSurface(provenance)),
         lambda: fitting.exclude(NAME, [Row.of(points, 3), Row.of(points, 9)]),
         lambda: fitting.set_core(NAME, "none"),
     ):

@@ -27,7 +27,11 @@ class Asking(TaskDialog):
         layout.addLayout(self.foot())
         self.go.clicked.connect(
             lambda: self.begin(
-                task, 3, apart=False, on_done=lambda value: self.say(f"made {value}", "passed"), on_stopped=self.stopped
+                task,
+                3,
+                in_process=False,
+                on_done=lambda value: self.say(f"made {value}", "passed"),
+                on_stopped=self.stopped,
             )
         )
 

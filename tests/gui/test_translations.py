@@ -14,7 +14,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.gui.language import apply_language
 from geofit.gui.panels.log import LogPanel
-from geofit.gui.words import shown_error, spoken
+from geofit.gui.translate import shown_error, translated
 from geofit.gui.worker import run
 from geofit.project.provenance import DocumentError
 
@@ -84,7 +84,7 @@ def test_the_log_speaks_chinese_and_leaves_other_libraries_alone(qtbot, chinese)
         log.warning(
             message(
                 "log.no-journal",
-                "There is no journal, so that a crash would lose unsaved work: {error}",
+                "No journal can be written, so a crash would lose unsaved work: {error}",
                 error=shown_error(full),
             )
         )
@@ -105,7 +105,7 @@ def test_a_stage_with_a_name_in_it_comes_through_a_task_as_a_sentence(qtbot, chi
     heard = []
     parent = QWidget()
     qtbot.addWidget(parent)
-    task = run(parent, _with_a_stage, on_progress=lambda stage, fraction: heard.append(spoken(stage)))
+    task = run(parent, _with_a_stage, on_progress=lambda stage, fraction: heard.append(translated(stage)))
     with qtbot.waitSignal(task.ended):
         pass
     assert heard == ["T1：拟合"]

@@ -232,7 +232,7 @@ def test_a_net_is_fainter_from_afar(shown, qtbot):
     settle(shown, qtbot)
     dots = shown._stage._items["control:W"].parts[1].actor.GetProperty()
     near = dots.GetOpacity()
-    shown.canvas.look(replace(shown.canvas.eye, distance=60 * shown.canvas.eye.distance))
+    shown.canvas.look(replace(shown.canvas.viewpoint, distance=60 * shown.canvas.viewpoint.distance))
     assert 0 < dots.GetOpacity() < 0.5 * near
 
 
@@ -259,14 +259,14 @@ def test_clicking_beside_everything_picks_nothing(shown, qtbot):
 
 
 def test_dragging_turns_and_does_not_pick(shown, qtbot):
-    before = shown.canvas.eye
+    before = shown.canvas.viewpoint
     with qtbot.assertNotEmitted(shown.point_picked, wait=50):
         start = QPoint(*drawn_at(shown, shown.contents.points["W"].xyz[1]).round().astype(int).tolist())
         QTest.mousePress(shown.canvas, Qt.MouseButton.LeftButton, pos=start)
         QTest.mouseMove(shown.canvas, start + QPoint(60, 20))
         assert not shown.canvas.full
         QTest.mouseRelease(shown.canvas, Qt.MouseButton.LeftButton, pos=start + QPoint(60, 20))
-    assert shown.canvas.eye.azimuth != before.azimuth
+    assert shown.canvas.viewpoint.azimuth != before.azimuth
     qtbot.waitUntil(lambda: shown.canvas.full, timeout=3000)
 
 
@@ -286,11 +286,11 @@ def test_measuring_gives_true_metres_under_exaggeration(shown, qtbot):
 
 
 def test_a_chosen_point_comes_to_the_middle_seen_from_the_same_side(shown, qtbot):
-    before = shown.canvas.eye
+    before = shown.canvas.viewpoint
     shown.focus_point("W", Row.of(shown.contents.points["W"], 2))
     settle(shown, qtbot)
     np.testing.assert_allclose(drawn_at(shown, shown.contents.points["W"].xyz[2]), (320, 240), atol=0.5)
-    assert (shown.canvas.eye.azimuth, shown.canvas.eye.height) == (before.azimuth, before.height)
+    assert (shown.canvas.viewpoint.azimuth, shown.canvas.viewpoint.height) == (before.azimuth, before.height)
     shown.focus_hole("PD1")
     settle(shown, qtbot)
     np.testing.assert_allclose(drawn_at(shown, at(100.0, -150.0, 20.0)), (320, 240), atol=0.5)
@@ -302,8 +302,8 @@ def test_the_section_plane_is_moved_by_its_handles(shown, qtbot):
     line = ORIGIN[:2] + np.array([[-100.0, -80.0], [120.0, 60.0]])
     shown.set_section(line, 20.0)
     settle(shown, qtbot)
-    grip = shown._section.grips(shown._stage.box())[0]
-    start = QPoint(*drawn_at(shown, grip.xyz).round().astype(int).tolist())
+    handle = shown._section.handles(shown._stage.box())[0]
+    start = QPoint(*drawn_at(shown, handle.xyz).round().astype(int).tolist())
     QTest.mousePress(shown.canvas, Qt.MouseButton.LeftButton, pos=start)
     QTest.mouseMove(shown.canvas, start + QPoint(40, 0))
     with qtbot.waitSignal(shown.section_changed, timeout=2000) as told:
@@ -313,7 +313,7 @@ def test_the_section_plane_is_moved_by_its_handles(shown, qtbot):
     assert moved[0, 0] > line[0, 0] + 10
     assert moved[0, 1] == pytest.approx(line[0, 1], abs=2.0)
     shown.set_section(None)
-    assert not shown._grips()
+    assert not shown._handles()
 
 
 def test_the_clip_box_hides_what_lies_outside_from_eye_and_pointer(shown, qtbot):
@@ -324,7 +324,7 @@ def test_the_clip_box_hides_what_lies_outside_from_eye_and_pointer(shown, qtbot)
     place = at(-100.0, 30.0, 20.0)
     column, row = drawn_at(shown, place)
     assert picture(shown)[round(row), round(column)].min() < 235
-    shown._clip.grips()[0].moved(ORIGIN - (20.0, 0.0, 0.0))
+    shown._clip.handles()[0].moved(ORIGIN - (20.0, 0.0, 0.0))
     settle(shown, qtbot)
     assert shown.pointer.place_at(column, row) is None
     assert picture(shown)[round(row), round(column)].min() > 235
@@ -420,7 +420,7 @@ def test_while_moving_a_large_cloud_is_thinned_and_comes_back(view, qtbot):
     counts = {p.detail: p.actor.GetMapper().GetInput().GetNumberOfPoints() for p in item.parts}
     assert counts["full"] == 60_000
     assert counts["coarse"] <= 10_001
-    view.canvas.look(view.canvas.eye.turned(5, 0), moving=True)
+    view.canvas.look(view.canvas.viewpoint.turned(5, 0), moving=True)
     assert {p.detail for p in item.parts if p.actor.GetVisibility()} == {"coarse"}
     qtbot.waitUntil(lambda: view.canvas.full, timeout=3000)
     assert {p.detail for p in item.parts if p.actor.GetVisibility()} == {"full"}

@@ -1,4 +1,4 @@
-"""The list of layers, the colours, the eye and the projector: plain data, no window."""
+"""The list of layers, the colours, the viewpoint and the projector: plain data, no window."""
 
 from dataclasses import replace
 
@@ -8,7 +8,7 @@ import pytest
 from geofit import FitSettings, PointSet
 from geofit.data.accuracy import Seam
 from geofit.gui.view3d.axes import grouped, marks, nice, ticks
-from geofit.gui.view3d.camera import VIEWS, Eye, between, framed
+from geofit.gui.view3d.camera import VIEWS, Viewpoint, between, framed
 from geofit.gui.view3d.colouring import legible, points_by, ramp, rgb, seam_colours
 from geofit.gui.view3d.layers import Layer, Layers
 from geofit.gui.view3d.overlay import merged
@@ -128,42 +128,42 @@ def test_kinds_of_all_horizons_stand_in_one_legend():
 
 @pytest.mark.parametrize("view", VIEWS)
 def test_every_view_has_right_handed_axes(view):
-    axes = Eye(np.zeros(3), 0.0, 0.0, 10.0).seen_from(view).axes
+    axes = Viewpoint(np.zeros(3), 0.0, 0.0, 10.0).seen_from(view).axes
     np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
     np.testing.assert_allclose(np.cross(axes[0], axes[1]), axes[2], atol=1e-12)
 
 
 def test_from_above_north_is_up_and_east_to_the_right():
-    axes = Eye(np.zeros(3), 0.0, 0.0, 10.0).seen_from("top").axes
+    axes = Viewpoint(np.zeros(3), 0.0, 0.0, 10.0).seen_from("top").axes
     np.testing.assert_allclose(axes, np.eye(3), atol=1e-12)
 
 
 def test_north_looks_from_the_north():
-    axes = Eye(np.zeros(3), 0.0, 0.0, 10.0).seen_from("north").axes
+    axes = Viewpoint(np.zeros(3), 0.0, 0.0, 10.0).seen_from("north").axes
     np.testing.assert_allclose(axes, [[-1, 0, 0], [0, 0, 1], [0, 1, 0]], atol=1e-12)
 
 
 def test_coming_nearer_keeps_the_place_under_the_pointer():
-    eye = Eye(np.array([1.0, 2.0, 3.0]), 200.0, 90.0, 100.0)
-    place = eye.shifted(10.0, -4.0).centre
-    near = eye.nearer(2.0, 10.0, -4.0)
+    viewpoint = Viewpoint(np.array([1.0, 2.0, 3.0]), 200.0, 90.0, 100.0)
+    place = viewpoint.shifted(10.0, -4.0).centre
+    near = viewpoint.nearer(2.0, 10.0, -4.0)
     seen = (place - near.centre) @ near.axes.T / near.half
-    np.testing.assert_allclose(seen[:2], [10 / eye.half, -4 / eye.half], atol=1e-12)
+    np.testing.assert_allclose(seen[:2], [10 / viewpoint.half, -4 / viewpoint.half], atol=1e-12)
 
 
 def test_a_flight_turns_the_shorter_way_and_arrives():
-    start, end = Eye(np.zeros(3), 350.0, 10.0, 100.0), Eye(np.ones(3), 20.0, 40.0, 25.0)
+    start, end = Viewpoint(np.zeros(3), 350.0, 10.0, 100.0), Viewpoint(np.ones(3), 20.0, 40.0, 25.0)
     assert between(start, end, 0.5).azimuth == pytest.approx(5.0)
     there = between(start, end, 1.0)
     assert (there.azimuth, there.height, there.distance) == pytest.approx((20.0, 40.0, 25.0))
 
 
-def _projector(eye: Eye, stretch: float = 1.0, width: float = 800, height: float = 600) -> Projector:
+def _projector(viewpoint: Viewpoint, stretch: float = 1.0, width: float = 800, height: float = 600) -> Projector:
     from vtkmodules.vtkRenderingCore import vtkCamera
 
     camera = vtkCamera()
-    eye.put(camera)
-    camera.SetClippingRange(0.1 * eye.distance, 10 * eye.distance)
+    viewpoint.put(camera)
+    camera.SetClippingRange(0.1 * viewpoint.distance, 10 * viewpoint.distance)
     matrix = camera.GetCompositeProjectionTransformMatrix(width / height, -1, 1)
     values = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(4)])
     return Projector(values, width, height, ORIGIN, stretch)
@@ -172,7 +172,7 @@ def _projector(eye: Eye, stretch: float = 1.0, width: float = 800, height: float
 @pytest.mark.parametrize("parallel", [False, True])
 @pytest.mark.parametrize("stretch", [1.0, 3.0])
 def test_a_ray_passes_through_what_is_drawn_there(parallel, stretch):
-    view = _projector(Eye(np.array([5.0, -3.0, 10.0]), 212.0, 32.0, 900.0, parallel), stretch)
+    view = _projector(Viewpoint(np.array([5.0, -3.0, 10.0]), 212.0, 32.0, 900.0, parallel), stretch)
     rng = np.random.default_rng(2)
     for place in ORIGIN + rng.uniform(-100, 100, (20, 3)):
         column, row, depth = view.screen(place)[0]
@@ -187,9 +187,11 @@ def test_what_is_framed_is_in_the_picture():
     box = np.array([[-400.0, -200.0, -30.0], [300.0, 500.0, 90.0]])
     for name in VIEWS:
         for parallel in (False, True):
-            eye = framed(replace(Eye(np.zeros(3), 0.0, 0.0, 1.0), parallel=parallel).seen_from(name), box, 800 / 600)
+            viewpoint = framed(
+                replace(Viewpoint(np.zeros(3), 0.0, 0.0, 1.0), parallel=parallel).seen_from(name), box, 800 / 600
+            )
             corners = np.array([[x, y, z] for x in box[:, 0] for y in box[:, 1] for z in box[:, 2]]) + ORIGIN
-            seen = _projector(eye).screen(corners)
+            seen = _projector(viewpoint).screen(corners)
             assert seen[:, 0].min() > 0
             assert seen[:, 0].max() < 800
             assert seen[:, 1].min() > 0
@@ -198,7 +200,7 @@ def test_what_is_framed_is_in_the_picture():
 
 def test_axes_tell_true_coordinates_at_their_places():
     box = np.array([ORIGIN - (500, 400, 100), at(500, 400, 100)])
-    view = _projector(framed(Eye(np.zeros(3), 212.0, 32.0, 1.0), (box - ORIGIN) * (1, 1, 3), 4 / 3), stretch=3.0)
+    view = _projector(framed(Viewpoint(np.zeros(3), 212.0, 32.0, 1.0), (box - ORIGIN) * (1, 1, 3), 4 / 3), stretch=3.0)
     found = marks(box, 200.0, view)
     assert {mark.text[0] for mark in found} >= {"E", "N"}
     heights = [mark for mark in found if str(mark.text).endswith(" m")]
@@ -234,10 +236,10 @@ def test_a_measure_gives_true_figures():
 def test_the_clip_box_cannot_be_turned_inside_out():
     clip = ClipBox(lambda: None)
     clip.open(np.array([[0.0, 0.0, 0.0], [100.0, 100.0, 10.0]]))
-    west = next(grip for grip in clip.grips() if grip.xyz[0] < 0)
+    west = next(handle for handle in clip.handles() if handle.xyz[0] < 0)
     west.moved(np.array([500.0, 0.0, 0.0]))
     assert clip.box[0, 0] < clip.box[1, 0]
-    clip.grips()[0].moved(np.array([-500.0, 0.0, 0.0]))
+    clip.handles()[0].moved(np.array([-500.0, 0.0, 0.0]))
     assert clip.box[0, 0] == pytest.approx(-1.0)
 
 

@@ -100,7 +100,7 @@ def test_failures_arrive_whole(owner, qtbot, caplog):
 
 def test_a_process_of_its_own_gives_its_result(owner, qtbot):
     results, errors = [], []
-    task = worker.run_apart(owner, process_number, on_done=results.append, on_failed=errors.append)
+    task = worker.run_in_process(owner, process_number, on_done=results.append, on_failed=errors.append)
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
     assert not errors
@@ -109,7 +109,7 @@ def test_a_process_of_its_own_gives_its_result(owner, qtbot):
 
 def test_cancel_ends_a_process_that_tells_nothing(owner, qtbot):
     stopped = []
-    task = worker.run_apart(owner, stuck, on_cancelled=lambda: stopped.append(1))
+    task = worker.run_in_process(owner, stuck, on_cancelled=lambda: stopped.append(1))
     with qtbot.waitSignal(task.progressed):
         pass
     with qtbot.waitSignal(task.ended, timeout=20_000):
@@ -119,7 +119,7 @@ def test_cancel_ends_a_process_that_tells_nothing(owner, qtbot):
 
 def test_a_process_that_dies_says_so(owner, qtbot):
     errors = []
-    task = worker.run_apart(owner, dying, on_failed=errors.append)
+    task = worker.run_in_process(owner, dying, on_failed=errors.append)
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
     assert "ended by itself (exit code 3)" in str(errors[0])
@@ -127,7 +127,7 @@ def test_a_process_that_dies_says_so(owner, qtbot):
 
 def test_a_failure_keeps_its_kind_across_the_process(owner, qtbot):
     errors = []
-    task = worker.run_apart(owner, failing, on_failed=errors.append)
+    task = worker.run_in_process(owner, failing, on_failed=errors.append)
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
     assert isinstance(errors[0], FitError)
@@ -137,7 +137,7 @@ def pid_of_the_only_helper(owner, qtbot):
     """Have one idle process, and return its number."""
     worker.finish_all(10)
     results = []
-    task = worker.run_apart(owner, process_number, on_done=results.append)
+    task = worker.run_in_process(owner, process_number, on_done=results.append)
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
     return results[0]
@@ -149,7 +149,7 @@ def test_a_process_that_died_while_idle_is_replaced(owner, qtbot):
     os.kill(number, signal.SIGKILL)
     time.sleep(0.2)
     results, errors = [], []
-    task = worker.run_apart(owner, process_number, on_done=results.append, on_failed=errors.append)
+    task = worker.run_in_process(owner, process_number, on_done=results.append, on_failed=errors.append)
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
     assert not errors
@@ -165,7 +165,7 @@ def test_a_process_that_dies_as_its_order_comes_is_replaced(owner, qtbot, monkey
     os.kill(number, signal.SIGKILL)
     time.sleep(wait)
     results, errors = [], []
-    task = worker.run_apart(owner, process_number, on_done=results.append, on_failed=errors.append)
+    task = worker.run_in_process(owner, process_number, on_done=results.append, on_failed=errors.append)
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
     assert not errors
@@ -179,7 +179,7 @@ def test_cancel_ends_a_stopped_process(owner, qtbot, size):
     number = pid_of_the_only_helper(owner, qtbot)
     os.kill(number, signal.SIGSTOP)
     stopped = []
-    task = worker.run_apart(owner, double, "x" * size, on_cancelled=lambda: stopped.append(1))
+    task = worker.run_in_process(owner, double, "x" * size, on_cancelled=lambda: stopped.append(1))
     qtbot.wait(200)
     try:
         with qtbot.waitSignal(task.ended, timeout=20_000):

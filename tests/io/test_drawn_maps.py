@@ -75,14 +75,14 @@ def test_map_traces_are_draped_where_they_have_no_elevation(folder):
     assert counts["plan.dxf"] == (28, 8, 20)
     reasons = [issue.reason for issue in read.issues if issue.file == "plan.dxf"]
     assert any("off the ground's grid" in str(reason) for reason in reasons)
-    assert any("Layer 'FRAME' is no horizon" in str(reason) for reason in reasons)
+    assert any("Layer 'FRAME' is not a horizon" in str(reason) for reason in reasons)
     assert any("draped on the ground: 7" in str(reason) for reason in reasons)
 
 
 def test_a_flat_map_without_a_ground_says_so(folder):
     plan(folder)
     (folder / "site.toml").write_text(HORIZONS + '[traces]\nfile = "plan.dxf"\n')
-    with pytest.raises(InputError, match="no ground to drape the points without an elevation on \\(7\\)"):
+    with pytest.raises(InputError, match="no ground on which to place the points without an elevation on \\(7\\)"):
         read_site(folder / "site.toml")
 
 
@@ -260,7 +260,7 @@ def test_of_two_grids_the_one_that_is_named_so_is_the_ground(folder):
 
 
 def test_a_grid_of_no_horizon_is_an_error(folder):
-    with pytest.raises(InputError, match="'ground', which is no horizon"):
+    with pytest.raises(InputError, match="'ground', which is not a horizon"):
         site(folder, HORIZONS + '[[grids]]\nfile = "ground.asc"\n')
 
 

@@ -235,7 +235,7 @@ def test_degrees_are_refused_or_projected(tmp_path, write):
     for path in (tmp_path / "p.gpkg", table):
         found = load_picks(Source(path=path, target="EPSG:32650"), HorizonNames(), Journal())
         np.testing.assert_allclose(found["A"].xyz, [[east, north, 30]], rtol=0, atol=1e-6)
-    with pytest.raises(InputError, match="no projected system in metres"):
+    with pytest.raises(InputError, match="not a projected system in metres"):
         load_picks(Source(path=table, target="EPSG:4979"), HorizonNames(), Journal())
 
 

@@ -59,7 +59,7 @@ def test_each_column_is_a_horizon_of_its_header(read):
 def test_empty_cells_are_counted_and_a_row_of_them_is_listed(read):
     site = read(WELLS)
     assert balance(site) == (4, 3)
-    (note,) = about(site, "which make no pick")
+    (note,) = about(site, "which give no pick")
     assert note.severity == "note"
     assert str(note.reason).endswith(": T2 base 1, T3 1")
     assert translate(note.reason, ZH).endswith("：T2 base 1, T3 1")
@@ -89,7 +89,7 @@ def test_depths_count_from_the_collar(read):
 def test_a_cell_that_is_no_number_makes_no_pick_but_its_row_is_used(read):
     site = read(WELLS.replace("30.5", "3o.5"))
     assert elevations(site) == TRUTH | {"T2 base": {4: 32}}
-    (bad,) = about(site, "no finite number")
+    (bad,) = about(site, "not a finite number")
     assert (bad.row, bad.column, bad.value, bad.severity) == (2, "T2 base", "3o.5", "warning")
     assert balance(site) == (4, 3)
 
@@ -109,7 +109,7 @@ def test_feet_of_one_column_are_converted(read):
 def test_only_horizons_of_the_site_are_read(read):
     site = read(WELLS, rest='[[horizon]]\nname = "t1"\n')
     assert elevations(site) == {"t1": TRUTH["T1"]}
-    assert {issue.column for issue in about(site, "is no horizon of the site")} == {"T2 base", "T3"}
+    assert {issue.column for issue in about(site, "is not a horizon of the site")} == {"T2 base", "T3"}
 
 
 @pytest.mark.parametrize(
@@ -127,7 +127,7 @@ def test_what_is_missing_is_said(read, keys, words):
 
 
 def test_a_table_without_any_value_is_refused(read):
-    with pytest.raises(InputError, match="None of the rows can be used; row 2: The row holds no horizon's value"):
+    with pytest.raises(InputError, match="None of the rows can be used; row 2: The row contains no horizon's value"):
         read("x,y,T1\n1,2,\n3,4,\n", 'horizons = ["T1"]')
 
 

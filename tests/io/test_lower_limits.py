@@ -100,8 +100,8 @@ def test_a_step_back_takes_both_rows_and_what_hangs_on_them_out(write):
 @pytest.mark.parametrize(
     ("fault", "rows", "words"),
     [
-        (("A", 10, "T2"), [3], "no length"),  # the depth of the row above once more
-        (("A", "2x5", "T2"), [3, 4], "no finite number"),
+        (("A", 10, "T2"), [3], "zero length"),  # the depth of the row above once more
+        (("A", "2x5", "T2"), [3, 4], "not a finite number"),
         (("A", "", "T2"), [3, 4], "is empty"),
         (("A", 25.5, ""), [3], "The code is empty"),  # it still ends T1
         (("Z", 25.5, "T2"), [3, 4], "not in the collar table"),  # it may be one of A

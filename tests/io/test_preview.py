@@ -52,7 +52,7 @@ def test_values_speak_against_a_name(write):
     source = Source(path=write("hole,depth,azimuth,dip\nB1,5,SE,200\nB2,6,NW,210\n"))
     guesses = guess_roles(read_any_table(source, Journal()), SURVEY, source)
     assert guesses["azimuth"].confidence < 0.3
-    assert "no numbers" in str(guesses["azimuth"].reason)
+    assert "not numbers" in str(guesses["azimuth"].reason)
     assert guesses["dip"].confidence < 0.5 < guesses["depth"].confidence
     assert "not between -90 and 90" in str(guesses["dip"].reason)
     assert preview_file(source)[0].kind == ""
@@ -92,7 +92,7 @@ def test_overruled_saved_and_used_again(write, tmp_path):
         ("[[table]]\nfile = 'a'\n", "no 'kind'"),
         ("[[table]]\nfile = 'a'\nkind = 'collar'\nseparator = ';'\n", "no key 'separator'"),
         ("[[table]]\nfile = 'a'\nkind = 'collar'\ncolumns = { x = 1.5 }\n", "a table of headers or numbers"),
-        ("[[table\n", "no TOML"),
+        ("[[table\n", "not valid TOML"),
         ("[tabel]\n", "not 'tabel'"),
     ],
 )

@@ -1,4 +1,4 @@
-"""The project file: what is saved comes back; old versions open, newer ones say so; a broken save breaks nothing."""
+"""The project file: what is saved comes back; old versions open, newer ones report it; a broken save breaks nothing."""
 
 from __future__ import annotations
 
@@ -238,7 +238,7 @@ def test_a_save_removes_no_file_of_another_name(tmp_path, name, monkeypatch):
     [
         ("results", {"horizon": 1, "surface": "a_surfaces/x-00000000.step", "sha256": ""}),
         ("results", {"horizon": "T", "surface": 7, "sha256": ""}),
-        ("results", {"horizon": "T", "surface": "a_surfaces/x-00000000.step", "sha256": "", "recipe": []}),
+        ("results", {"horizon": "T", "surface": "a_surfaces/x-00000000.step", "sha256": "", "provenance": []}),
         ("results", {"horizon": "T", "surface": "a_surfaces/x-00000000.step", "sha256": "", "n": "many"}),
         ("sources", {"path": 3}),
         ("sources", {"path": "a\0b"}),

@@ -100,7 +100,7 @@ BROKEN_FILES = {
     "no usable collar": ("collar", "hole,x,y,z\nB1,a,2,3\n", ["collar.csv", "No row"]),
     "longitude": ("collar", "hole,lon,lat,z\nB1,103.1,28.2,3\n", ["collar.csv", "Longitude", "Project"]),
     "workbook": ("collar", b"PK\x03\x04\x00\x00", ["collar.csv", "workbook"]),
-    "binary": ("collar", bytes(range(256)) * 4, ["collar.csv", "no text"]),
+    "binary": ("collar", bytes(range(256)) * 4, ["collar.csv", "not text"]),
     "two corners": ("boundary", "x,y\n0,0\n1,1\n", ["boundary.csv", "corners of the boundary: 2"]),
     "boundary without a corner's y": ("boundary", "x,y\n0,0\n1,\n1,1\n0,1\n", ["boundary.csv", "row 3"]),
     "boundary with an infinite corner": (
@@ -218,7 +218,7 @@ BROKEN_SITES = {
     ),
     "one name twice": ('name = "weathering"', 'name = "T2-T1"', ["one name"]),
     "no collar": ('collar = "collar.csv"\n', "", ["collar"]),
-    "no TOML": ("[traces]", "[traces", ["TOML", "row 21"]),
+    "not valid TOML": ("[traces]", "[traces", ["TOML", "row 21"]),
     "separator of two characters": (
         'file = "outcrops.csv"',
         'file = "outcrops.csv"\nsep = ";;"',
@@ -241,14 +241,14 @@ def test_broken_site_file_is_explained(make_site, case):
 
 # file -> (rows appended to the sound ones, column of the issue, words of its reason)
 LISTED_ROWS = {
-    "text in a number": ("geophysics", "T2-T1,500600,abc,70,,\n", "y", "no finite number"),
-    "nan": ("geophysics", "T2-T1,500600,3100600,NaN,,\n", "z", "no finite number"),
-    "infinity": ("geophysics", "T2-T1,500600,3100600,-inf,,\n", "z", "no finite number"),
+    "text in a number": ("geophysics", "T2-T1,500600,abc,70,,\n", "y", "not a finite number"),
+    "nan": ("geophysics", "T2-T1,500600,3100600,NaN,,\n", "z", "not a finite number"),
+    "infinity": ("geophysics", "T2-T1,500600,3100600,-inf,,\n", "z", "not a finite number"),
     "a number with a Python underscore": (
         "geophysics",
         "T2-T1,500600,3100600,1_0,,\n",
         "z",
-        "no finite number",
+        "not a finite number",
     ),
     "empty number": ("geophysics", "T2-T1,500600,3100600,,,\n", "z", "empty"),
     "a no-data mark": ("geophysics", "T2-T1,500600,3100600,-9999,,\n", "z", "no data"),
@@ -263,7 +263,7 @@ LISTED_ROWS = {
     "a hole without collar": ("lithology", "B7,0,5,T2\n", "hole", "'B7' is not in the collar table"),
     "a survey without its hole": ("survey", "B7,0,0,90\n", "hole", "'B7' is not in the collar table"),
     "reversed interval": ("lithology", "B1,45,44,T1\n", "to", "reversed"),
-    "interval without length": ("lithology", "B1,45,45,T1\n", "to", "no length"),
+    "interval without length": ("lithology", "B1,45,45,T1\n", "to", "zero length"),
     "interval above the collar": ("lithology", "B1,-1,0,T1\n", "from", "above the collar"),
     "interval beyond the hole": ("lithology", "B1,50,55,T1\n", "from", "beyond the hole's end"),
     "interval twice": ("lithology", "B1,20,50,T1\n", "from", "repeats row 5"),
@@ -311,10 +311,10 @@ def test_bad_row_is_listed_and_not_used(make_site, files, case):
 WARNED_ROWS = {
     "overlapping interval": ("lithology", "B2,55,58,T3\n", "overlaps that of row 7 by 3.00 m"),
     "interval across the hole's end": ("lithology", "B3,39,45,T2\n", "5.00 m beyond the hole's end"),
-    "two elevations at one place": (
+    "two elevations at one location": (
         "geophysics",
         "T2-T1,500600,3100600,75,,\n",
-        "two elevations at one place, +5.000 m",
+        "two elevations at one location, +5.000 m",
     ),
     "far off": ("geophysics", "T2-T1,700600,3100600,75,,\n", "far outside the study area"),
     "two holes at one collar": ("collar", "B9,500100,3100100,110,50\n", "where hole B1 (row 2) starts"),
@@ -338,7 +338,7 @@ def test_one_point_is_warned_of(make_site):
 
 def test_outcrop_without_ground_is_an_error(make_site):
     text = re.sub(r"\[ground\]\nfile = \S+\n", "", make_site().read_text("utf-8"))
-    with pytest.raises(InputError, match="no ground to drape"):
+    with pytest.raises(InputError, match="no ground on which to place"):
         read_site(make_site(text))
 
 

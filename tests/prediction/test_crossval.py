@@ -1,4 +1,4 @@
-"""Cross-validation, its peers, calibration, outliers and robust weights, against brute force and known truths."""
+"""Cross-validation, its references, calibration, outliers and robust weights, against brute force and known truths."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from truth import paper_arrangement, rms
 import geofit
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import SettingsError
-from geofit.data.prediction import OffData
+from geofit.data.prediction import PredictionResult
 from geofit.fitting.calibration import BAND, LeftOutPoints, calibrate, factor_for, share_inside, uncalibrated
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.prediction.bands import grid_over
@@ -129,14 +129,14 @@ def test_the_band_is_widened_for_the_holes():
 
 
 @cache
-def sample(name: str) -> tuple[HorizonFit, OffData]:
+def sample(name: str) -> tuple[HorizonFit, PredictionResult]:
     site = geofit.io.read_site(SITE)
     surface = fit_horizon(site.horizons[name], site.settings[name], boundary=site.boundary, name=name)
     return surface, examine(surface)
 
 
 #: The fault's points reach far into its plane along a few sections only; what lies between them is rougher than
-#: they show, and holes and sections left out say so too little.
+#: they show, and holes and sections left out report it too little.
 SHORT = pytest.mark.xfail(strict=True, reason="79 % of the fault's places lie inside the 90 % band; 85 % is asked for")
 
 
@@ -157,7 +157,7 @@ def test_holes_left_out_of_the_sample_horizons(name):
     holes = next(one for one in found.left_out if one.scheme == "hole")
     assert 0.9 <= round(holes.inside, 2) <= 0.97
     assert all(one.inside >= one.inside_raw for one in found.left_out)
-    assert holes.rms <= 1.01 * min(holes.peers.values())
+    assert holes.rms <= 1.01 * min(holes.references.values())
     known = np.isfinite(holes.error)
     assert holes.rms == pytest.approx(np.sqrt(np.mean(holes.error[known] ** 2)))
     assert ((holes.group != "") == known).all()

@@ -18,7 +18,7 @@ from geofit.fitting.deletion import LinearFit, linear_fit
 from geofit.fitting.field import precision_band
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.posterior import Posterior, posterior
-from geofit.prediction.bands import Spread, band, grid_over, prediction_sd, uncertainty_on
+from geofit.prediction.bands import PredictionError, band, grid_over, prediction_sd, uncertainty_on
 from geofit.prediction.drilling import greedy_holes, suggest_holes
 from geofit.splines import bspline
 from geofit.splines.blocks import BlockFactor
@@ -181,7 +181,7 @@ def test_a_hole_left_out_is_close_to_a_new_fit_without_it():
 
 def test_standard_deviation_grows_away_from_the_points():
     surface = small_surface()
-    spread = Spread(surface.model, posterior(surface.model), uncalibrated())
+    spread = PredictionError(surface.model, posterior(surface.model), uncalibrated())
     grid = grid_over(surface)
     uncertainty = uncertainty_on(grid, spread)
     assert uncertainty.sd.shape == (len(uncertainty.y), len(uncertainty.x))
@@ -197,7 +197,7 @@ def test_standard_deviation_grows_away_from_the_points():
 
 def test_band_lies_z_times_sd_above_and_below_and_keeps_its_seams():
     surface = small_surface()
-    spread = Spread(surface.model, posterior(surface.model), uncalibrated())
+    spread = PredictionError(surface.model, posterior(surface.model), uncalibrated())
     uncertainty = uncertainty_on(grid_over(surface), spread)
     upper, lower = band(surface, uncertainty, 0.9)
     x, y = small_truth().places(400).T
@@ -243,7 +243,7 @@ def test_a_suggested_hole_lowers_the_deviation_as_promised():
     surface = small_surface(core="none", max_iterations=0)
     model = surface.model
     given = posterior(model)
-    spread, grid = Spread(model, given, uncalibrated()), grid_over(surface)
+    spread, grid = PredictionError(model, given, uncalibrated()), grid_over(surface)
     holes = suggest_holes(grid, spread, 4)
     before = np.sqrt(spread.variance(grid.plane)).mean()
     assert before > holes[0].mean_after > holes[1].mean_after > holes[3].mean_after

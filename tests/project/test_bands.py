@@ -11,7 +11,7 @@ from refusals import with_code
 from geofit import PointSet
 from geofit.data.site import Site
 from geofit.prediction import bands
-from geofit.project.run import deliver
+from geofit.project.run import run_horizons
 
 
 @pytest.mark.parametrize("what", ["one side", "both"])
@@ -28,7 +28,7 @@ def test_an_invalid_upper_band_leaves_the_horizon_and_the_other_band(what, tmp_p
     monkeypatch.setattr(bands, "band", planted)
     plan = np.random.default_rng(1).uniform(0, 100, (14, 2))
     xyz = np.column_stack([plan + np.array([500_000.0, 3_100_000.0]), 0.1 * plan[:, 0] + np.sin(plan[:, 1] / 20)])
-    done = deliver(Site("s", {"T": PointSet(xyz)}), tmp_path, bands=True, date="2024-01-01")
+    done = run_horizons(Site("s", {"T": PointSet(xyz)}), tmp_path, bands=True, date="2024-01-01")
     assert not done.failures
     assert done.results[0].accuracy.passed
     assert with_code(done.warnings, "run.no-90-surface").params["name"] == "T"

@@ -22,25 +22,25 @@ from geofit.project.commands import (
     ChangeWeight,
     ExcludeRows,
     IncludeRows,
-    PartAtFaults,
-    PullToPoint,
-    PushApart,
+    MoveToPoint,
     RenameSite,
+    SeparateHorizons,
     SetCore,
     SetOrder,
     SetSettings,
     SetSurface,
+    SplitAtFaults,
     command_from,
 )
 from geofit.project.document import Document
 from geofit.project.provenance import (
-    Apart,
     DocumentError,
     Move,
+    MoveToPointEdit,
     Part,
-    Pull,
-    Recipe,
+    Provenance,
     Row,
+    SeparationEdit,
     Weigh,
     fingerprint,
     indices,
@@ -74,14 +74,17 @@ cores = st.sampled_from(["auto", "all", "none"]) | polygon
 settings_ = st.builds(FitSettings, epsilon=st.floats(1e-6, 1e3), core=cores)
 edits = (
     st.builds(Move, st.text(max_size=4), st.integers(), st.integers(), numbers)
-    | st.builds(Pull, st.integers(), numbers)
+    | st.builds(MoveToPointEdit, st.integers(), numbers)
     | st.builds(Weigh, st.text(max_size=4), st.integers(), st.integers(), numbers)
 )
 stacked = st.builds(
-    Apart, st.just(("up", "low")), numbers, st.just((Recipe("up", FitSettings(), "x", (), (Pull(1, 0.5),)),))
+    SeparationEdit,
+    st.just(("up", "low")),
+    numbers,
+    st.just((Provenance("up", FitSettings(), "x", (), (MoveToPointEdit(1, 0.5),)),)),
 )
-recipes = st.builds(
-    Recipe,
+provenances = st.builds(
+    Provenance,
     st.just("low"),
     settings_,
     st.text(max_size=4),
@@ -92,14 +95,14 @@ block = st.builds(
     Part,
     st.just("low"),
     st.text(max_size=4),
-    st.lists(st.builds(Recipe, st.just("up"), settings_, st.text(max_size=4)), max_size=2).map(tuple),
+    st.lists(st.builds(Provenance, st.just("up"), settings_, st.text(max_size=4)), max_size=2).map(tuple),
     st.lists(st.integers(-1, 1), max_size=2).map(tuple),
     st.lists(st.integers(0, 40), unique=True).map(lambda numbers: runs(np.sort(np.array(numbers, int)))),
     polygon,
 )
 commands = st.one_of(
     st.builds(
-        PartAtFaults, st.just("low"), st.dictionaries(st.sampled_from(["low (A)", "low (B)"]), block, min_size=1)
+        SplitAtFaults, st.just("low"), st.dictionaries(st.sampled_from(["low (A)", "low (B)"]), block, min_size=1)
     ),
     st.builds(SetSettings, st.just("low (A)"), settings_),
     st.builds(ExcludeRows, st.just("low (A)"), st.tuples(rows)),
@@ -107,11 +110,11 @@ commands = st.one_of(
     st.builds(SetCore, st.just("low"), cores),
     st.builds(ExcludeRows, st.just("low"), st.tuples(rows)),
     st.builds(IncludeRows, st.just("low"), st.tuples(rows)),
-    st.builds(SetSurface, recipes),
+    st.builds(SetSurface, provenances),
     st.builds(AdjustControlPoint, st.just("low"), st.text(max_size=4), st.integers(), st.integers(), numbers),
     st.builds(ChangeWeight, st.just("low"), st.text(max_size=4), st.integers(), st.integers(), st.floats(0.01, 100)),
-    st.builds(PullToPoint, st.just("low"), st.integers(), numbers),
-    st.builds(PushApart, st.just(("low",)), st.just(("up", "low")), st.floats(0, 10)),
+    st.builds(MoveToPoint, st.just("low"), st.integers(), numbers),
+    st.builds(SeparateHorizons, st.just(("low",)), st.just(("up", "low")), st.floats(0, 10)),
     st.builds(SetOrder, st.permutations(["up", "low"]).map(tuple)),
     st.builds(RenameSite, st.text(min_size=1)),
 )
@@ -150,13 +153,13 @@ def test_undoing_everything_leads_back_and_states_come_back_from_their_data(done
 def test_every_command_is_told_in_words_that_can_be_translated():
     from chinese import english_left
 
-    recipe = document().recipe("low")
+    provenance = document().provenance("low")
     samples = [
         SetSettings("low", FitSettings()), SetCore("low", "all"), ExcludeRows("low", (Row("a", 1),)),
-        IncludeRows("low", (Row("a", 1),)), SetSurface(recipe), AdjustControlPoint("low", "core", 1, 2, 0.5),
-        ChangeWeight("low", "core", 1, 2, 0.5), PushApart(("low",), ("up", "low"), 0.5),
-        PartAtFaults("low", {"low (A)": Part("low", "", (recipe,), (1,), "0-9", ())}),
-        PullToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
+        IncludeRows("low", (Row("a", 1),)), SetSurface(provenance), AdjustControlPoint("low", "core", 1, 2, 0.5),
+        ChangeWeight("low", "core", 1, 2, 0.5), SeparateHorizons(("low",), ("up", "low"), 0.5),
+        SplitAtFaults("low", {"low (A)": Part("low", "", (provenance,), (1,), "0-9", ())}),
+        MoveToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
     ]  # fmt: skip
     assert {type(command) for command in samples} == set(COMMANDS.values())
     assert not [left for command in samples for left in english_left(command.text)]
@@ -199,11 +202,11 @@ def test_excluded_rows_take_no_part():
 
 def test_results_go_stale_and_come_back():
     opened = document()
-    recipe = opened.recipe("low")
-    surface = make(recipe, opened.given_for(recipe))
-    opened.put(recipe, surface)
+    provenance = opened.provenance("low")
+    surface = make(provenance, opened.given_for(provenance))
+    opened.put(provenance, surface)
     assert opened.surface("low") is None
-    fit = SetSurface(recipe)
+    fit = SetSurface(provenance)
     fit.redo(opened)
     assert opened.surface("low") is surface
     assert not opened.stale("low")
@@ -213,12 +216,12 @@ def test_results_go_stale_and_come_back():
     assert opened.stale("low")
     other.undo(opened)
     assert not opened.stale("low")
-    PullToPoint("low", 3, 1.0).redo(opened)
+    MoveToPoint("low", 3, 1.0).redo(opened)
     # Changed by hand: not stale, but not made yet.
     assert not opened.stale("low")
     assert opened.surface("low") is None
     (missing,) = opened.missing()
-    assert missing.edits == (Pull(3, 1.0),)
+    assert missing.edits == (MoveToPointEdit(3, 1.0),)
     changed = replace(opened.site, horizons={"low": opened.site.horizons["low"][1:]})
     opened.open(changed, None, opened.state)
     assert opened.stale("low")
@@ -245,11 +248,11 @@ def test_the_fingerprint_sees_whatever_a_fit_depends_on():
 def test_the_shelf_stays_within_its_bounds(monkeypatch):
     monkeypatch.setattr(shelf_module, "SPARE", 3)
     opened = document()
-    surface = make(opened.recipe("low"), opened.given_for(opened.recipe("low")))
+    surface = make(opened.provenance("low"), opened.given_for(opened.provenance("low")))
     shelf = Shelf()
-    made = [replace(opened.recipe("low"), given=str(k)) for k in range(8)]
-    for recipe in made:
-        shelf.put(recipe, surface, {made[0]})
+    made = [replace(opened.provenance("low"), given=str(k)) for k in range(8)]
+    for provenance in made:
+        shelf.put(provenance, surface, {made[0]})
     assert len(shelf) == 5  # on show, just made, and three more
     assert shelf.surface(made[0]) is surface
     assert shelf.surface(made[1]) is None

@@ -8,7 +8,7 @@ from results import horizon
 
 from geofit.data.languages import EN, ZH
 from geofit.project.interventions import interventions_of
-from geofit.project.provenance import Apart, Move, Pull, Recipe, Row, Weigh
+from geofit.project.provenance import Move, MoveToPointEdit, Provenance, Row, SeparationEdit, Weigh
 from geofit.report.chapters import document
 from geofit.report.document import Paragraph, Table
 from geofit.report.gather import accuracy_report
@@ -18,12 +18,17 @@ def test_excluded_rows_become_points_and_edits_become_sentences():
     result = horizon()
     points = result.site.horizons["T3/T2"]
     rows = (Row.of(points, 7), Row.of(points, 3), Row("gone.csv", 4))
-    edits = (Move("west", 2, 3, 0.5), Pull(11, 0.8), Weigh("east", 1, 1, 2.0), Apart(("T3/T2", "T2/T1"), 1.5, ()))
-    excluded, told = interventions_of(result.site, Recipe("T3/T2", result.surface.settings, "", rows, edits))
+    edits = (
+        Move("west", 2, 3, 0.5),
+        MoveToPointEdit(11, 0.8),
+        Weigh("east", 1, 1, 2.0),
+        SeparationEdit(("T3/T2", "T2/T1"), 1.5, ()),
+    )
+    excluded, told = interventions_of(result.site, Provenance("T3/T2", result.surface.settings, "", rows, edits))
     assert excluded.row.tolist() == points.row[[3, 7]].tolist()
     assert [one.code for one in told] == ["edit.moved", "edit.pulled", "edit.weighed", "edit.separated"]
     assert told[1].params == {"number": 12, "share": 80.0}
-    assert interventions_of(result.site, Recipe("T3/T2", result.surface.settings, "")) == (None, ())
+    assert interventions_of(result.site, Provenance("T3/T2", result.surface.settings, "")) == (None, ())
 
     report = accuracy_report([replace(result, excluded=excluded, edits=told)], date="2026-01-02")
     assert [line.row for line in report.horizons[0].excluded] == [5, 9]

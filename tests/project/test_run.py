@@ -35,12 +35,12 @@ def test_the_forms_that_were_asked_for_and_no_other_file(tmp_path):
 
 
 def test_a_horizon_without_a_check_off_its_data_gets_one_where_that_is_asked_for(tmp_path):
-    result = horizon()  # made by hand: nothing stands behind it, and the examination says so
+    result = horizon()  # made by hand: nothing stands behind it, and the examination reports it
     made = write_reports([result], tmp_path, forms=("json",), examined=True)
     (one,) = json.loads(made.files["json"].read_text("utf-8"))["horizons"]
-    assert "was not fitted here" in str(one["off_data"])
+    assert "was not fitted here" in str(one["prediction"])
     made = write_reports([result], tmp_path, forms=("json",))
-    assert json.loads(made.files["json"].read_text("utf-8"))["horizons"][0]["off_data"] is None
+    assert json.loads(made.files["json"].read_text("utf-8"))["horizons"][0]["prediction"] is None
 
 
 def test_stopped_and_a_folder_that_cannot_be_made(tmp_path):

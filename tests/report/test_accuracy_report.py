@@ -160,15 +160,15 @@ def test_every_headline_figure_of_the_json_stands_in_html_and_pdf(written):
             figures |= {f"row {i}": p["row"] for i, p in enumerate(h["worst"])}
             figures |= {f"{g['by']} {g['name']}": g["sigma"] for g in h["groups"] if g["sigma"] > 1e-9}
             figures |= {f"seam {i}": s["angle"] for i, s in enumerate(h["seams"])}
-            if h["off_data"]:
-                for scheme in h["off_data"]["left_out"]:
+            if h["prediction"]:
+                for scheme in h["prediction"]["left_out"]:
                     figures |= {f"{scheme['scheme']} {k}": scheme[k] for k in ("rms", "bias", "max_abs", "points")}
-                    figures |= dict(scheme["peers"])
+                    figures |= dict(scheme["references"])
                     figures[scheme["scheme"] + " inside"] = 100 * scheme["inside"]
-                figures |= {k: h["off_data"][k] for k in ("factor", "sd_mean", "sd_max")}
-                for i, hole in enumerate(h["off_data"]["suggestions"]):
+                figures |= {k: h["prediction"][k] for k in ("factor", "sd_mean", "sd_max")}
+                for i, hole in enumerate(h["prediction"]["suggestions"]):
                     figures |= {f"hole {i} {k}": hole[k] for k in ("x", "y", "sd", "mean_after", "max_after")}
-                figures |= {f"outlier {k}": h["off_data"]["outliers"][0][k] for k in ("error", "sd", "ratio")}
+                figures |= {f"outlier {k}": h["prediction"]["outliers"][0][k] for k in ("error", "sd", "ratio")}
             absent = [name for name, value in figures.items() if not _holds(numbers, value)]
             assert not absent, f"{form} {t.code} {h['horizon']}: {absent}"
         pair = data["orders"][0]
@@ -270,7 +270,7 @@ def test_what_was_not_examined_is_said(tmp_path):
     write_html(document(bare, EN, missing_picture="no OpenGL here"), {}, tmp_path / "r.html")
     text = _Page((tmp_path / "r.html").read_text(encoding="utf-8")).text
     assert "Not examined: whether horizons cross" in str(text)
-    assert "Not examined: how far the surface may lie from the rock" in str(text)
+    assert "Not examined: the prediction error" in str(text)
     assert "Not examined: no STEP file was written" in str(text)
     assert "no OpenGL here" in str(text)
     write_pdf(document(bare, EN), {}, tmp_path / "r.pdf")

@@ -1,4 +1,4 @@
-"""Chapters of bodies and rock volumes: every figure of the findings stands in the pages, in both languages."""
+"""Chapters of bodies and rock volumes: every figure of the findings is in the pages, in both languages."""
 
 from __future__ import annotations
 

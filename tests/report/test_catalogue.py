@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from geofit.data.languages import EN, ZH, translate
-from geofit.data.messages import Verbatim, message, plural_message
+from geofit.data.messages import Untranslated, message, plural_message
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -27,7 +27,7 @@ def test_a_message_is_formatted_only_where_it_is_shown():
 
 def test_lists_terms_and_names_are_shown_in_the_language():
     assert translate(message("x", "{point}", point="core"), ZH) != "core"
-    assert translate(message("x", "{point}", point=Verbatim("core")), ZH) == "core"
+    assert translate(message("x", "{point}", point=Untranslated("core")), ZH) == "core"
     rows = tuple(message("place.row", "row {row}", row=row) for row in (2, 5))
     assert translate(message("x", "{rows}", rows=rows), ZH) == "第 2 行，第 5 行"
 

@@ -13,7 +13,7 @@ from chinese import english_left
 
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.languages import EN, ZH, language, sentence, translate
-from geofit.data.messages import Verbatim, message
+from geofit.data.messages import Untranslated, message
 
 
 def test_a_sentence_of_the_core_is_told_with_its_values():
@@ -38,7 +38,7 @@ def test_what_the_readers_list_is_told_in_chinese(tmp_path):
         "x,y,z,surface,hole\n1,2,3,T1,B1\n1,2,4,T1,B2\n5,6,abc,T1,B3\n7,8,,T1,B4\n", encoding="utf-8"
     )
     found = {issue.row: issue for issue in read_points(tmp_path / "p.csv").issues if issue.severity != "note"}
-    assert str(found[4].reason) == "The z is no finite number"
+    assert str(found[4].reason) == "The z is not a finite number"
     assert translate(found[4].reason, ZH) == "z不是有限数"
     assert translate(found[5].reason, ZH) + translate(found[5].remedy, ZH) == "z为空请补全该单元格。"
     assert translate(found[3].reason, ZH) == "层面 T1：同一位置有两个高程，与 点 B1，p.csv 第 2 行 相差 +1.000 m"
@@ -92,8 +92,8 @@ def test_a_reason_that_ends_with_a_full_stop_gets_no_second_one():
 
 
 def test_columns_keys_and_names_stay_as_they_are():
-    assert translate(Verbatim("north"), ZH) == "north" != translate("north", ZH)
-    assert translate((Verbatim("core"), message("place.row", "row {row}", row=2)), ZH) == "core，第 2 行"
+    assert translate(Untranslated("north"), ZH) == "north" != translate("north", ZH)
+    assert translate((Untranslated("core"), message("place.row", "row {row}", row=2)), ZH) == "core，第 2 行"
     assert translate((), ZH) == "()"
 
 
@@ -130,7 +130,7 @@ def test_tables_of_a_chinese_report_have_chinese_reasons(tmp_path):
         "z",
         "abc",
         "error",
-        message("row.not-a-number", "The {role} is no finite number", role="z"),
+        message("row.not-a-number", "The {role} is not a finite number", role="z"),
         message("row.complete-cell", "Complete the cell."),
     )
     write_issues([issue], tmp_path / "i.csv", ZH)

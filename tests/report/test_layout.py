@@ -50,7 +50,7 @@ def with_surroundings(result):
 def results():
     made = [with_surroundings(examined(horizon())), with_surroundings(horizon(name="T2/T1", epsilon=0.05))]
     sections = report_sections(made[0].site, [one.surface.points for one in made])
-    return [replace(one, profiles=profiles(one.surface, one.offdata, sections)) for one in made], sections
+    return [replace(one, profiles=profiles(one.surface, one.prediction, sections)) for one in made], sections
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 import geofit
 from geofit.sample import __main__ as command
 from geofit.sample import horizon_truth, write_site
-from geofit.sample.ledger import NOISE
+from geofit.sample.observations import NOISE
 from geofit.sample.paths import borehole_path, crossings, polyline_path
 from geofit.sample.truth import (
     BOUNDARY,

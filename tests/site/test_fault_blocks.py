@@ -113,7 +113,7 @@ def test_a_block_is_checked_as_far_as_it_reaches(blocks):
 def test_a_block_that_is_changed_by_hand_still_ends_at_its_fault(blocks):
     block = blocks.blocks[0]
     assert block.accuracy.max_abs > 0
-    pulled = block.pull_to(block.accuracy.worst[0])
+    pulled = block.move_to(block.accuracy.worst[0])
     assert pulled.accuracy.max_abs < block.accuracy.max_abs
     np.testing.assert_array_equal(pulled.outline, block.outline)
 

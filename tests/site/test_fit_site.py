@@ -14,7 +14,7 @@ from geofit import FitSettings, PointSet
 from geofit.data.errors import Cancelled
 from geofit.data.languages import EN, ZH
 from geofit.data.site import Ground, Orientations, Site
-from geofit.project.run import deliver, write_reports
+from geofit.project.run import run_horizons, write_reports
 from geofit.report.accuracy_report import to_json
 from geofit.report.chapters import document
 from geofit.report.document import Table
@@ -22,7 +22,7 @@ from geofit.report.gather import accuracy_report
 from geofit.report.result import HorizonResult
 from geofit.site.fit_site import SiteFit, compare, fit_site
 from geofit.site.separate import Contradiction
-from geofit.site.site_checks import check_surroundings, ground_tolerance
+from geofit.site.site_checks import add_site_checks, ground_tolerance
 
 ORIGIN = np.array([EASTING, NORTHING, 0.0])
 AREA = np.array([[0, 0], [600, 0], [600, 500], [0, 500]]) + ORIGIN[:2]
@@ -121,7 +121,7 @@ def test_the_ground_is_asked_with_a_tenth_of_its_cell(site, fits):
     assert ground_tolerance(level(0, 5.0), 0.1) == pytest.approx(0.5)
     assert ground_tolerance(level(0, 0.5), 0.1) == pytest.approx(0.1)
     top = surface.points.xyz[:, 2].max()
-    low = [check_surroundings(surface, replace(site, ground=level(z)), "T2") for z in (top - 1.5, top - 3.0)]
+    low = [add_site_checks(surface, replace(site, ground=level(z)), "T2") for z in (top - 1.5, top - 3.0)]
     assert [check_of(one, "above ground").passed for one in low] == [True, False]
     # Asked again, the answer takes the place of the first.
     names = [check.name for check in low[1].accuracy.checks]
@@ -172,7 +172,7 @@ def test_a_repair_pushes_crossing_horizons_apart_and_checks_them_again():
     before = fit_site(site, ["U", "L"])
     (order,) = compare(site, before)
     assert order.check().passed is False
-    after = fit_site(site, ["U", "L"], apart=True)
+    after = fit_site(site, ["U", "L"], separate=True)
     (order,) = compare(site, after)
     assert order.min > -0.05
     assert after.moved
@@ -186,8 +186,8 @@ def test_a_repair_says_what_it_leaves_alone(site):
     found = SiteFit()
     assert compare(site, found) == ()
     plain = replace(crossing(), order=())
-    assert fit_site(plain, ["U"], apart=True).warnings[0].code == "site.no-repair-order-site"
-    cut = fit_site(site, ["T2", "T1"], apart=True)
+    assert fit_site(plain, ["U"], separate=True).warnings[0].code == "site.no-repair-order-site"
+    cut = fit_site(site, ["T2", "T1"], separate=True)
     (warning,) = cut.warnings
     assert (warning.code, warning.severity) == ("site.cut-fault-not-pushed", "warning")
     assert warning.params["names"] == "T2, T1"
@@ -213,7 +213,7 @@ def test_a_report_of_surfaces_at_hand_needs_no_fit(tmp_path):
     assert made.files == {"json": tmp_path / "r" / "report.json"}
     assert [path.name for path in (tmp_path / "r").iterdir()] == ["report.json"]
     data = json.loads(made.files["json"].read_text(encoding="utf-8"))
-    assert [h["off_data"] for h in data["horizons"]] == [None, None]
+    assert [h["prediction"] for h in data["horizons"]] == [None, None]
     assert data["orders"][0]["passed"] is False
     assert [fraction for _, fraction in heard] == sorted(fraction for _, fraction in heard)
     with pytest.raises(Cancelled):
@@ -222,7 +222,7 @@ def test_a_report_of_surfaces_at_hand_needs_no_fit(tmp_path):
 
 
 def test_bands_and_order_are_delivered(tmp_path):
-    made = deliver(crossing(), tmp_path, bands=True)
+    made = run_horizons(crossing(), tmp_path, bands=True)
     names = {path.name for path in tmp_path.iterdir()}
     assert {"U_upper90.step", "U_lower90.step", "L_upper90.step", "L_lower90.step"} <= names
     assert [order.check().passed for order in made.orders] == [False]

@@ -13,7 +13,7 @@ from geofit.data.errors import InputError, SettingsError
 from geofit.data.messages import Message
 from geofit.data.site import Ground
 from geofit.sample import write_site
-from geofit.site.height_field import Relief
+from geofit.site.height_field import HeightField
 from geofit.site.order import compare_horizons, orders, thickness
 from geofit.site.overlap import TOUCH
 from geofit.splines import bspline
@@ -113,7 +113,7 @@ def test_a_crossing_within_one_cell_of_the_lattice_is_found():
     top = lower.elevation(x, y[:, None]) - ORIGIN[2]
     upper = flat(top.max() - 0.01, "T3-T2")
     for one in (upper, lower):
-        plan = Relief(one).lattice(2)
+        plan = HeightField(one).lattice(2)
         assert thickness(upper, lower, plan[..., 0], plan[..., 1]).min() > 0
     (crossing,) = compare_horizons(upper, lower).crossings
     assert crossing.depth == pytest.approx(0.01, abs=1e-4)

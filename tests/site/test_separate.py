@@ -88,7 +88,7 @@ def test_nothing_moves_outside_the_supports_of_the_crossing(crossing, repaired):
         np.testing.assert_array_equal(old.coefficients[kept], new.coefficients[kept])
         rng = np.random.default_rng(5)
         xy = rng.uniform(BOUNDARY[0], BOUNDARY[2], (4000, 2))
-        frame = surface.model.problem.chart.frame
+        frame = surface.model.problem.parametrization.frame
         spans = max(np.diff(np.unique(k)).max() for k in (old.space.knots_u, old.space.knots_v)) * old.unit
         far = np.linalg.norm(xy[:, None] - places[None, ::5], axis=2).min(axis=1) > 5 * spans
         matrix = old.space.matrix(frame.plan(xy[far]) / old.unit)

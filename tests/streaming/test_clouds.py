@@ -15,7 +15,7 @@ from geofit.fitting import partition
 from geofit.fitting.conflicts import settle
 from geofit.io import clouds
 from geofit.io.clouds import is_cloud, open_cloud
-from geofit.project.cloud_run import deliver_cloud
+from geofit.project.cloud_run import run_cloud
 from geofit.streaming import coincident as strips
 from geofit.streaming import residuals
 from geofit.streaming.fit import fit_cloud, without
@@ -133,7 +133,7 @@ def test_a_run_leaves_its_files_and_goes_on_after_a_stop(small_blocks, tmp_path)
     lines = source.read_text().split("\n")
     lines[9_000] = "1,2,?"
     source.write_text("\n".join(lines))
-    whole = deliver_cloud(open_cloud(source), tmp_path / "whole", workers=1)
+    whole = run_cloud(open_cloud(source), tmp_path / "whole", workers=1)
     stages: list[str] = []
 
     def until(limit):
@@ -146,12 +146,12 @@ def test_a_run_leaves_its_files_and_goes_on_after_a_stop(small_blocks, tmp_path)
     out = tmp_path / "stopped"
     for limit in (0.2, 0.5, 0.7):
         with pytest.raises(Cancelled):
-            deliver_cloud(open_cloud(source), out, progress=until(limit), workers=1)
+            run_cloud(open_cloud(source), out, progress=until(limit), workers=1)
     assert not (out / "scan.step").exists()
     measured = sorted(path.name for path in (out / "scan_distances").glob("*.json"))
     assert measured
     before = {name: (out / "scan_distances" / name).stat().st_mtime_ns for name in measured}
-    again = deliver_cloud(open_cloud(source), out, workers=1)
+    again = run_cloud(open_cloud(source), out, workers=1)
     assert {name: (out / "scan_distances" / name).stat().st_mtime_ns for name in measured} == before
     assert again.accuracy.sigma == whole.accuracy.sigma
     for name in ("scan.step", "scan_deviations.csv", "scan_worst.csv", "scan_import_issues.csv"):
@@ -165,7 +165,7 @@ def test_a_run_leaves_its_files_and_goes_on_after_a_stop(small_blocks, tmp_path)
 def test_distances_of_every_point_are_written(small_blocks, tmp_path):
     parquet = pytest.importorskip("pyarrow.parquet", reason="pyarrow is not installed (extra scale)")
     xyz = cloud(20_000)
-    done = deliver_cloud(open_cloud(write(tmp_path / "scan.parquet", xyz)), tmp_path, workers=2)
+    done = run_cloud(open_cloud(write(tmp_path / "scan.parquet", xyz)), tmp_path, workers=2)
     parts = [path for path in done.files if path.suffix == ".parquet"]
     table = parquet.read_table([str(path) for path in parts])
     assert table.column("point").to_pylist() == list(range(len(xyz)))

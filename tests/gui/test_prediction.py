@@ -1,18 +1,18 @@
-"""Off the data: the button, the figures, and what the tables lead to."""
+"""Away from the data: the button, the figures, and what the tables lead to."""
 
 from __future__ import annotations
 
 import pytest
-from panel_samples import fitted, off_data
+from panel_samples import fitted, prediction
 from PySide6.QtCore import Qt
 
-from geofit.gui.panels.offdata import OffDataPanel
+from geofit.gui.panels.prediction import PredictionPanel
 from geofit.project.provenance import Row
 
 
 @pytest.fixture
 def panel(qtbot):
-    panel = OffDataPanel()
+    panel = PredictionPanel()
     qtbot.addWidget(panel)
     panel.resize(260, 600)
     panel.show()
@@ -26,13 +26,13 @@ def test_nothing_examined_offers_to_examine(panel, qtbot):
 
 
 def test_without_a_surface_there_is_nothing_to_examine(panel):
-    panel.show_offdata(None, fitted=False)
+    panel.show_prediction(None, fitted=False)
     assert "press Fit" in str(panel.pages.text)
     assert not panel.pages.button.isVisible()
 
 
 def test_the_figures_are_told(panel):
-    panel.show_offdata(off_data(393), fitted().points)
+    panel.show_prediction(prediction(393), fitted().points)
     words = panel.figures.text()
     assert "1.10 m on average, 6.20 m at most" in words
     assert "1.62" in words
@@ -45,7 +45,7 @@ def test_the_figures_are_told(panel):
 
 
 def test_a_suggestion_leads_to_its_place(panel, qtbot):
-    panel.show_offdata(off_data(393), fitted().points)
+    panel.show_prediction(prediction(393), fitted().points)
     with qtbot.waitSignal(panel.suggestion_chosen) as told:
         panel.suggestions.selectRow(1)
     assert told.args == [30.0, 40.0, 1211.5]
@@ -53,7 +53,7 @@ def test_a_suggestion_leads_to_its_place(panel, qtbot):
 
 def test_an_outlier_leads_to_its_point_even_when_sorted(panel, qtbot):
     points = fitted().points
-    panel.show_offdata(off_data(len(points)), points)
+    panel.show_prediction(prediction(len(points)), points)
     panel.outliers.sortByColumn(1, Qt.SortOrder.AscendingOrder)
     assert panel.outliers.rows.columns[0].text(0) == str(points.describe(7))
     with qtbot.waitSignal(panel.point_chosen) as told:
@@ -67,7 +67,7 @@ def test_an_outlier_leads_to_its_point_even_when_sorted(panel, qtbot):
 def test_every_column_is_seen_beside_the_view(panel):
     """In a window of 1280 pixels the dock has about 790."""
     panel.resize(790, 300)
-    panel.show_offdata(off_data(393), fitted().points)
+    panel.show_prediction(prediction(393), fitted().points)
     for table in (panel.left_out, panel.suggestions, panel.outliers):
         assert table.horizontalHeader().length() <= table.viewport().width()
         for column in range(table.model().columnCount()):
@@ -76,5 +76,5 @@ def test_every_column_is_seen_beside_the_view(panel):
 
 
 def test_it_fits_a_narrow_dock(panel):
-    panel.show_offdata(off_data(393), fitted().points)
+    panel.show_prediction(prediction(393), fitted().points)
     assert panel.minimumSizeHint().width() <= 260

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["APART_IN_PLAN", "NOISE", "Ledger", "errors_of"]
+__all__ = ["LEAST_DISTANCE", "NOISE", "Observations", "errors_of"]
 
 Floats = NDArray[np.float64]
 
@@ -14,10 +14,10 @@ NOISE = {"borehole": 0.025, "adit": 0.025, "section": 0.025, "outcrop": 0.1, "ge
 
 #: Two observations of a horizon keep this distance, metres, so that none contradicts another.
 _APART = 5.5
-#: Horizons that are no height over the map keep it in space, the others in plan; in plan the former keep so
+#: Horizons that are not height over the map keep it in space, the others in plan; in plan the former keep so
 #: much that no reader takes two of their points for one place.
 _IN_SPACE = ("F1", "M1")
-APART_IN_PLAN = 0.05
+LEAST_DISTANCE = 0.05
 
 
 def errors_of(rng: np.random.Generator, kind: str, n: int) -> Floats:
@@ -25,7 +25,7 @@ def errors_of(rng: np.random.Generator, kind: str, n: int) -> Floats:
     return NOISE[kind] * np.clip(rng.normal(0.0, 1.0, n), -3.0, 3.0)
 
 
-class Ledger:
+class Observations:
     """Points of each horizon by kind of source, as they will be imported (to the rounding of the files)."""
 
     def __init__(self) -> None:
@@ -39,7 +39,7 @@ class Ledger:
         gap = np.array(others) - xyz
         plan = np.linalg.norm(gap[:, :2], axis=1).min()
         if horizon in _IN_SPACE:
-            return bool(plan >= APART_IN_PLAN and np.linalg.norm(gap, axis=1).min() >= _APART)
+            return bool(plan >= LEAST_DISTANCE and np.linalg.norm(gap, axis=1).min() >= _APART)
         return bool(plan >= _APART)
 
     def add(self, horizon: str, kind: str, xyz: Floats) -> None:

@@ -11,10 +11,10 @@ from PySide6.QtWidgets import QWidget
 from geofit.gui.view3d.overlay import Content, Theme, draw
 from geofit.gui.view3d.projector import Projector
 
-__all__ = ["Writing", "theme_of"]
+__all__ = ["Annotations", "theme_of"]
 
 
-class Writing(QWidget):
+class Annotations(QWidget):
     """A clear pane over the canvas that lets the mouse through."""
 
     def __init__(self, parent: QWidget, view: Callable[[], Projector], content: Callable[[Projector], Content]) -> None:
@@ -38,11 +38,11 @@ class Writing(QWidget):
 
 def theme_of(palette: QPalette, dark: bool) -> Theme:
     """Return the palette's colours, turned to the other side where it is not as dark as the scene."""
-    paper, ink = palette.color(QPalette.ColorRole.Base), palette.color(QPalette.ColorRole.Text)
+    paper, text = palette.color(QPalette.ColorRole.Base), palette.color(QPalette.ColorRole.Text)
     if (paper.lightnessF() < 0.5) != dark:
-        paper, ink = (QColor("#1b232b"), QColor("#e4e9ee")) if dark else (QColor("#ffffff"), QColor("#1c2733"))
-    quiet = QColor(*(round(0.42 * p + 0.58 * i) for p, i in zip(_bytes(paper), _bytes(ink), strict=True)))
-    return Theme(ink, quiet, paper, QColor("#f2a541") if dark else QColor("#c2410c"))
+        paper, text = (QColor("#1b232b"), QColor("#e4e9ee")) if dark else (QColor("#ffffff"), QColor("#1c2733"))
+    quiet = QColor(*(round(0.42 * p + 0.58 * i) for p, i in zip(_bytes(paper), _bytes(text), strict=True)))
+    return Theme(text, quiet, paper, QColor("#f2a541") if dark else QColor("#c2410c"))
 
 
 def _bytes(colour: QColor) -> tuple[int, int, int]:

@@ -35,9 +35,9 @@ PRINT_SCALE = 3
 
 
 class Delivering(QObject):
-    """Exports, reports and pictures. ``told(text)`` says what was written, ``refused(exception)`` why not."""
+    """Exports, reports and pictures. ``reported(text)`` states what was written, ``refused(exception)`` why not."""
 
-    told = Signal(str)
+    reported = Signal(str)
     refused = Signal(object)
 
     def __init__(
@@ -97,7 +97,7 @@ class Delivering(QObject):
         # The patches are enough for every format; what stands behind them need not travel.
         bare = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         title = self.tr("Export {name}").format(name=target.name)
-        self._activity.do(title, export_surfaces, bare, to, target, options, on_done=self._written, apart=True)
+        self._activity.do(title, export_surfaces, bare, to, target, options, on_done=self._written, in_process=True)
 
     def section_sheet(self) -> None:
         """Ask for sections and a title block, and write the sections to scale."""
@@ -121,30 +121,38 @@ class Delivering(QObject):
 
         surfaces = self._surfaces()
         if surfaces:
-            site, recipes = self._document.site_in_use(), dict(self._document.state.recipes)
+            site, provenances = self._document.site_in_use(), dict(self._document.state.provenances)
             results = [self._result(name, surface) for name, surface in surfaces.items()]
             dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder())
             dialog.written.connect(self.list_report)
-            dialog.examined.connect(lambda name, offdata: self._document.put_offdata(recipes[name], offdata))
+            dialog.examined.connect(
+                lambda name, prediction: self._document.put_prediction(provenances[name], prediction)
+            )
             dialog.exec()
 
     def _result(self, name: str, surface: HorizonFit) -> HorizonResult:
         """Return what a report says of a surface; of a STEP file only if one was written of this very surface."""
-        site, offdata = self._document.site_in_use(), self._document.offdata(name)
-        recipe = self._document.state.recipes.get(name)
-        excluded, edits = (None, ()) if recipe is None else interventions_of(self._document.site, recipe)
+        site, prediction = self._document.site_in_use(), self._document.prediction(name)
+        provenance = self._document.state.provenances.get(name)
+        excluded, edits = (None, ()) if provenance is None else interventions_of(self._document.site, provenance)
         exported, file = self._exported.get(name, (None, None))
         if file is None or exported is not surface:
-            return HorizonResult(surface, site, offdata=offdata, excluded=excluded, edits=edits)
+            return HorizonResult(surface, site, prediction=prediction, excluded=excluded, edits=edits)
         return HorizonResult(
-            surface, site, file.read_back[name], step_bytes=file.size, offdata=offdata, excluded=excluded, edits=edits
+            surface,
+            site,
+            file.read_back[name],
+            step_bytes=file.size,
+            prediction=prediction,
+            excluded=excluded,
+            edits=edits,
         )
 
     def list_report(self, path: object) -> None:
         """List a report in the project tree."""
         self._reports.append(str(path))
         _LOG.info(message("log.wrote", "Wrote {file}", file=str(Path(str(path)).resolve())))
-        self.told.emit(self.tr("Wrote {names}.").format(names=Path(str(path)).resolve()))
+        self.reported.emit(self.tr("Wrote {names}.").format(names=Path(str(path)).resolve()))
         self._panels.tree.show_reports(self._reports)
 
     def screenshot(self) -> None:
@@ -178,6 +186,6 @@ class Delivering(QObject):
 
     def _written(self, files: list[Path]) -> None:
         names = ", ".join(str(file.resolve()) for file in files)
-        self.told.emit(self.tr("Wrote {names}.").format(names=names))
+        self.reported.emit(self.tr("Wrote {names}.").format(names=names))
         for file in files:
             _LOG.info(message("log.wrote", "Wrote {file}", file=str(file.resolve())))

@@ -1,4 +1,4 @@
-"""What the parsers of text, TOML and JSON say is wrong, parted so that it can be told in another language."""
+"""What the parsers of text, TOML and JSON say is wrong, split so that it can be translated."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import re
 
 from geofit.data.messages import Message, message
 
-__all__ = ["told_by"]
+__all__ = ["parser_message"]
 
 
-def told_by(error: Exception) -> tuple[Message | str, int | None]:
-    """Return what a parser says is wrong, and the line of the file where it says so."""
+def parser_message(error: Exception) -> tuple[Message | str, int | None]:
+    """Return what a parser says is wrong, and the line of the file where it reports it."""
     if isinstance(error, UnicodeDecodeError):
         return message(
             "import.byte-belongs-no-character", "byte {place} belongs to no character", place=error.start + 1

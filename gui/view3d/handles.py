@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF
 
 from geofit.gui.view3d.projector import Projector
 
-__all__ = ["Grip", "Grips"]
+__all__ = ["Handle", "Handles"]
 
 Floats = NDArray[np.float64]
 
@@ -20,7 +20,7 @@ REACH = 11.0
 
 
 @dataclass(frozen=True, eq=False)
-class Grip:
+class Handle:
     """A handle at ``xyz`` (map coordinates): moved on its level, or along ``way`` (3,); ``moved`` hears where to."""
 
     xyz: Floats
@@ -28,23 +28,23 @@ class Grip:
     way: Floats | None = None
 
 
-class Grips:
+class Handles:
     """The handles of the scene; ``places`` gives them anew at every press."""
 
     def __init__(
-        self, places: Callable[[], list[Grip]], view: Callable[[], Projector], done: Callable[[], None]
+        self, places: Callable[[], list[Handle]], view: Callable[[], Projector], done: Callable[[], None]
     ) -> None:
         self._places, self._view, self._done = places, view, done
-        self._held: Grip | None = None
+        self._held: Handle | None = None
 
-    def at(self, pos: QPointF) -> Grip | None:
+    def at(self, pos: QPointF) -> Handle | None:
         """Return the handle under the pointer."""
-        grips = self._places()
-        if not grips:
+        handles = self._places()
+        if not handles:
             return None
-        seen = self._view().screen(np.array([grip.xyz for grip in grips]))
+        seen = self._view().screen(np.array([handle.xyz for handle in handles]))
         away = np.nan_to_num(np.hypot(seen[:, 0] - pos.x(), seen[:, 1] - pos.y()), nan=np.inf)
-        return grips[int(away.argmin())] if away.min() <= REACH else None
+        return handles[int(away.argmin())] if away.min() <= REACH else None
 
     def press(self, pos: QPointF) -> bool:
         """Take the handle under the pointer; False if there is none."""
@@ -55,14 +55,14 @@ class Grips:
         """Move the handle that is held."""
         if self._held is None:
             return
-        view, grip = self._view(), self._held
-        if grip.way is None:
-            target = view.on_level(pos.x(), pos.y(), float(grip.xyz[2]))
+        view, handle = self._view(), self._held
+        if handle.way is None:
+            target = view.on_level(pos.x(), pos.y(), float(handle.xyz[2]))
         else:
-            share = view.along(pos.x(), pos.y(), grip.xyz, grip.way)
-            target = None if share is None else grip.xyz + share * grip.way
+            share = view.along(pos.x(), pos.y(), handle.xyz, handle.way)
+            target = None if share is None else handle.xyz + share * handle.way
         if target is not None:
-            grip.moved(target)
+            handle.moved(target)
 
     def release(self) -> None:
         """Let go."""

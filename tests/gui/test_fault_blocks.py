@@ -13,9 +13,9 @@ from geofit import FitSettings
 from geofit.data.site import Orientations
 from geofit.io.project import open_project
 from geofit.project.building import make
-from geofit.project.commands import ExcludeRows, IncludeRows, PartAtFaults, SetSettings, SetSurface
+from geofit.project.commands import ExcludeRows, IncludeRows, SetSettings, SetSurface, SplitAtFaults
 from geofit.project.document import Document
-from geofit.project.fault_blocks import measured, part_at_faults
+from geofit.project.fault_blocks import measured, split_at_faults
 from geofit.project.ordering import comparable
 from geofit.project.provenance import DocumentError, Row
 from geofit.project.reporting import write_report_files
@@ -37,19 +37,19 @@ def opened(site=None):
 
 
 def part(document):
-    given, left_out = document.given_for_parting("T2")
-    found = part_at_faults("T2", document.faults("T2"), left_out, given, document.given("T2"), progress=quiet)
-    for recipe, surface in found.faults.items():
-        document.put(recipe, surface)
-        SetSurface(recipe).redo(document)
+    given, left_out = document.inputs_for_blocks("T2")
+    found = split_at_faults("T2", document.faults("T2"), left_out, given, document.given("T2"), progress=quiet)
+    for provenance, surface in found.faults.items():
+        document.put(provenance, surface)
+        SetSurface(provenance).redo(document)
     return found
 
 
 def fit(document, names):
     for name in names:
-        recipe = document.recipe(name)
-        document.put(recipe, make(recipe, document.given_for(recipe)))
-        SetSurface(recipe).redo(document)
+        provenance = document.provenance(name)
+        document.put(provenance, make(provenance, document.given_for(provenance)))
+        SetSurface(provenance).redo(document)
 
 
 def rows_of(points):
@@ -63,9 +63,9 @@ def rows(document):
 
 @pytest.fixture(scope="module")
 def parted():
-    """A document whose horizon was parted, and its blocks fitted."""
+    """A document whose horizon was split, and its blocks fitted."""
     document = opened()
-    PartAtFaults("T2", dict(part(document).blocks)).redo(document)
+    SplitAtFaults("T2", dict(part(document).blocks)).redo(document)
     fit(document, BLOCKS)
     return document
 
@@ -102,18 +102,18 @@ def test_a_block_is_as_old_as_its_fault_and_its_site(parted):
     document = opened()
     document.become(parted.state)
     assert not document.stale("T2 (A)")
-    assert not document.unparted("T2 (A)")
+    assert not document.needs_split("T2 (A)")
     other = SetSettings("F1", FitSettings(frame="best-plane", interior_tolerance=0.2))
     other.redo(document)
-    assert document.unparted("T2 (A)")
+    assert document.needs_split("T2 (A)")
     assert document.stale("T2 (A)")
     other.undo(document)
     assert not document.stale("T2 (B)")
     site = faulted_site()
     fewer = replace(site, horizons={**site.horizons, "T2": site.horizons["T2"][1:]})
     document.open(fewer, None, parted.state)
-    assert document.unparted("T2 (B)")
-    assert document.missing() == (document.state.recipes["F1"],)
+    assert document.needs_split("T2 (B)")
+    assert document.missing() == (document.state.provenances["F1"],)
 
 
 def test_excluded_rows_stay_excluded_however_the_horizon_is_parted_and_can_be_included_again():
@@ -121,11 +121,11 @@ def test_excluded_rows_stay_excluded_however_the_horizon_is_parted_and_can_be_in
     points = document.points("T2")
     first, second = Row.of(points, 3), Row.of(points, 40)
     ExcludeRows("T2", (first,)).redo(document)
-    PartAtFaults("T2", dict(part(document).blocks)).redo(document)
+    SplitAtFaults("T2", dict(part(document).blocks)).redo(document)
     assert rows(document) == rows_of(points) - {first}
     home = next(name for name in BLOCKS if first.find(document.site.horizons[name]) is not None)
     ExcludeRows("T2 (A)", (second,)).redo(document)
-    PartAtFaults("T2", dict(part(document).blocks)).redo(document)
+    SplitAtFaults("T2", dict(part(document).blocks)).redo(document)
     assert rows(document) == rows_of(points) - {first, second}
     IncludeRows(home, (first,)).redo(document)
     assert rows(document) == rows_of(points) - {second}
@@ -150,7 +150,7 @@ def test_excluded_rows_that_lie_in_no_block_are_told():
     assert len(found.blocks) == 2
     (note,) = (note for note in found.notes if "in no block" in str(note))
     assert str(note).count("holes.csv row") == len(between) > 10
-    PartAtFaults("T2", dict(found.blocks)).redo(document)
+    SplitAtFaults("T2", dict(found.blocks)).redo(document)
     assert rows(document) == rows_of(points) - {Row.of(points, int(index)) for index in between}
 
 
@@ -158,7 +158,7 @@ def test_parting_is_one_step_and_names_no_other_horizon():
     document = opened()
     blocks = dict(part(document).blocks)
     before = document.state
-    command = PartAtFaults("T2", blocks)
+    command = SplitAtFaults("T2", blocks)
     command.redo(document)
     document.select("T2 (B)")
     command.undo(document)
@@ -166,7 +166,7 @@ def test_parting_is_one_step_and_names_no_other_horizon():
     assert document.selection.horizon == "T2"
     taken = {("F1" if name == "T2 (B)" else name): one for name, one in blocks.items()}
     with pytest.raises(DocumentError, match="called 'F1', and so is a horizon"):
-        PartAtFaults("T2", taken).redo(document)
+        SplitAtFaults("T2", taken).redo(document)
 
 
 def test_a_fault_beside_all_points_parts_nothing():
@@ -183,7 +183,7 @@ def test_a_block_hears_of_the_dips_measured_on_its_side():
     place = site.horizons["T2"].xyz[:1]
     dips = Orientations(place, np.zeros(1), np.array([80.0]), np.array(["T2"]), np.array(["d.csv"]), np.array([2]))
     document = opened(replace(site, orientations=dips))
-    PartAtFaults("T2", dict(part(document).blocks)).redo(document)
+    SplitAtFaults("T2", dict(part(document).blocks)).redo(document)
     fit(document, BLOCKS)
     asked = {name: [c for c in document.surface(name).accuracy.checks if c.name == "dips"] for name in BLOCKS}
     mine = next(name for name in BLOCKS if (document.points(name).xyz == place).all(axis=1).any())
@@ -201,7 +201,7 @@ def test_only_blocks_on_one_side_lie_above_each_other(parted):
 
 
 def test_a_project_brings_the_blocks_back(parted, tmp_path):
-    surfaces = {parted.state.recipes[name]: parted.surface(name).with_(model=None) for name in parted.horizons}
+    surfaces = {parted.state.provenances[name]: parted.surface(name).with_(model=None) for name in parted.horizons}
     path = tmp_path / "dam.geofit"
     site_file = tmp_path / "site.toml"
     write_project(project_of(parted.state, faulted_site(), site_file, path, None), path, surfaces)
@@ -212,9 +212,9 @@ def test_a_project_brings_the_blocks_back(parted, tmp_path):
     document.open(faulted_site(), site_file, state, path)
     read = read_surfaces(project, tmp_path, document.site, progress=quiet)
     assert set(read) == set(surfaces)
-    for recipe, surface in read.items():
-        document.put(recipe, surface)
-        assert surface.accuracy.sigma == pytest.approx(surfaces[recipe].accuracy.sigma, abs=1e-6)
+    for provenance, surface in read.items():
+        document.put(provenance, surface)
+        assert surface.accuracy.sigma == pytest.approx(surfaces[provenance].accuracy.sigma, abs=1e-6)
     assert not any(document.stale(name) for name in document.horizons)
 
 
@@ -232,7 +232,7 @@ def test_fit_all_parts_fits_and_measures(app, caplog):
     # By hand a block is changed as any horizon is.
     document.select("T2 (B)")
     before = document.surface("T2 (B)")
-    app.window.fitting.pull("T2 (B)", Row.of(before.points, before.accuracy.worst[0]), 1.0)
+    app.window.fitting.move_to("T2 (B)", Row.of(before.points, before.accuracy.worst[0]), 1.0)
     app.idle()
     after = document.surface("T2 (B)")
     assert after is not before

@@ -12,19 +12,19 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 
 from geofit.data.points import PointSet
-from geofit.data.prediction import LeftOut, OffData
+from geofit.data.prediction import LeftOut, PredictionResult
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable
-from geofit.gui.words import spoken
+from geofit.gui.translate import translated
 from geofit.project.provenance import Row
 
-__all__ = ["OffDataPanel"]
+__all__ = ["PredictionPanel"]
 
 #: Rows of a table before it scrolls.
 MOST_ROWS = 8
 
 
-class OffDataPanel(QWidget):
+class PredictionPanel(QWidget):
     """Cross-validation, uncertainty, suggested holes and outliers of one horizon."""
 
     examine_requested = Signal()
@@ -33,7 +33,7 @@ class OffDataPanel(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._offdata: OffData | None = None
+        self._prediction: PredictionResult | None = None
         self._points: PointSet | None = None
         self.figures, self.notes = QLabel(), QLabel()
         self.left_out, self.suggestions, self.outliers = DataTable(), DataTable(), DataTable()
@@ -45,10 +45,10 @@ class OffDataPanel(QWidget):
         column.setSpacing(6)
         self._heads: dict[str, QLabel] = {}
         for key, words, widget in (
-            ("figures", self.tr("How sure the surface is"), self.figures),
+            ("figures", self.tr("Uncertainty of the surface"), self.figures),
             ("left_out", self.tr("Error where data was left out"), self.left_out),
-            ("suggestions", self.tr("Where the next holes would tell most"), self.suggestions),
-            ("outliers", self.tr("Points that their neighbours do not bear out"), self.outliers),
+            ("suggestions", self.tr("Where the next holes would help most"), self.suggestions),
+            ("outliers", self.tr("Outliers: points that their neighbours contradict"), self.outliers),
             ("notes", self.tr("Notes"), self.notes),
         ):
             head = QLabel(words)
@@ -82,48 +82,52 @@ class OffDataPanel(QWidget):
         self.again.clicked.connect(self.examine_requested)
         self.suggestions.chosen.connect(self._tell_suggestion)
         self.outliers.chosen.connect(self._tell_outlier)
-        self.show_offdata(None)
+        self.show_prediction(None)
 
-    def show_offdata(self, offdata: OffData | None, points: PointSet | None = None, *, fitted: bool = True) -> None:
+    def show_prediction(
+        self, prediction: PredictionResult | None, points: PointSet | None = None, *, fitted: bool = True
+    ) -> None:
         """Show what was found away from the data.
 
         Parameters
         ----------
-        offdata : OffData or None
+        prediction : PredictionResult or None
             None while nobody asked; the panel then offers to examine.
         points : PointSet or None
             The horizon's points, to name the outliers.
         fitted : bool
             Whether there is a surface to examine.
         """
-        self._offdata, self._points = offdata, points
-        if offdata is None:
+        self._prediction, self._points = prediction, points
+        if prediction is None:
             if fitted:
                 words = self.tr(
-                    "Not examined yet: how far the rock may lie from the surface where nobody drilled is found by "
-                    "leaving out each hole and section in turn."
+                    "Not examined yet: the prediction error away from the data is found by leaving out "
+                    "each hole and section in turn."
                 )
                 self.pages.say(words, self.tr("Examine"))
             else:
                 self.pages.say(self.tr("No surface yet: press Fit, then examine it away from the data."))
             return
-        self._show_figures(offdata)
-        self._show("left_out", self.left_out, self._left_out_columns(offdata) if offdata.left_out else ())
-        self._show("suggestions", self.suggestions, self._suggestion_columns(offdata) if offdata.suggestions else ())
-        self._show("outliers", self.outliers, self._outlier_columns(offdata) if offdata.outliers else ())
-        self.notes.setText("\n".join(spoken(note) for note in offdata.notes))
+        self._show_figures(prediction)
+        self._show("left_out", self.left_out, self._left_out_columns(prediction) if prediction.left_out else ())
+        self._show(
+            "suggestions", self.suggestions, self._suggestion_columns(prediction) if prediction.suggestions else ()
+        )
+        self._show("outliers", self.outliers, self._outlier_columns(prediction) if prediction.outliers else ())
+        self.notes.setText("\n".join(translated(note) for note in prediction.notes))
         for widget in (self.notes, self._heads["notes"]):
-            widget.setVisible(bool(offdata.notes))
+            widget.setVisible(bool(prediction.notes))
         self.pages.reveal()
 
     def choose_point(self, index: int | None) -> None:
         """Go to a point's row among the outliers; nothing is emitted."""
-        indices = [] if self._offdata is None else [outlier.index for outlier in self._offdata.outliers]
+        indices = [] if self._prediction is None else [outlier.index for outlier in self._prediction.outliers]
         self.outliers.choose(indices.index(index) if index in indices else None)
 
-    def _show_figures(self, offdata: OffData) -> None:
+    def _show_figures(self, prediction: PredictionResult) -> None:
         lines = []
-        sd = offdata.uncertainty
+        sd = prediction.uncertainty
         if sd is not None:
             lines.append(
                 self.tr("Standard deviation of the surface: {mean:.2f} m on average, {most:.2f} m at most.").format(
@@ -138,7 +142,7 @@ class OffDataPanel(QWidget):
                 else self.tr("Not widened: the 90 % band contains 90 % of the left-out points or more.")
             )
             lines.append(words.format(factor=sd.factor))
-        for left in offdata.left_out:
+        for left in prediction.left_out:
             words = self.tr(
                 "{name}: {inside:.0f} % of the left-out points lie in the 90 % band ({raw:.0f} % before calibration)."
             )
@@ -153,10 +157,10 @@ class OffDataPanel(QWidget):
         }  # fmt: skip
         return words.get(scheme, scheme)
 
-    def _left_out_columns(self, offdata: OffData) -> list[Column]:
-        left_out = offdata.left_out
-        peers = {"thin plate": self.tr("Thin plate, m"), "kriging": self.tr("Kriging, m")}
-        found = dict.fromkeys(name for left in left_out for name in left.peers)
+    def _left_out_columns(self, prediction: PredictionResult) -> list[Column]:
+        left_out = prediction.left_out
+        references = {"thin plate": self.tr("Thin plate, m"), "kriging": self.tr("Kriging, m")}
+        found = dict.fromkeys(name for left in left_out for name in left.references)
         about = self.tr("Root mean square error of another method with the same points left out.")
         return [
             Column(self.tr("Left out"), np.array([self._scheme(left.scheme) for left in left_out])),
@@ -165,7 +169,7 @@ class OffDataPanel(QWidget):
                 self.tr("Root mean square error at the points that were left out."),
             ),
             *(
-                Column(peers.get(name, f"{name}, m"), _of(left_out, partial(_peer, name)), 3, about)
+                Column(references.get(name, f"{name}, m"), _of(left_out, partial(_peer, name)), 3, about)
                 for name in found
             ),
             Column(
@@ -180,8 +184,8 @@ class OffDataPanel(QWidget):
             Column(self.tr("Groups"), np.array([left.groups for left in left_out]), 0),
         ]  # fmt: skip
 
-    def _suggestion_columns(self, offdata: OffData) -> list[Column]:
-        holes = offdata.suggestions
+    def _suggestion_columns(self, prediction: PredictionResult) -> list[Column]:
+        holes = prediction.suggestions
         return [
             Column(self.tr("No."), np.arange(1, len(holes) + 1), 0),
             Column(self.tr("sd, m"), _of(holes, lambda hole: hole.sd), 2, self.tr("Standard deviation there now.")),
@@ -195,10 +199,10 @@ class OffDataPanel(QWidget):
             Column(self.tr("Elevation, m"), _of(holes, lambda hole: hole.z), 1),
         ]  # fmt: skip
 
-    def _outlier_columns(self, offdata: OffData) -> list[Column]:
-        outliers = offdata.outliers
+    def _outlier_columns(self, prediction: PredictionResult) -> list[Column]:
+        outliers = prediction.outliers
         named = [
-            str(o.index) if self._points is None else spoken(self._points.describe(o.index)) for o in outliers
+            str(o.index) if self._points is None else translated(self._points.describe(o.index)) for o in outliers
         ]  # fmt: skip
         return [
             Column(self.tr("Point"), np.array(named)),
@@ -219,17 +223,17 @@ class OffDataPanel(QWidget):
         table.setFixedHeight(rows * line + table.horizontalHeader().sizeHint().height() + bar + 4)
 
     def _tell_suggestion(self, row: int) -> None:
-        if self._offdata is not None:
-            hole = self._offdata.suggestions[row]
+        if self._prediction is not None:
+            hole = self._prediction.suggestions[row]
             self.suggestion_chosen.emit(hole.x, hole.y, hole.z)
 
     def _tell_outlier(self, row: int) -> None:
-        if self._offdata is not None and self._points is not None:
-            self.point_chosen.emit(Row.of(self._points, self._offdata.outliers[row].index))
+        if self._prediction is not None and self._points is not None:
+            self.point_chosen.emit(Row.of(self._points, self._prediction.outliers[row].index))
 
 
 def _peer(name: str, left: LeftOut) -> float:
-    return left.peers.get(name, np.nan)
+    return left.references.get(name, np.nan)
 
 
 def _of(items: Sequence[Any], value: Callable[..., float]) -> NDArray[np.float64]:

@@ -6,10 +6,10 @@ from geofit.data.languages import Language, sentence, translate
 from geofit.data.messages import message
 from geofit.data.verdict import LEAST_INSIDE
 from geofit.report import digits
-from geofit.report.accuracy_report import HorizonReport, LeftOutLine, OffDataReport
+from geofit.report.accuracy_report import HorizonReport, LeftOutLine, PredictionReport
 from geofit.report.document import Block, Cell, Column, Facts, Heading, Mark, Paragraph, Picture, Table
 
-__all__ = ["off_data_blocks"]
+__all__ = ["prediction_blocks"]
 
 _SCHEMES = {
     "hole": message("report.hole-time", "one hole at a time"),
@@ -17,15 +17,15 @@ _SCHEMES = {
     "block": message("report.block-time", "one block at a time"),
 }
 #: Methods beside ours, in the order of their columns.
-_PEERS = ("thin plate", "kriging")
+_REFERENCES = ("thin plate", "kriging")
 
 
-def off_data_blocks(h: HorizonReport, t: Language) -> list[Block]:
-    """Lay out the error off the data, or say that it was not examined."""
-    off = h.off_data
-    blocks: list[Block] = [Heading(t("The error off the data"))]
+def prediction_blocks(h: HorizonReport, t: Language) -> list[Block]:
+    """Lay out the prediction error, or say that it was not examined."""
+    off = h.prediction
+    blocks: list[Block] = [Heading(t("Prediction error"))]
     if off is None:
-        return [*blocks, Paragraph(t("Not examined: how far the surface may lie from the rock where nobody drilled."))]
+        return [*blocks, Paragraph(t("Not examined: the prediction error away from the data."))]
     blocks.append(
         Paragraph(
             t(
@@ -40,7 +40,7 @@ def off_data_blocks(h: HorizonReport, t: Language) -> list[Block]:
     return blocks
 
 
-def _left_out(off: OffDataReport, t: Language) -> list[Block]:
+def _left_out(off: PredictionReport, t: Language) -> list[Block]:
     if not off.left_out:
         return [Paragraph(t("Cross-validation was not possible."))]
     columns = (
@@ -63,8 +63,8 @@ def _left_out(off: OffDataReport, t: Language) -> list[Block]:
 
 
 def _scheme_row(scheme: LeftOutLine, t: Language) -> tuple[Cell, ...]:
-    peers = dict(scheme.peers)
-    errors = [scheme.rms, *(peers.get(name) for name in _PEERS)]
+    references = dict(scheme.references)
+    errors = [scheme.rms, *(references.get(name) for name in _REFERENCES)]
     known = [error for error in errors if error is not None]
     least = min(known, default=None)
     cells = [digits.metres(e) + (" *" if e is not None and e == least and len(known) > 1 else "") for e in errors]
@@ -85,13 +85,13 @@ def _scheme_row(scheme: LeftOutLine, t: Language) -> tuple[Cell, ...]:
     )
 
 
-def _uncertainty(h: HorizonReport, off: OffDataReport, t: Language) -> list[Block]:
+def _uncertainty(h: HorizonReport, off: PredictionReport, t: Language) -> list[Block]:
     blocks: list[Block] = [Heading(t("Standard deviation and where to drill next"), 3)]
     name = h.pictures.get("uncertainty")
     if off.sd_mean is None or off.sd_max is None or name is None:
         blocks.append(Paragraph(t("The standard deviation was not examined.")))
     else:
-        held = t("holds the standard deviation to the left-out errors")
+        held = t("calibrates the standard deviation to the left-out errors")
         factor = "–" if off.factor is None else f"× {off.factor:.2f}"
         facts = (
             (t("Mean standard deviation"), digits.length(off.sd_mean), ""),

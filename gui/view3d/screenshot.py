@@ -18,7 +18,7 @@ from geofit.data.messages import message
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.stage import Stage
 
-__all__ = ["shoot"]
+__all__ = ["write_screenshot"]
 
 #: Most pixels a side: what every OpenGL can draw into.
 MOST = 16_000
@@ -26,10 +26,10 @@ MOST = 16_000
 SCREEN = 96 / 0.0254
 
 
-def shoot(
+def write_screenshot(
     canvas: Canvas, stage: Stage, path: str | PathLike[str], scale: float, write: Callable[[QPainter], None]
 ) -> QImage:
-    """Write the scene as PNG with ``scale`` times the widget's pixels; ``write`` draws what stands over it.
+    """Write the scene as PNG with ``scale`` times the widget's pixels; ``write`` draws what is drawn over it.
 
     Raises
     ------

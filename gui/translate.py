@@ -6,25 +6,25 @@ import re
 
 from geofit.data.errors import GeofitError
 from geofit.data.languages import EN, ZH, Language, translate
-from geofit.data.messages import Message, Verbatim, message
+from geofit.data.messages import Message, Untranslated, message
 
-__all__ = ["bare", "failure", "shown_error", "speak", "spoken", "spoken_language"]
+__all__ = ["bare", "failure", "shown_error", "speak", "translated", "user_language"]
 
 _language: Language = EN
 
 
 def speak(code: str) -> None:
-    """Choose the language of :func:`spoken`: "en" or "zh_CN"."""
+    """Choose the language of :func:`translated`: "en" or "zh_CN"."""
     global _language
     _language = ZH if code.startswith("zh") else EN
 
 
-def spoken_language() -> Language:
-    """Return the language of :func:`spoken`, for files that the windows write."""
+def user_language() -> Language:
+    """Return the language of :func:`translated`, for files that the windows write."""
     return _language
 
 
-def spoken(text: Message | str | GeofitError) -> str:
+def translated(text: Message | str | GeofitError) -> str:
     """Return a message, a term or the message of an error in the user's language."""
     return translate(text, _language)
 
@@ -36,13 +36,15 @@ def shown_error(error: BaseException) -> Message | str:
     if isinstance(error, OSError) and error.strerror:
         if not error.filename:
             return error.strerror
-        return message("error.at-place", "{place}: {sentence}", place=Verbatim(error.filename), sentence=error.strerror)
-    return Verbatim(error if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
+        return message(
+            "error.at-place", "{place}: {sentence}", place=Untranslated(error.filename), sentence=error.strerror
+        )
+    return Untranslated(error if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
 
 
 def failure(error: BaseException) -> str:
     """Return what an error says in the user's language."""
-    return spoken(shown_error(error))
+    return translated(shown_error(error))
 
 
 def bare(text: str) -> str:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground, Site
-from geofit.gui.panels.canvas import DOT, Ink
+from geofit.gui.panels.canvas import DOT, PlotColours
 from geofit.gui.panels.curtain import Curtain, Traces
 from geofit.gui.panels.section_scale import Extent
 from geofit.report.section_pages import lithology_style
@@ -87,14 +87,14 @@ def near_points(data: SectionData, name: str) -> tuple[Floats, NDArray[np.int64]
     return np.column_stack([along[index], points.xyz[index, 2]]), index
 
 
-def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, str]) -> None:
+def draw_section(axes: Axes, data: SectionData, colours: PlotColours, words: Mapping[str, str]) -> None:
     """Draw a section to scale; ``words`` holds the texts ground, band and elevation."""
     for bend in data.curtain.starts[1:-1]:
-        axes.axvline(bend, color=ink.line, lw=0.9, zorder=0)
+        axes.axvline(bend, color=colours.line, lw=0.9, zorder=0)
     if data.site.ground is not None:
         distance, places = data.curtain.places()
         z = data.site.ground.elevation(places[:, 0], places[:, 1])
-        axes.plot(distance, z, color=ink.of(GROUND), lw=1.3, label=words["ground"], zorder=2)
+        axes.plot(distance, z, color=colours.of(GROUND), lw=1.3, label=words["ground"], zorder=2)
     banded = False
     for name, lines in data.traces.items():
         colour = data.colour(name)
@@ -104,9 +104,9 @@ def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, st
         for line in lines:
             held = np.ones(len(line.distance), bool) if support is None else support.within(line.xyz)
             runs = _runs(held)
-            told = any(solid for _, solid in runs)
+            solid_shown = any(solid for _, solid in runs)
             for run, solid in runs:
-                first = not named and solid == told
+                first = not named and solid == solid_shown
                 axes.plot(
                     line.distance[run], line.xyz[run, 2], color=colour, lw=1.7 if solid else 1.2,
                     ls="-" if solid else DASHES, alpha=1.0 if solid else 0.65, label=name if first else None, zorder=4,
@@ -119,7 +119,7 @@ def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, st
                     label=None if banded else words["band"], zorder=1,
                 )  # fmt: skip
                 banded = True
-    _holes(axes, data, ink)
+    _holes(axes, data, colours)
     for name in data.site.horizons:
         places, index = near_points(data, name)
         kinds = data.site.horizons[name].kind[index]
@@ -128,11 +128,11 @@ def draw_section(axes: Axes, data: SectionData, ink: Ink, words: Mapping[str, st
             marker = kind_style(kind)[0]
             axes.plot(
                 places[of, 0], places[of, 1], ls="none", marker=marker, ms=6 if marker == "." else 4.5,
-                color=data.colour(name), mec=ink.paper, mew=0.5, zorder=5, rasterized=of.sum() > 5_000,
+                color=data.colour(name), mec=colours.paper, mew=0.5, zorder=5, rasterized=of.sum() > 5_000,
             )  # fmt: skip
     axes.set_ylabel(words["elevation"])
     axes.xaxis.set_major_locator(_Along(data.curtain.length))
-    axes.yaxis.grid(True, color=ink.line, lw=0.6)
+    axes.yaxis.grid(True, color=colours.line, lw=0.6)
     axes.set_axisbelow(True)
     quiet(axes)
 
@@ -151,7 +151,7 @@ def _band(xyz: Floats, uncertainty: Uncertainty | None) -> Floats | None:
     return np.asarray(NINETY * sd)
 
 
-def _holes(axes: Axes, data: SectionData, ink: Ink) -> None:
+def _holes(axes: Axes, data: SectionData, colours: PlotColours) -> None:
     """Draw the holes within the thickness: one line for all, as each costs as much as all."""
     tracks, heads = [np.full((1, 2), np.nan)], []
     for hole in data.site.holes:
@@ -163,17 +163,17 @@ def _holes(axes: Axes, data: SectionData, ink: Ink) -> None:
             heads.append((hole.name, track[np.nanargmax(track[:, 1])]))
     if not heads:
         return
-    _logged(axes, data, ink)
-    axes.plot(*np.concatenate(tracks).T, color=ink.muted, lw=1.1, zorder=3)
-    axes.plot(*np.array([head for _, head in heads]).T, ls="none", marker="_", color=ink.muted, ms=6, zorder=3)
+    _logged(axes, data, colours)
+    axes.plot(*np.concatenate(tracks).T, color=colours.muted, lw=1.1, zorder=3)
+    axes.plot(*np.array([head for _, head in heads]).T, ls="none", marker="_", color=colours.muted, ms=6, zorder=3)
     for name, head in heads:
         axes.annotate(
             name, head, xytext=(0, 3), textcoords="offset points", ha="center", va="bottom", rotation=90,
-            size=LETTERS, color=ink.text, annotation_clip=True, zorder=6,
+            size=LETTERS, color=colours.text, annotation_clip=True, zorder=6,
         )  # fmt: skip
 
 
-def _logged(axes: Axes, data: SectionData, ink: Ink) -> None:
+def _logged(axes: Axes, data: SectionData, colours: PlotColours) -> None:
     """Draw the first interval table of the holes within the thickness as columns, each code with its pattern."""
     import matplotlib as mpl
     from matplotlib.patches import Polygon
@@ -183,7 +183,7 @@ def _logged(axes: Axes, data: SectionData, ink: Ink) -> None:
         return
     every = {str(code) for campaign in data.site.boreholes for log in campaign.logs for code in np.unique(log.code)}
     styles = lithology_style(sorted(every))
-    half, told = COLUMN * data.curtain.length, set[str]()
+    half, labelled = COLUMN * data.curtain.length, set[str]()
     for hole in data.site.holes:
         for one in hole_intervals(data.site, hole, tables[0]):
             along, beside = data.curtain.project(one.xyz[:, :2])
@@ -194,10 +194,10 @@ def _logged(axes: Axes, data: SectionData, ink: Ink) -> None:
             side = np.array([half, 0.0])
             outline = np.concatenate([track - side, track[::-1] + side])
             colour, hatch = styles[one.code]
-            label = None if one.code in told else one.code
-            told.add(one.code)
+            label = None if one.code in labelled else one.code
+            labelled.add(one.code)
             with mpl.rc_context({"hatch.linewidth": 0.3}):
-                made = Polygon(outline, fc=colour, ec=ink.muted, lw=0.4, hatch=hatch, label=label, zorder=2.5)
+                made = Polygon(outline, fc=colour, ec=colours.muted, lw=0.4, hatch=hatch, label=label, zorder=2.5)
             axes.add_patch(made)
 
 
@@ -229,7 +229,7 @@ def thin_names(axes: Axes) -> None:
         last = at if at - last >= apart else last
 
 
-def explain(figure: Figure, ink: Ink, *, narrow: bool) -> tuple[Text, tuple[float, float, float, float]]:
+def explain(figure: Figure, colours: PlotColours, *, narrow: bool) -> tuple[Text, tuple[float, float, float, float]]:
     """Write the legend beside the drawing, or below where that is narrow, and the exaggeration above.
 
     Returns
@@ -245,7 +245,7 @@ def explain(figure: Figure, ink: Ink, *, narrow: bool) -> tuple[Text, tuple[floa
     column = row = 0.0
     if handles:
         legend = figure.legend(
-            handles, labels, labelcolor=ink.text, fontsize=LEGEND, borderpad=0, borderaxespad=0,
+            handles, labels, labelcolor=colours.text, fontsize=LEGEND, borderpad=0, borderaxespad=0,
             loc="lower center" if narrow else "upper left",
             ncols=3 if narrow else 1 + (len(handles) * ROW > height - 2 * NOTE), handlelength=1.4, columnspacing=0.8,
         )  # fmt: skip
@@ -257,7 +257,7 @@ def explain(figure: Figure, ink: Ink, *, narrow: bool) -> tuple[Text, tuple[floa
         legend.set_bbox_to_anchor(at, figure.transFigure)
     note = figure.text(
         1 - (FREE if narrow else column) / width, 1 - 4 / height, "", ha="right" if narrow else "left", va="top",
-        size=8.0, weight="bold", color=ink.text,
+        size=8.0, weight="bold", color=colours.text,
     )  # fmt: skip
     top = NOTE if narrow else 0.0
     return note, (0.0, top, width - column, height - top - (row + 4 if narrow else 0.0))
