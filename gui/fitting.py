@@ -187,7 +187,7 @@ class Fitting(QObject):
             self.push(IncludeRows(name, tuple(rows)))
 
     def push(self, command: Command) -> None:
-        """Do a command, or tell why not."""
+        """Do a command, or show why not."""
         try:
             self._session.push(command)
         except DocumentError as error:

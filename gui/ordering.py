@@ -29,7 +29,7 @@ _LOG = logging.getLogger(__name__)
 
 
 class Ordering(QObject):
-    """Compares every two horizons, and pushes them apart; what is found is in the checks.
+    """Compares every two horizons, and separates them; what is found is in the checks.
 
     ``reported(text)`` sums it up, ``refused(exception)`` states why nothing was done.
     """

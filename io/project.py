@@ -4,7 +4,7 @@
 
     {
       "format": "geofit project",
-      "version": 1,
+      "version": 2,
       "name": "Dam site",
       "crs": "EPSG:32648",
       "sources": [{"path": "data/collar.csv", "role": "collar", "sha256": "...", "mapping": {...}}],
@@ -66,7 +66,7 @@ _TYPES: dict[str, tuple[type, ...]] = {
     "Mapping[str, Any]": (Mapping,),
 }
 #: Version of the layout. A change that an older reader would misread makes it one more, with a migration.
-VERSION = 1
+VERSION = 2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -347,8 +347,28 @@ def _from_0(data: Mapping[str, Any]) -> dict[str, Any]:
     }
 
 
+#: Keys of version 1 that have another name since, and kinds of edits.
+_RENAMED = {"recipe": "provenance", "conflict_distance": "coincidence_distance"}
+_RENAMED_KINDS = {"apart": "separate"}
+
+
+def _from_1(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Version 1 had other names for the provenance, the coincidence distance, and the separation of horizons."""
+
+    def renamed(value: Any, key: str = "") -> Any:
+        if isinstance(value, Mapping):
+            return {_RENAMED.get(name, name): renamed(inner, name) for name, inner in value.items()}
+        if isinstance(value, list):
+            return [renamed(inner) for inner in value]
+        return _RENAMED_KINDS.get(value, value) if key == "kind" else value
+
+    # Sources come from the user: a mapping names columns of his files.
+    changed = {key: renamed(data[key]) for key in ("settings", "edits", "results") if key in data}
+    return {**data, **changed, "version": 2}
+
+
 #: What turns version k into version k + 1.
-MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {0: _from_0}
+MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {0: _from_0, 1: _from_1}
 
 
 def _written(target: Path) -> tuple[ProjectResult, ...]:

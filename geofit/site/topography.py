@@ -26,7 +26,7 @@ NAMED = 20
 def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -> Check | None:
     """Look for places where a horizon stands above the ground.
 
-    A horizon that crops out goes on above the ground as it lay before erosion: that is reported, not a failure. Above
+    A horizon that crops out goes on above the ground as it was before erosion: that is reported, not a failure. Above
     the ground at one of its own points it is wrong, and so it is between three points close to each other that lie
     deeper below the ground than it stands above.
 

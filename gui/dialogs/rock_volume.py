@@ -84,7 +84,9 @@ class RockVolumeDialog(TaskDialog):
     def read(self, path: Path) -> None:
         """Read a volume and show its middle slice."""
         self.say("")
-        self.begin(read_grey, path, on_done=self._opened, on_stopped=lambda: self.say(self.tr("Stopped.")), apart=False)
+        self.begin(
+            read_grey, path, on_done=self._opened, on_stopped=lambda: self.say(self.tr("Stopped.")), in_process=False
+        )
 
     def refresh(self) -> None:
         """Enable what can be done: pores can be found once a volume is open and its voxel is stated."""

@@ -17,6 +17,12 @@ from geofit.data.settings import FitSettings
 from geofit.io import project as module
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
 
+VERSION_1 = """{"format": "geofit project", "version": 1, "name": "Old dam",
+"settings": {"T1": {"epsilon": 0.25, "conflict_distance": 0.05}},
+"sources": [{"path": "a.csv", "mapping": {"recipe": "conflict_distance"}}],
+"edits": [{"kind": "apart", "horizon": "T1", "values": {"kind": "apart"}}],
+"results": [{"horizon": "T1", "surface": "old_surfaces/T1-0123abcd.step", "sha256": "",
+"recipe": {"horizon": "T1", "settings": {"conflict_distance": 0.05}, "edits": [{"kind": "apart"}]}}]}"""
 VERSION_0 = """{"format": "geofit project", "version": 0, "title": "Old dam",
 "files": {"collar.csv": "ab12"}, "epsilon": {"T1": 0.25}}"""
 
@@ -106,6 +112,17 @@ def test_version_0_opens(tmp_path):
     assert set(module.MIGRATIONS) == set(range(module.VERSION))
 
 
+def test_version_1_opens_under_the_names_of_today(tmp_path):
+    (tmp_path / "old.geofit").write_text(VERSION_1, encoding="utf-8")
+    old = open_project(tmp_path / "old.geofit")
+    assert old.settings["T1"].coincidence_distance == 0.05
+    assert old.sources[0].mapping == {"recipe": "conflict_distance"}
+    assert (old.edits[0].kind, old.edits[0].values) == ("separate", {"kind": "separate"})
+    provenance = old.results[0].provenance
+    assert provenance["settings"] == {"coincidence_distance": 0.05}
+    assert provenance["edits"] == [{"kind": "separate"}]
+
+
 @pytest.mark.parametrize(
     ("text", "match"),
     [
@@ -114,16 +131,16 @@ def test_version_0_opens(tmp_path):
         ('{"format": "geofit project", "version": true}', "no version"),
         ('{"format": "other"}', "does not say"),
         ("[1, 2]", "does not say"),
-        ("GOCAD TSurf 1", "no project file"),
-        ("[" * 100_000, "no project file"),
-        ('{"format": "geofit project", "version": 1}', "name"),
-        ('{"format": "geofit project", "version": 1, "name": 3}', "must be text"),
-        ('{"format": "geofit project", "version": 1, "name": "a", "sorces": []}', "unknown key 'sorces'"),
+        ("GOCAD TSurf 1", "not a valid project file"),
+        ("[" * 100_000, "not a valid project file"),
+        ('{"format": "geofit project", "version": 2}', "name"),
+        ('{"format": "geofit project", "version": 2, "name": 3}', "must be text"),
+        ('{"format": "geofit project", "version": 2, "name": "a", "sorces": []}', "unknown key 'sorces'"),
         (
-            '{"format": "geofit project", "version": 1, "name": "a", "settings": {"T": {"epsilon": -1}}}',
+            '{"format": "geofit project", "version": 2, "name": "a", "settings": {"T": {"epsilon": -1}}}',
             "epsilon",
         ),
-        ('{"format": "geofit project", "version": 1, "name": "a", "edits": [{"what": 1}]}', "what"),
+        ('{"format": "geofit project", "version": 2, "name": "a", "edits": [{"what": 1}]}', "what"),
         ('{"format": "geofit project", "version": 0}', "title"),
     ],
 )
@@ -249,7 +266,7 @@ def test_a_save_removes_no_file_of_another_name(tmp_path, name, monkeypatch):
     ],
 )
 def test_values_of_the_wrong_type_are_refused(tmp_path, key, entry):
-    data = {"format": "geofit project", "version": 1, "name": "dam", key: [entry]}
+    data = {"format": "geofit project", "version": 2, "name": "dam", key: [entry]}
     (tmp_path / "p.geofit").write_text(json.dumps(data), "utf-8")
-    with pytest.raises(InputError, match="does not hold what version 1 should"):
+    with pytest.raises(InputError, match="does not contain what version 2 requires"):
         open_project(tmp_path / "p.geofit")
