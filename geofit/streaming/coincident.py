@@ -1,4 +1,4 @@
-"""Coincident points of a cloud: found strip by strip, settled as the in-memory fit settles them.
+"""Coincident points of a cloud: found strip by strip, resolved as the in-memory fit resolves them.
 
 Two points nearer than a distance lie in one strip of the plan, or next to the border between two. Points are sent to
 files of strips, those by a border to both; each file is small enough to be searched in memory.

@@ -1,6 +1,6 @@
 """Fit a cloud of points that need not fit into the memory: passes over its blocks, each reduced to sums.
 
-The steps are those of :func:`geofit.fit_horizon` for a cloud: coincident points are settled, the frame chosen, and the
+The steps are those of :func:`geofit.fit_horizon` for a cloud: conflicts are resolved, the frame chosen, and the
 field fitted by the sums of its cells, all without a copy of the points. The surface is the same to rounding.
 """
 

@@ -15,11 +15,11 @@ from geofit.data.errors import Cancelled
 from geofit.data.languages import EN, ZH
 from geofit.data.site import Ground, Orientations, Site
 from geofit.project.run import run_horizons, write_reports
-from geofit.report.accuracy_report import to_json
 from geofit.report.chapters import document
 from geofit.report.document import Table
 from geofit.report.gather import accuracy_report
 from geofit.report.result import HorizonResult
+from geofit.report.schema import report_document, to_json
 from geofit.site.fit_site import SiteFit, compare, fit_site
 from geofit.site.separate import Contradiction
 from geofit.site.site_checks import add_site_checks, ground_tolerance
@@ -131,7 +131,9 @@ def test_the_ground_is_asked_with_a_tenth_of_its_cell(site, fits):
 def test_throw_and_heave_stand_in_the_report(site, fits):
     results = [HorizonResult(surface, site) for surface in fits.surfaces.values()]
     report = accuracy_report(results, compare(site, fits), cuts=fits.cuts, date="2026-11-21")
-    assert [one["name"] for one in json.loads(to_json(report))["horizons"]] == [one.name for one in report.horizons]
+    assert [one["horizon"] for one in json.loads(to_json(report_document(report)))["horizons"]] == [
+        one.name for one in report.horizons
+    ]
     cut = report.cuts[0]
     assert cut.throw_mean == pytest.approx(THROW, abs=0.2)
     assert len(cut.places) > 30
@@ -198,7 +200,9 @@ def test_what_exact_points_hold_stands_in_the_report_with_their_rows():
     found = fit_site(site, ["U"])
     stuck = Contradiction("U", "L", 500_100.0, 3_100_200.0, 0.25, "point, u.csv row 7", "")
     report = accuracy_report([HorizonResult(found.surfaces["U"], site)], contradictions=[stuck], date="2026-11-21")
-    assert [one["name"] for one in json.loads(to_json(report))["horizons"]] == [one.name for one in report.horizons]
+    assert [one["horizon"] for one in json.loads(to_json(report_document(report)))["horizons"]] == [
+        one.name for one in report.horizons
+    ]
     for language, title in ((EN, "Missing, m"), (ZH, "尚差, m")):
         blocks = document(report, language).chapters[1].blocks
         (table,) = [b for b in blocks if isinstance(b, Table) and title in [column.title for column in b.columns]]

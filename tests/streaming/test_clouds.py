@@ -12,7 +12,7 @@ from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import Cancelled, FitError, InputError, PointsError
 from geofit.data.long_arrays import LongArray
 from geofit.fitting import partition
-from geofit.fitting.conflicts import settle
+from geofit.fitting.conflicts import resolve_conflicts
 from geofit.io import clouds
 from geofit.io.clouds import is_cloud, open_cloud
 from geofit.project.cloud_run import run_cloud
@@ -81,7 +81,7 @@ def test_coincident_points_give_way_as_in_memory(small_blocks, tmp_path, seed):
     plane = np.round(rng.uniform(0, (60, 40), (20_000, 2)), 2)
     points = PointSet(np.column_stack([plane, rng.normal(size=len(plane))]))
     for distance in (0.01, 0.0301, 0.2):
-        kept, _ = settle(points, plane, points.xyz[:, 2], distance)
+        kept, _ = resolve_conflicts(points, plane, points.xyz[:, 2], distance)
         assert strips.coincident(plane, distance, tmp_path).tolist() == np.flatnonzero(~kept).tolist()
 
 
