@@ -15,7 +15,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from realdata.page import ERRORS, FITS, Fitted, Row, error_cells, fit_cells, markdown
-from realdata.prediction import OFF_DATA, Off, field_alone, off_cells, prediction
+from realdata.prediction import PREDICTION, Off, field_alone, off_cells, prediction
 from realdata.score import Errors, left_out_errors
 from realdata.sets import SETS, RealSet, data_folder
 from realdata.why import Trial, try_out, worse
@@ -155,7 +155,7 @@ def main() -> int:
     print_table(FITS, [fit_cells(row, exact_seconds=True) for row in rows])
     print_table(ERRORS, [error_cells(row) for row in rows])
     settled = [(row.title, row.settings.interior_tolerance, row.off) for row in rows if row.off is not None]
-    print_table(OFF_DATA, [off_cells(*figures) for figures in settled])
+    print_table(PREDICTION, [off_cells(*figures) for figures in settled])
     print(f"{len(rows)} lines in {time.perf_counter() - start:.0f} s; surfaces and reports are in {OUT}")
     if len(keys) == len(SETS):
         given = [(real_set(key).title, real_set(key).given) for key in keys]

@@ -25,7 +25,7 @@ def load(monkeypatch):
     before = set(sys.modules)
     yield importlib.import_module
     for name in set(sys.modules) - before:
-        if name.split(".")[0] in {"real", "field", "fit", "distance", "realdata", "references"}:
+        if name.split(".")[0] in {"real", "field", "fit", "distance", "realdata", "peers"}:
             del sys.modules[name]
 
 
@@ -133,14 +133,14 @@ def test_the_page_does_not_hold_seconds_that_change(load):
 
 
 def test_reference_p_spline_reproduces_a_plane(load):
-    pspline = load("references.pspline")
+    pspline = load("peers.pspline")
     spline = pspline.PSpline((0, 100, 0, 100), 8, 1e-3).fit(scattered(400))
     x, y = scattered(50, seed=2)[:, :2].T
     assert spline.elevation(x, y) == pytest.approx(plane(x, y), abs=1e-6)
 
 
 def test_the_dense_process_finds_range_and_noise_of_its_own_field(load):
-    gp = load("references.gp")
+    gp = load("peers.gp")
     rng = np.random.default_rng(0)
     plane = rng.uniform(0, 10, (300, 2))
     true = gp.Process("Matérn 3/2", 1.5, 0.01, 1, 0.0)

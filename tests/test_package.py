@@ -314,7 +314,7 @@ def test_the_readme_tour_of_examination_and_changes_by_hand_runs_as_written(tmp_
     printed = python(tour, tmp_path)
     assert "T3-T2 lies above T2-T1 everywhere" in printed
     assert "'kriging'" in printed
-    assert "by hand: pulled by 100%" in printed
+    assert "manual edit: moved by 100%" in printed
     assert "has weight 3" in printed
 
 

@@ -115,7 +115,7 @@ def schema() -> dict[str, Any]:
     }
     of_body = {
         "body": {"type": "string"},
-        "verdict": {"enum": ["PASS", "WARNING", "FAIL"]},
+        "verdict": {"enum": ["PASS", "FAIL"]},
         "settings": {"type": "object"},
         "volumes": volumes,
         "read_back": s.of(SolidReadBack),
@@ -125,7 +125,10 @@ def schema() -> dict[str, Any]:
     of_pores = {
         "shape": {"type": "array", "items": {"type": "integer"}, "minItems": 3, "maxItems": 3},
         "voxel": {"type": "array", "items": {"type": "number"}, "minItems": 3, "maxItems": 3},
-        **{key: {"type": "integer"} for key in ("maximal_balls", "pores", "throats", "dropped_pores")},
+        "porosity": {"type": "number"},
+        "maximal_balls": {"type": ["integer", "null"]},
+        **{key: {"type": "integer"} for key in ("pores", "throats", "dropped_pores")},
+        "network_permeability": {"type": "array", "items": {"type": ["number", "null"]}, "minItems": 3, "maxItems": 3},
         "mean_coordination": {"type": "number"},
         "percolates": {"type": "array", "items": {"type": "boolean"}},
         "settings": {"type": "object"},
@@ -138,6 +141,7 @@ def schema() -> dict[str, Any]:
         _document("failure", None, {"failures": messages, "versions": words}, {"out": {"type": "string"}}),
         _document("body", body, of_body, {"files": files}),
         _document("pores", pores, of_pores, {"files": files}),
+        _document("pore-network", None, of_pores, {"files": files}),
     ]
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

@@ -8,7 +8,7 @@ from math import isfinite
 
 from geofit import FitSettings
 
-from .prediction import OFF_DATA, Off, off_cells, summary, why_lost
+from .prediction import PREDICTION, Off, off_cells, summary, why_lost
 from .score import Errors, Score
 from .why import Trial, metres, why
 
@@ -86,7 +86,7 @@ def markdown(rows: Sequence[Row], given: Sequence[tuple[str, str]]) -> str:
     lines = [_INTRODUCTION, "## Fits", "", *_table(FITS, [fit_cells(row, False) for row in rows]), ""]
     lines += ["What was given:", "", *(f"- {title}: {words}." for title, words in given), ""]
     lines += ["## Errors at points left out", "", _SCORES, *_table(ERRORS, map(error_cells, rows)), ""]
-    lines += ["## Prediction error, and calibration", "", _OFF_DATA, *_table(OFF_DATA, _off_rows(rows)), ""]
+    lines += ["## Prediction error, and calibration", "", _ABOUT_PREDICTION, *_table(PREDICTION, _off_rows(rows)), ""]
     lines += [summary([row.off for row in rows if row.off is not None]), ""]
     told = [(row, why_lost(row.off)) for row in rows if row.off is not None]
     lines += [f"- **{_named(row)}**: {words}." for row, words in told if words]
@@ -116,13 +116,13 @@ geofit, scipy's exact thin-plate spline and scipy's linear interpolation at the 
 is defined. "all" counts also the points beyond the given points' hull.
 """
 
-_OFF_DATA = """What `geofit report` finds away from the data: every hole (or point, where no hole is named) is left
-out in turn and predicted from all others, by geofit's own linear algebra (smoothing, knots and the choice of points
-stay), by the exact thin-plate spline, and by ordinary kriging, at the same places. Root mean square errors, metres;
-steep horizons are measured across their best plane. "inside 90 %" is the share of the holes left out that lie within
-the 90 % band, "before" the share before the standard deviation was held to the errors that points left out show,
-"factor" by how much that changed it. Where another method is nearer, the same was done with the regional field alone,
-no point pulled and none interpolated, to show why.
+_ABOUT_PREDICTION = """What `geofit report` finds away from the data: every hole (or point, where no hole is named) is
+left out in turn and predicted from all others, by geofit's own linear algebra (smoothing, knots and the choice of
+points stay), by the exact thin-plate spline, and by ordinary kriging, at the same places. Root mean square errors,
+metres; steep horizons are measured across their best plane. "inside 90 %" is the share of the holes left out that lie
+within the 90 % band, "before" the share before the standard deviation was held to the errors that points left out
+show, "factor" by how much that changed it. Where another method is nearer, the same was done with the regional field
+alone, no point pulled and none interpolated, to show why.
 """
 
 _TRIALS = """Found by trying, for each line whose error is more than 2 % above the thin plate's: the same folds with the

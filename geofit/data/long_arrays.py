@@ -55,12 +55,17 @@ class LongArray:
         return len(self.shape)
 
     def __getitem__(self, index: Any) -> Any:
-        """Return rows, or for ``[:, columns]`` the array of other columns."""
+        """Return rows, every so many of them if asked, or for ``[:, columns]`` the array of other columns."""
         if isinstance(index, tuple):
             _, columns = index
             return LongArray(self.shape, lambda start, stop: self.read(start, stop)[:, columns])
-        start, stop, _ = index.indices(len(self))
-        return self.read(start, stop)
+        start, stop, step = index.indices(len(self))
+        if step == 1:
+            return self.read(start, stop)
+        parts = [
+            self.read(low, min(low + BLOCK, stop))[(start - low) % step :: step] for low in range(start, stop, BLOCK)
+        ]
+        return np.concatenate(parts) if parts else self.read(start, start)
 
 
 #: What can be sliced along its rows.

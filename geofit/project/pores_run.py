@@ -45,7 +45,7 @@ class PoresRun:
 
         network = self.network
         return enveloped(
-            "pores",
+            "pores" if self.table is not None else "pore-network",
             {
                 "shape": plain(self.volume.shape),
                 "voxel": plain(self.volume.voxel),

@@ -51,7 +51,7 @@ def verdict_badge(h: HorizonReport, t: Language) -> Verdict:
 
 
 def _sentence(h: HorizonReport, t: Language) -> str:
-    return " · ".join(f"{translate(lamp.title, t)}: {translate(lamp.text, t)}" for lamp in h.lamps)
+    return " · ".join(t("{title}: {text}", title=lamp.title, text=lamp.text) for lamp in h.lamps)
 
 
 def _facts(h: HorizonReport, t: Language) -> Facts:

@@ -82,7 +82,7 @@ def test_map_traces_are_draped_where_they_have_no_elevation(folder):
 def test_a_flat_map_without_a_ground_says_so(folder):
     plan(folder)
     (folder / "site.toml").write_text(HORIZONS + '[traces]\nfile = "plan.dxf"\n')
-    with pytest.raises(InputError, match="no ground on which to place the points without an elevation on \\(7\\)"):
+    with pytest.raises(InputError, match="no ground on which to place the points without an elevation \\(7\\)"):
         read_site(folder / "site.toml")
 
 
@@ -280,7 +280,7 @@ def test_collars_without_an_elevation_stand_on_the_ground(folder):
     assert [issue.row for issue in notes] == [2, 3, 4, 5]
     assert f"{ground_at(500100, 3100100):.2f} m" in str(notes[0].reason)
     assert {count.file: (count.used, count.listed) for count in found.counts}["collar.csv"] == (4, 1)
-    assert any("lies off the ground's grid" in str(issue.reason) for issue in found.issues)
+    assert any("lies outside the ground's grid" in str(issue.reason) for issue in found.issues)
 
 
 def test_collars_without_an_elevation_and_without_a_ground_are_an_error(folder):

@@ -103,7 +103,7 @@ def test_what_was_not_examined_and_a_failed_check_are_said(run):
     broken = replace(run.body.accuracy.checks[0], passed=False)
     body = run.body.with_accuracy(replace(run.body.accuracy, checks=(broken,)))
     chapter = body_chapter(replace(bare, body=body), EN)
-    assert "But a check does not hold" in words(chapter)
+    assert "But a check fails" in words(chapter)
     marks = [cell for b in chapter.blocks if isinstance(b, Table) for row in b.rows for cell in row]
     assert any(isinstance(cell, Mark) and cell.passed is False for cell in marks)
 

@@ -12,7 +12,7 @@ import pytest
 from geofit.data.errors import SettingsError
 from geofit.data.languages import EN, ZH
 from geofit.io.export.section_dxf import write_sheet_dxf
-from geofit.report import section_sheet
+from geofit.report import section_pages
 from geofit.report.section_pages import (
     PAPERS,
     SCALES,
@@ -46,13 +46,13 @@ def view(name="A", length=400.0, rise=60.0):
 def test_a_drawing_is_as_long_as_its_scale_says(tmp_path, paper, length, exaggeration):
     shown = view(length=length)
     scale = fitting_scale([shown], paper, exaggeration)
-    figure = section_sheet._page([shown], shown, 1, BLOCK, paper, scale, exaggeration, EN)
+    figure = section_pages._page([shown], shown, 1, BLOCK, paper, scale, exaggeration, EN)
     box, (wide, high) = figure.axes[0].get_position(), PAPERS[paper]
     assert box.width * wide == pytest.approx(1000 * length / scale)
     low, top = figure.axes[0].get_ylim()
     assert box.height * high == pytest.approx(1000 * exaggeration * (top - low) / scale)
-    assert box.x0 * wide >= section_sheet.EDGE + section_sheet.LEFT - 1e-6
-    assert box.x1 * wide <= wide - section_sheet.EDGE - section_sheet.LEGEND
+    assert box.x0 * wide >= section_pages.EDGE + section_pages.LEFT - 1e-6
+    assert box.x1 * wide <= wide - section_pages.EDGE - section_pages.LEGEND
     larger = [one for one in SCALES if one < scale]
     if larger:
         with pytest.raises(SettingsError, match=f"1:{scale}"):

@@ -9,6 +9,7 @@ import pytest
 from truth import EASTING, NORTHING, hills
 
 from geofit import FitSettings, PointSet, fit_horizon
+from geofit.data import long_arrays
 from geofit.data.errors import Cancelled, FitError, InputError, PointsError
 from geofit.data.long_arrays import LongArray
 from geofit.fitting import partition
@@ -234,3 +235,13 @@ def test_arrays_that_are_made_when_read_cost_no_memory():
 
     assert fit_cloud(LongArray((5_000, 3), read)).n == 5_000
     assert len(made) > 3
+
+
+def test_every_so_many_rows_of_a_long_array_are_those_of_the_array(monkeypatch):
+    monkeypatch.setattr(long_arrays, "BLOCK", 7)
+    whole = np.arange(60.0).reshape(30, 2)
+    rows = LongArray(whole.shape, lambda start, stop: whole[start:stop])
+    for step in (1, 2, 3, 5, 11, 40):
+        for start in (0, 4):
+            np.testing.assert_array_equal(rows[start:29:step], whole[start:29:step])
+            np.testing.assert_array_equal(rows[:, ::-1][start::step], whole[:, ::-1][start::step])

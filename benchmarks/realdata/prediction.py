@@ -12,9 +12,9 @@ from geofit.prediction.examine import examine
 
 from .why import metres
 
-__all__ = ["CLEARLY", "OFF_DATA", "Off", "field_alone", "lost", "off_cells", "prediction", "summary", "why_lost"]
+__all__ = ["CLEARLY", "PREDICTION", "Off", "field_alone", "lost", "off_cells", "prediction", "summary", "why_lost"]
 
-OFF_DATA = (
+PREDICTION = (
     "set", "tolerance, m", "left out", "geofit, m", "thin plate, m", "kriging, m", "inside 90 %", "before", "factor",
     "outliers",
 )  # fmt: skip
@@ -58,7 +58,7 @@ def prediction(surface: HorizonFit, found: PredictionResult | None) -> Off | Non
         return None
     factor = found.uncertainty.factor if found.uncertainty else nan
     return Off(
-        holes.groups, holes.rms, tuple(holes.peers.items()), holes.inside, holes.inside_raw, factor,
+        holes.groups, holes.rms, tuple(holes.references.items()), holes.inside, holes.inside_raw, factor,
         len(found.outliers), int(surface.core.sum()), str(surface.diagnostics.get("energy", "")), notes=found.notes,
     )  # fmt: skip
 
