@@ -100,7 +100,7 @@ def test_exact_points_hold_a_control_point_and_it_is_said(panel):
     row, columns = surface.patches[0].control.shape[0] // 2, surface.patches[0].control.shape[1]
     column = next(j for j in range(columns) if acted_on(surface, "core", row, j)[1].any())
     panel.choose_control("core", row, column)
-    assert "met exactly" in panel.control.about.text()
+    assert "interpolated exactly" in panel.control.about.text()
     assert not panel.control.dz.isEnabled()
     assert not panel.apply_button.isEnabled()
 

@@ -171,7 +171,7 @@ def test_parting_is_one_step_and_names_no_other_horizon():
 
 def test_a_fault_beside_all_points_parts_nothing():
     site = faulted_site()
-    far = site.horizons["F1"].with_(xyz=site.horizons["F1"].xyz + np.array([5000.0, 0, 0]))
+    far = site.horizons["F1"].with_(xyz=site.horizons["F1"].xyz + np.array([1000.0, 0, 0]))
     document = opened(replace(site, horizons={**site.horizons, "F1": far}))
     found = part(document)
     assert not found.blocks

@@ -25,7 +25,7 @@ def test_empty_and_exact_say_so(panel):
     assert "press Fit" in str(panel.pages.text)
     exact = fitted().with_(core=fitted().points.row >= 0)
     panel.show_surface(exact)
-    assert "met exactly" in str(panel.pages.text)
+    assert "interpolated exactly" in str(panel.pages.text)
 
 
 def test_every_approximated_point_is_counted(panel):

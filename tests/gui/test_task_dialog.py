@@ -23,7 +23,7 @@ class Asking(TaskDialog):
         self.fields = (self.field,)
         layout = QVBoxLayout(self)
         layout.addWidget(self.field)
-        layout.addLayout(self.said)
+        layout.addLayout(self.message_row)
         layout.addLayout(self.foot())
         self.go.clicked.connect(
             lambda: self.begin(

@@ -122,7 +122,7 @@ def test_a_process_that_dies_says_so(owner, qtbot):
     task = worker.run_in_process(owner, dying, on_failed=errors.append)
     with qtbot.waitSignal(task.ended, timeout=60_000):
         pass
-    assert "ended by itself (exit code 3)" in str(errors[0])
+    assert "ended unexpectedly (exit code 3)" in str(errors[0])
 
 
 def test_a_failure_keeps_its_kind_across_the_process(owner, qtbot):
