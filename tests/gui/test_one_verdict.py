@@ -213,7 +213,7 @@ def test_status_bar_and_log_record_every_step(shown):
     shown.idle()
     fitting.move_to(NAME, row, 0.5)
     shown.idle()
-    assert f"Pull {NAME} to point" in log.toPlainText()
+    assert f"Move {NAME} to point" in log.toPlainText()
 
 
 def test_one_switch_fades_what_no_data_support_in_view_and_section(shown, qtbot):
