@@ -118,7 +118,10 @@ def print_body(run: BodyRun) -> None:
         ("logged inside, lies outside, m", f"{a.missed_length:.2f}"),
         ("logged outside, lies inside, m", f"{a.excess_length:.2f}"),
         ("surface far from data", f"{a.far_share:.1%} beyond {a.far_distance:.1f} m"),
-        ("STEP, read back", f"{file.solids} solids, {file.grade}, {'passed' if file.passed else 'FAILED'}"),
+        (
+            "STEP, read back",
+            f"solids: {file.solids}, {file.grade}, {'passed' if file.passed else 'FAILED'}",
+        ),
     ]
     print_table(("body", run.body.name), rows, left=(0, 1))
     for reason in reasons:

@@ -153,9 +153,9 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
         level = "warning"
     text = message(
         "verdict.left-out",
-        "{error}; the 90 % band contains {share:.0%} ({scheme})",
+        "{error}; the 90 % band contains {share:.0f} % ({scheme})",
         error=error,
-        share=worst.inside,
+        share=100 * worst.inside,
         scheme=_SCHEMES[worst.scheme],
     )
     return Lamp(title, level, text)

@@ -141,8 +141,10 @@ def write_picture(result: HorizonResult, pictures: Pictures, path: Path, t: Lang
         word = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}[verdict.word]
         colour = {"PASS": PASS, "WARNING": WARNING, "FAIL": FAIL}[verdict.word]
         figure.text(0.555, top, word, size=17, weight="bold", color=colour)
-        lamps = " · ".join(translate(lamp.text, t) for lamp in verdict.lamps)
-        figure.text(0.555, second, lamps, color=MUTED, size=10 if len(lamps) < 70 else 7.5)
+        data_lamp, *others = (translate(lamp.text, t) for lamp in verdict.lamps)
+        # The last one is long: a line of its own.
+        figure.text(0.555, second, " · ".join([data_lamp, *others[:1]]), color=MUTED, size=9)
+        figure.text(0.555, second - 0.028, " · ".join(others[1:]), color=MUTED, size=8)
         data = png(figure, margin=40)
     with replacing(path) as part:
         part.write_bytes(data)
