@@ -37,6 +37,7 @@ from geofit.io.picks import load_picks
 from geofit.io.places import list_places
 from geofit.io.site_drawings import gather, read_sections
 from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
+from geofit.io.site_relations import read_relations
 from geofit.io.source import Source
 from geofit.io.title_block import read_title_block
 from geofit.io.traces import load_traces
@@ -185,7 +186,7 @@ def build_site(
         settings[name] = horizon.settings
         points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon)
         list_places(name, points[name], journal, horizon.settings.coincidence_distance)
-    order, faults = _relations(reader, top, label, list(points))
+    order, faults = read_relations(reader, top, label, list(points))
     tell(progress, "read", 1.0)
     return Site(
         name=reader.get(label, "name", str, "[site]") or path.parent.name,
@@ -437,70 +438,6 @@ def _adits(
         )
         gather(gathered, load_adit_contacts(contacts, adits, names, journal))
     return adits
-
-
-def _relations(
-    reader: Reader, top: Mapping[str, Any], label: Mapping[str, Any], horizons: list[str]
-) -> tuple[tuple[str, ...], dict[str, tuple[str, ...]]]:
-    """Return the order of strata, and which horizons each fault cuts."""
-    order = _named(reader, label, "order", "[site]", horizons)
-    table = reader.get(top, "faults", dict, "the site file") or {}
-    _named(reader, {"faults": list(table)}, "faults", "the site file", horizons)
-    faults = {fault: _named(reader, table, fault, "[faults]", horizons) for fault in table}
-    for fault, cut in faults.items():
-        if fault in cut:
-            raise reader.fail(
-                message("import.fault-said-cut", "The fault '{fault}' is listed as cutting itself", fault=fault),
-                message("import.name-horizons-cuts", "Name the horizons that it cuts."),
-                fault,
-            )
-        if fault in order:
-            raise reader.fail(
-                message(
-                    "import.fault-stands-order-strata",
-                    "The fault '{fault}' is listed in the order of strata",
-                    fault=fault,
-                ),
-                message("import.take-out", "Take it out of it."),
-                "order",
-            )
-    return order, faults
-
-
-def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horizons: list[str]) -> tuple[str, ...]:
-    """Return the list of horizons under a key; each must be known, and stand once."""
-    names = reader.get(table, key, list, where) or []
-    for name in names:
-        if name not in horizons:
-            raise reader.fail(
-                message(
-                    "import.names-unknown-horizon",
-                    "{key} in {where} names '{name}', which is not a horizon",
-                    key=Untranslated(key),
-                    where=where,
-                    name=name,
-                ),
-                nearest(
-                    str(name),
-                    horizons,
-                    message("run.known-horizons", "The horizons are: {names}.", names=", ".join(horizons)),
-                ),
-                key,
-                name,
-            )
-        if names.count(name) > 1:
-            raise reader.fail(
-                message(
-                    "import.names-twice",
-                    "{key} in {where} names '{name}' twice",
-                    key=Untranslated(key),
-                    where=where,
-                    name=name,
-                ),
-                message("import.name-horizon-once", "Name each horizon once."),
-                key,
-            )
-    return tuple(names)
 
 
 def _joined(sets: list[Orientations]) -> Orientations | None:
