@@ -32,6 +32,8 @@ __all__ = ["morph"]
 MARGIN = 7
 #: Nodes of the largest lattice.
 MOST = 520**3
+#: Bodies farther from each other than this many times the longest one have other coordinates.
+FAR = 20.0
 #: Weight of the area in the level-set equation, in squares of the spacing.
 EPS = 0.25
 
@@ -189,6 +191,17 @@ def _lattice(ends: Sequence[End], spacing: float | None, cells: int) -> Lattice:
     low = np.min([end.bounds[0] for end in ends], axis=0)
     high = np.max([end.bounds[1] for end in ends], axis=0)
     size = float((high - low).max())
+    own = max(float((end.bounds[1] - end.bounds[0]).max()) for end in ends)
+    if size > FAR * own:
+        raise MorphError(
+            message(
+                "morphing.far-apart",
+                "The bodies span {size:.6g} m together, but are at most {own:.4g} m long: they lie far from each "
+                "other. Check their coordinates, such as an origin that only one of the files states.",
+                size=size,
+                own=own,
+            )
+        )
     h = size / cells if spacing is None else float(spacing)
     counts = np.maximum(np.ceil((high - low) / h - 1e-9).astype(int), 1) + 2 * MARGIN
     if float(np.prod(counts + 1.0)) > MOST:

@@ -280,3 +280,9 @@ def test_the_same_bodies_make_the_same_bytes() -> None:
     one, two = (geofit.morph(blobs(3), blobs(9), cells=32)(0.4).mesh for _ in range(2))
     assert one.vertices.tobytes() == two.vertices.tobytes()
     assert one.triangles.tobytes() == two.triangles.tobytes()
+
+
+def test_bodies_of_other_coordinates_are_refused() -> None:
+    with pytest.raises(MorphError) as caught:
+        geofit.morph(implicit.Sphere([0, 0, 0], 5.0), implicit.Sphere([500_000, 3_100_000, 0], 5.0), cells=24)
+    assert caught.value.code == "morphing.far-apart"
