@@ -49,13 +49,19 @@ RESULTS = (
 )  # fmt: skip
 
 
+def _linked(name: str) -> str:
+    """Return a page of the root with the links that it has among the documents."""
+    text = (ROOT / name).read_text(encoding="utf-8").replace("](docs/", "](")
+    text = text.replace("](CHANGELOG.md)", "](changes.md)").replace("](SECURITY.md)", "](security.md)")
+    return text.replace("[CITATION.cff](CITATION.cff)", "`CITATION.cff`")
+
+
 def write_pages() -> None:
     """Write every page: what is in ``docs/``, the README as the start page, the gallery and the API reference."""
     shutil.rmtree(PAGES, ignore_errors=True)
     shutil.copytree(ROOT / "docs", PAGES)
-    start = (ROOT / "README.md").read_text(encoding="utf-8")
-    start = start.replace("](docs/", "](").replace("](CHANGELOG.md)", "](changes.md)")
-    write("index.md", start.replace("[CITATION.cff](CITATION.cff)", "`CITATION.cff`"))
+    write("index.md", _linked("README.md"))
+    write("security.md", _linked("SECURITY.md"))
     write("changes.md", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"))
     write_gallery(sorted((ROOT / "examples").glob("*.py")))
     write_api()
