@@ -77,7 +77,8 @@ def fitted(result: HorizonResult) -> Fitted:
     reasons = [] if a.passed else [f"sigma {a.sigma:.3f} m is not below epsilon {a.epsilon:g} m"]
     checks = (*a.checks, *(result.read_back.checks if result.read_back else ()))
     reasons += [_failing(check) for check in checks if check.passed is False]
-    reasons += [note for note in a.notes if "tolerance" in note or "contradict" in note]
+    notes = map(str, a.notes)
+    reasons += [note for note in notes if "tolerance" in note or "contradict" in note]
     return Fitted(
         core,
         a.n - core,
@@ -91,9 +92,10 @@ def fitted(result: HorizonResult) -> Fitted:
 
 def _failing(check: Check) -> str:
     """Say by how much a check fails, where its words do not."""
-    if check.unit != "m" or f"{check.value:.1f} m" in check.text:
-        return check.text
-    return f"{check.text}: {check.value:.3g} m (limit {check.limit:.3g} m)"
+    text = str(check.text)
+    if check.unit != "m" or f"{check.value:.1f} m" in text:
+        return text
+    return f"{text}: {check.value:.3g} m (limit {check.limit:.3g} m)"
 
 
 def score_horizon(key: str, name: str) -> list[tuple[Errors, Trial | None]]:
