@@ -13,7 +13,16 @@ import geofit
 ROOT = Path(__file__).resolve().parents[1]
 WRITTEN = sorted((ROOT / "docs").glob("*.md"))
 #: Pages that make docs generates.
-MADE = {"index.md", "changes.md", "gallery/index.md", "api/geofit.md", "api/io.md", "api/results.md", "api/errors.md"}
+MADE = {
+    "index.md",
+    "changes.md",
+    "security.md",
+    "gallery/index.md",
+    "api/geofit.md",
+    "api/io.md",
+    "api/results.md",
+    "api/errors.md",
+}
 
 
 @pytest.mark.parametrize("page", [ROOT / "README.md", *WRITTEN], ids=lambda page: page.name)
