@@ -114,7 +114,7 @@ def saves(kills: int, rng: random.Random, folder: Path) -> int:
 
 
 def workers(kills: int, rng: random.Random, folder: Path) -> int:
-    """Kill, or stop, processes beside a window, idle or at work: each task ends, and the next one has its result."""
+    """Kill, or stop, worker processes of a window, idle or busy: each task ends, and the next one has its result."""
     import multiprocessing
 
     from PySide6.QtCore import QCoreApplication, QObject

@@ -1,4 +1,4 @@
-"""Time, memory and figures of balls and network on the rock volumes, beside PoreSpy and OpenPNM in the same run.
+"""Time, memory and figures of balls and network on the rock volumes, compared with PoreSpy and OpenPNM in the same run.
 
 Run ``python benchmarks/pores.py [--peers PYTHON] [--page] [name ...]``. The data are looked for in GEOFIT_DATA, else in
 ../shared/data beside the checkout. Each volume has a process of its own, so that its peak memory is its own; compiled

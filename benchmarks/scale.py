@@ -186,7 +186,7 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
         ({os.cpu_count()} processors), of all processes together; memory is the peak of the largest process. Points are
         seeded hills on 2 km x 2 km with a noise of {NOISE} m. What is in *italics* is extrapolated, not measured.""")
     lines += ["## One surface", "", "```", *COMMANDS, "```", ""]
-    say("""LAS, LAZ and Parquet need the extra: `python -m pip install "geofit-geology[scale]"`. A cloud is read once,
+    say("""LAS, LAZ and Parquet need the extra: `python -m pip install ".[scale]"` in the clone. A cloud is read once,
         to 24 bytes a point in the folder of the results; every later pass is over that file. The passes find the
         extent, the frame, coincident points, the sums of the field's cells (one pass a level of control points),
         and the distances. The state is that of the cells: it does not grow with n. Parts of a million points are

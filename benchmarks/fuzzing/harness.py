@@ -36,7 +36,7 @@ class Group(Protocol):
 
 @dataclass
 class Files:
-    """Files of one group: each case damages one and reads it beside the sound others."""
+    """Files of one group: each case damages one and reads it with the undamaged others."""
 
     group: Group
     folder: Path

@@ -1,4 +1,4 @@
-"""the prediction error of the real sets: holes left out by linear algebra, beside thin plate and kriging."""
+"""The prediction error of the real sets: holes left out by linear algebra, compared with thin plate and kriging."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ def write_body(
         Closed groups of NURBS patches, about the body's local origin; without them, or where they cannot be sewn, the
         overview's triangles are written.
     reason : str
-        Why there are no patches although they were wanted: the check "grade" reports it.
+        Why patches could not be written although requested; the check "grade" reports it.
 
     Raises
     ------

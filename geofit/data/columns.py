@@ -20,7 +20,7 @@ LARGEST = 1e9
 def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     """Return a copy of easting, northing, elevation, (n, 3), metres; nothing given is (0, 3).
 
-    An array that nobody can change is not copied.
+    A read-only array is not copied.
 
     Raises
     ------
@@ -89,7 +89,7 @@ def measurable_places(given: ArrayLike) -> NDArray[np.float64]:
         If a coordinate is larger: distances to it have no digits left.
     """
     rows: Any = given
-    with suppress(ValueError):  # ragged, which is told below
+    with suppress(ValueError):  # ragged, which is reported below
         rows = [given] if np.ndim(given) == 1 and np.size(given) else given
     xyz = finite_places(rows)
     refuse_far(xyz)
@@ -120,7 +120,7 @@ def refuse_far(xyz: NDArray[np.float64]) -> None:
 def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     """Return a copy of ``values``, (n,), or one value repeated n times.
 
-    An array that nobody can change is not copied.
+    A read-only array is not copied.
 
     Raises
     ------
