@@ -111,22 +111,24 @@ def hull_without_area(monkeypatch):
 
 def core_without_area(monkeypatch):
     """Item 2: a core that is a line."""
-    from geofit.fitting import partition
+    from geofit.fitting import density
 
     def planted(plane):
         return 1.0, 1.0
 
-    monkeypatch.setattr(partition, "_extents", planted)
+    monkeypatch.setattr(density, "_extents", planted)
 
 
 def called_exact(monkeypatch):
     """Item 8: points of a fold called exact whether they are met or not."""
+    from dataclasses import replace
+
     from geofit.fitting import pipeline
 
     def planted(surface):
-        return surface.with_(accuracy=pipeline.replace(surface.accuracy, residuals=surface.accuracy.residuals + 0.1))
+        return surface.with_(accuracy=replace(surface.accuracy, residuals=surface.accuracy.residuals + 0.1))
 
-    monkeypatch.setattr(pipeline, "_exact_or_not", planted)
+    monkeypatch.setattr(pipeline, "exact_or_not", planted)
 
 
 @pytest.mark.parametrize(

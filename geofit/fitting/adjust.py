@@ -7,11 +7,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.messages import Message, message
+from geofit.fitting.horizon_fit import HorizonFit, fit_of
+from geofit.fitting.model import Model
 from geofit.fitting.net import Net
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.skin import regularized_correction
 
-__all__ = ["adjust"]
+__all__ = ["adjust", "pull_to_worst"]
 
 Floats = NDArray[np.float64]
 
@@ -19,7 +22,42 @@ Floats = NDArray[np.float64]
 SHARE = 0.7
 
 
-def adjust(net: Net, parametrization: Parametrization, movable: NDArray[np.bool_], residuals: Floats) -> Net | None:
+def adjust(model: Model, surface: HorizonFit) -> HorizonFit:
+    """Adjust locally until sigma is below epsilon or no step helps, and say which."""
+    given = model.problem
+    for step in range(given.settings.max_iterations + 1):
+        accuracy = surface.accuracy
+        assert accuracy is not None
+        if accuracy.sigma < accuracy.epsilon:
+            if step:
+                surface = _with_note(
+                    surface,
+                    message(
+                        "fit.local-adjustments-until-sigma",
+                        "local adjustments until sigma came below epsilon: {step}",
+                        step=step,
+                    ),
+                )
+            break
+        better = pull_to_worst(model.net, given.parametrization, given.kept & ~surface.core, accuracy.residuals)
+        tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)
+        candidate = None if tried is None else fit_of(tried)
+        if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
+            words = message(
+                "fit.sigma-stays-above-epsilon",
+                "sigma stays above epsilon: no further local adjustment lowers it (made: {step})",
+                step=step,
+            )
+            surface = _with_note(surface, words.with_severity("warning"))
+            break
+        assert tried is not None
+        model, surface = tried, candidate
+    return surface
+
+
+def pull_to_worst(
+    net: Net, parametrization: Parametrization, movable: NDArray[np.bool_], residuals: Floats
+) -> Net | None:
     """Pull the surface to the points that contribute most to sigma.
 
     Parameters
@@ -49,3 +87,8 @@ def adjust(net: Net, parametrization: Parametrization, movable: NDArray[np.bool_
     misfit = parametrization.values[worst] - matrix @ net.coefficients
     change = regularized_correction(matrix, misfit, ~net.frozen)
     return replace(net, coefficients=net.coefficients + change)
+
+
+def _with_note(surface: HorizonFit, note: Message) -> HorizonFit:
+    assert surface.accuracy is not None
+    return surface.with_(accuracy=replace(surface.accuracy, notes=(*surface.accuracy.notes, note)))

@@ -21,8 +21,8 @@ from geofit.fitting.field import Field, Smoothed
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
 from geofit.fitting.net import Data, Net, Periphery, cap_for, choose_field, degree_for, gather, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
-from geofit.fitting.partition import Split
 from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
+from geofit.fitting.split import Split
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 

@@ -16,7 +16,7 @@ from geofit.fitting.assemble import patches_of
 from geofit.fitting.core import fit_with_core
 from geofit.fitting.net import Net, approximate_all
 from geofit.fitting.parametrize import Parametrization
-from geofit.fitting.partition import Split
+from geofit.fitting.split import Split
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 

@@ -20,10 +20,11 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.fitting.assemble import multiply_knots
+from geofit.fitting.density import CLOUD
 from geofit.fitting.field import ENOUGH, Field, Smoothed, choose, plane_trend, precision_band, relative_noise, smooth
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.parametrize import Parametrization
-from geofit.fitting.partition import CLOUD, Split
+from geofit.fitting.split import Split
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 

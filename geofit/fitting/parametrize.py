@@ -70,6 +70,16 @@ class Parametrization:
         """Whether the values are coordinates instead of heights."""
         return self.values.ndim == 2
 
+    @property
+    def places(self) -> Floats:
+        """Where each point stands: (n, 2) in the plane, or (n, 3) in space for a folded surface."""
+        return self.values if self.parametric else self.plane
+
+    @property
+    def heights(self) -> Floats:
+        """What the surface must take there, (n,) metres."""
+        return self.values[:, 2] if self.parametric else self.values
+
     def with_plane(self, plane: Floats) -> Parametrization:
         """Return the parametrization with corrected parameters."""
         return replace(self, plane=plane)

@@ -13,7 +13,7 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.parametrize import Parametrization, parametrize
-from geofit.fitting.partition import split_rectangle
+from geofit.fitting.split import split_rectangle
 from geofit.geometry.frame import Frame
 
 __all__ = ["CoreBox", "parametrization_of", "taken"]

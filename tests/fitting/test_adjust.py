@@ -8,10 +8,10 @@ from truth import EASTING, NORTHING, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.checks.check import sigma
-from geofit.fitting.adjust import adjust
+from geofit.fitting.adjust import pull_to_worst
 from geofit.fitting.core import fit_with_core
+from geofit.fitting.density import split_auto
 from geofit.fitting.parametrize import parametrize
-from geofit.fitting.partition import split_auto
 
 
 def silent(stage, fraction):
@@ -39,7 +39,7 @@ def residuals(net, parametrization):
 def test_sigma_falls_and_the_core_stays_bit_for_bit(fitted):
     net, parametrization, split = fitted
     before = residuals(net, parametrization)
-    better = adjust(net, parametrization, ~split.inside, before)
+    better = pull_to_worst(net, parametrization, ~split.inside, before)
     assert sigma(residuals(better, parametrization)) < 0.6 * sigma(before)
     assert net.frozen.any()
     np.testing.assert_array_equal(better.coefficients[net.frozen], net.coefficients[net.frozen])
@@ -53,7 +53,7 @@ def test_nothing_moves_outside_the_supports_near_the_worst_points(fitted):
     d = np.full(len(parametrization.values), 1e-6)
     bad = movable[[0, 40]]
     d[bad] = 5.0
-    better = adjust(net, parametrization, ~split.inside, d)
+    better = pull_to_worst(net, parametrization, ~split.inside, d)
     moved = better.coefficients != net.coefficients
     acting = np.zeros(net.space.size, bool)
     acting[net.space.rows(parametrization.plane[bad] / net.unit)[0].ravel()] = True
@@ -65,8 +65,8 @@ def test_nothing_moves_outside_the_supports_near_the_worst_points(fitted):
 def test_points_that_may_not_be_pulled_are_not(fitted):
     net, parametrization, split = fitted
     nobody = np.zeros(len(parametrization.values), bool)
-    assert adjust(net, parametrization, nobody, residuals(net, parametrization)) is None
-    assert adjust(net, parametrization, ~split.inside, np.zeros(len(parametrization.values))) is None
+    assert pull_to_worst(net, parametrization, nobody, residuals(net, parametrization)) is None
+    assert pull_to_worst(net, parametrization, ~split.inside, np.zeros(len(parametrization.values))) is None
 
 
 def stiff_cloud(n=120, spikes=4, seed=0):

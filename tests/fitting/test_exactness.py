@@ -40,7 +40,7 @@ def test_points_of_a_fold_that_count_as_exact_are_met(between, offset, seed):
 
 def test_points_that_a_fold_misses_count_as_approximated(monkeypatch):
     # No fold is known that misses a point: a limit below rounding plants some.
-    monkeypatch.setattr("geofit.fitting.pipeline.CORE_LIMIT", 1e-16)
+    monkeypatch.setattr("geofit.fitting.exactness.CORE_LIMIT", 1e-16)
     surface = fit_horizon(overturned(5, 0.02, 1), FitSettings(frame="sections"))
     missed = int((np.abs(surface.accuracy.residuals) > 1e-16).sum())
     assert missed > 0

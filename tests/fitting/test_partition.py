@@ -5,7 +5,8 @@ import pytest
 from truth import paper_arrangement
 
 from geofit.data.messages import message
-from geofit.fitting.partition import split_all, split_auto, split_none, split_rectangle
+from geofit.fitting.density import split_auto
+from geofit.fitting.split import split_all, split_none, split_rectangle
 
 AREA = (0.0, 2000.0, 0.0, 2000.0)
 DRAWN = message("fit.core-polygon-drawn", "the core's polygon as drawn")

@@ -12,7 +12,7 @@ from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data import long_arrays
 from geofit.data.errors import Cancelled, FitError, InputError, PointsError
 from geofit.data.long_arrays import LongArray
-from geofit.fitting import partition
+from geofit.fitting import density
 from geofit.fitting.conflicts import resolve_conflicts
 from geofit.io import clouds
 from geofit.io.clouds import is_cloud, open_cloud
@@ -39,7 +39,7 @@ def small_blocks(monkeypatch):
 
     monkeypatch.setattr(long_arrays, "BLOCK", 7_001)
     monkeypatch.setattr("geofit.fitting.field.BLOCK", 7_001)
-    monkeypatch.setattr(partition, "CLOUD", 1_000)
+    monkeypatch.setattr(density, "CLOUD", 1_000)
     monkeypatch.setattr("geofit.fitting.net.CLOUD", 1_000)
     monkeypatch.setattr(strips, "STRIP", 4_000)
     monkeypatch.setattr(residuals, "PART", 8_000)

@@ -1,0 +1,186 @@
+"""The dense core, found by the spacing of the points (paper, sec. 3.2, fig. 3a: D = D1 + D2 + ...)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from geofit.data.messages import Message, message
+from geofit.fitting.split import Rectangle, Split, split_none, widened, within
+
+__all__ = ["CLOUD", "split_auto"]
+
+Floats = NDArray[np.float64]
+
+#: Neighbours whose distance measures the spacing at a point: more than a section alone gives nearby.
+NEIGHBOURS = 8
+#: How many times denser than the rest a core must be, points an area; few points need more, since chance
+#: alone makes small clusters: CONTRAST + 10 / sqrt(points of the core).
+CONTRAST = 2.0
+#: Fewer points than these make no core worth a patch of its own.
+FEWEST = 20
+#: More points than these are not interpolated without being asked: they outnumber any sensible control net.
+MOST = 2_000
+#: More points than these are a cloud, not a survey: no core of it is interpolated, and no point of it chased.
+CLOUD = 100 * MOST
+
+
+def split_auto(plane: Floats, area: Rectangle) -> Split:
+    """Find a dense four-sided core by the spacing of the points.
+
+    The spacing of a point is its distance to the eighth neighbour. The threshold that best separates the
+    logarithms of the spacings (Otsu 1979) divides dense from sparse; the largest connected cluster of dense
+    points gives the rectangle, and the rectangle must be clearly denser than the rest (:data:`CONTRAST`).
+    """
+    n = len(plane)
+    if n < 2 * FEWEST:
+        words = message(
+            "fit.points-too-few-tell",
+            "{n} points are too few to distinguish a dense core from a periphery (40 are needed)",
+            n=n,
+        )
+        return split_none(plane, words)
+    if n > CLOUD:
+        return _uniform(plane, area, message("fit.cloud-of-points", "{n} points are a cloud", n=n))
+    spacing = np.asarray(KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0])[:, -1]
+    limit = _otsu(np.log(np.maximum(spacing, 1e-9)))
+    if limit is None:
+        return _uniform(plane, area, message("fit.points-spread-evenly", "the points are spread evenly"))
+    limit = float(np.exp(limit))
+    dense = np.flatnonzero(spacing <= limit)
+    cluster = dense[_largest_cluster(plane[dense], limit)]
+    if len(cluster) < FEWEST:
+        return _uniform(
+            plane, area, message("fit.dense-places-hold-fewer", "the dense places contain fewer than 20 points each")
+        )
+    low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
+    # The points of the box, not of the cluster: the edges may be drawn in to one section.
+    length, width = _extents(plane[cluster][within(plane[cluster], (low[0], high[0], low[1], high[1]))])
+    if width < 0.08 * length:
+        return split_none(
+            plane,
+            message(
+                "fit.dense-points-lie-along",
+                "the {count} dense points lie along a line {length:.0f} m long and {width:.0f} m wide: "
+                "one section makes no core, all points are approximated",
+                count=len(cluster),
+                length=length,
+                width=width,
+            ),
+        )
+    core = widened((low[0], high[0], low[1], high[1]), plane, area)
+    inside = within(plane, core)
+    if inside.all():
+        return _uniform(plane, area, message("fit.dense-points-fill-area", "the dense points fill the area"))
+    if inside.sum() > MOST:
+        return split_none(plane, _too_many(int(inside.sum())))
+    contrast = _density(inside.sum(), core) / _density((~inside).sum(), area, core)
+    if contrast < CONTRAST + 10 / np.sqrt(inside.sum()):
+        words = message(
+            "fit.densest-part-times-dense",
+            "the densest part is only {contrast:.1f} times as dense as the rest",
+            contrast=float(contrast),
+        )
+        return _uniform(plane, area, words)
+    return Split(
+        core,
+        inside,
+        message(
+            "fit.points-spacing-below-fill",
+            "{count} points with a spacing below {limit:.0f} m fill {width:.0f} m x {length:.0f} m, {contrast:.1f} "
+            "times as dense as the other {others} points",
+            count=int(inside.sum()),
+            limit=limit,
+            width=float(core[1] - core[0]),
+            length=float(core[3] - core[2]),
+            contrast=float(contrast),
+            others=int((~inside).sum()),
+        ),
+    )
+
+
+def _uniform(plane: Floats, area: Rectangle, reason: Message) -> Split:
+    """No core stands out: the points are all sparse, and approximated."""
+    return split_none(
+        plane,
+        message("fit.no-dense-core-points", "no dense core: {reason}; all points are approximated", reason=reason),
+    )
+
+
+def _too_many(n: int) -> Message:
+    return message(
+        "fit.dense-points-need-control",
+        "{n} dense points would need more control points than data to be interpolated; all points are "
+        "approximated (name a smaller core to interpolate it)",
+        n=n,
+    ).with_severity("warning")
+
+
+def _otsu(values: Floats) -> float | None:
+    """Return the threshold with the largest variance between classes; None if the classes hardly differ."""
+    ordered = np.sort(values)
+    n = len(ordered)
+    below = np.arange(1, n)
+    mean_below = np.cumsum(ordered)[:-1] / below
+    mean_above = (ordered.sum() - np.cumsum(ordered)[:-1]) / (n - below)
+    between = below * (n - below) * (mean_below - mean_above) ** 2
+    best = int(np.argmax(between))
+    if mean_above[best] - mean_below[best] < np.log(1.4):
+        return None
+    return float((ordered[best] + ordered[best + 1]) / 2)
+
+
+def _largest_cluster(plane: Floats, reach: float) -> NDArray[np.bool_]:
+    pairs = KDTree(plane).query_pairs(reach, output_type="ndarray")
+    n = len(plane)
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    label = connected_components(graph, directed=False)[1]
+    largest: NDArray[np.bool_] = np.equal(label, np.argmax(np.bincount(label)))
+    return largest
+
+
+def _extents(plane: Floats) -> tuple[float, float]:
+    """Return the length and width of a cluster along its principal directions, but for a tenth of outliers."""
+    centred = plane - np.median(plane, axis=0)
+    turned = centred @ np.linalg.svd(centred, full_matrices=False)[2].T
+    length, width = np.quantile(turned, 0.95, axis=0) - np.quantile(turned, 0.05, axis=0)
+    return float(length), float(width)
+
+
+def _trimmed_box(plane: Floats, width: float) -> tuple[Floats, Floats]:
+    """Return the bounding box of a cluster, its edges drawn in past outliers.
+
+    An edge moves inwards while the strip next to it, ``width`` metres wide, is less than a third as dense as
+    the box.
+    """
+    low, high = plane.min(axis=0), plane.max(axis=0)
+    for _ in range(50):
+        moved = False
+        size = np.maximum(high - low, 1e-9)
+        within = ((plane >= low) & (plane <= high)).all(axis=1)
+        density = within.sum() / size.prod()
+        for axis in (0, 1):
+            strip = min(width, 0.2 * size[axis])
+            needed = density * strip * size[1 - axis] / 3
+            near_low = within & (plane[:, axis] < low[axis] + strip)
+            near_high = within & (plane[:, axis] > high[axis] - strip)
+            rest = plane[within, axis]
+            if near_low.sum() < needed and (rest >= low[axis] + strip).any():
+                low[axis] = rest[rest >= low[axis] + strip].min()
+                moved = True
+            elif near_high.sum() < needed and (rest <= high[axis] - strip).any():
+                high[axis] = rest[rest <= high[axis] - strip].max()
+                moved = True
+        if not moved:
+            break
+    return low, high
+
+
+def _density(count: int, area: Rectangle, hole: Rectangle | None = None) -> float:
+    size = (area[1] - area[0]) * (area[3] - area[2])
+    if hole is not None:
+        size -= (hole[1] - hole[0]) * (hole[3] - hole[2])
+    return float(count) / max(size, 1e-9)

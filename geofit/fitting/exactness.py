@@ -1,0 +1,39 @@
+"""What is called exact is exact: points of a fold that its surface misses count as approximated."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from geofit.checks.check import CORE_LIMIT
+from geofit.data.messages import message
+from geofit.fitting.horizon_fit import HorizonFit, fit_of
+from geofit.fitting.split import Split
+
+__all__ = ["exact_or_not"]
+
+
+def exact_or_not(surface: HorizonFit) -> HorizonFit:
+    """Call those points exact that the surface meets: of a fold, points between the sections may be missed."""
+    model, accuracy = surface.model, surface.accuracy
+    assert model is not None
+    assert accuracy is not None
+    if not model.problem.parametrization.parametric:
+        return surface
+    missed = surface.core & (np.abs(accuracy.residuals) > CORE_LIMIT)
+    if not missed.any():
+        return surface
+    split = model.problem.split
+    reason = message(
+        "fit.approximated-points",
+        "{reason}; points that it does not meet, by up to {worst:.3g} m: {count}, which count as approximated",
+        reason=split.reason,
+        count=int(missed.sum()),
+        worst=float(np.abs(accuracy.residuals[missed]).max()),
+    )
+    known = replace(model.problem, split=Split(split.core, split.inside & ~missed, reason))
+    found = fit_of(replace(model, problem=known))
+    assert found.accuracy is not None
+    noted_before = tuple(note for note in accuracy.notes if note not in found.accuracy.notes)
+    return found.with_(accuracy=replace(found.accuracy, notes=(*found.accuracy.notes, *noted_before)))

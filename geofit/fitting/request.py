@@ -1,0 +1,99 @@
+"""What a fit is asked for, refused where no surface can come of it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.data.columns import refuse_far
+from geofit.data.errors import PointsError
+from geofit.data.messages import message, plural_message
+from geofit.data.points import PointSet, look_like_degrees
+from geofit.geometry.area import fault_of_area
+
+__all__ = ["require"]
+
+Floats = NDArray[np.float64]
+
+
+def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
+    """Return the corners of the study area as an array; refuse points and corners that no surface can be fitted to.
+
+    Parameters
+    ----------
+    points : PointSet
+        All points of the horizon.
+    boundary : (k, 2) array_like, optional
+        Corners of the study area, map coordinates in metres.
+
+    Raises
+    ------
+    PointsError
+        If fewer than three places are given, if they look like degrees, or if the corners enclose no area or one
+        that is far off the points.
+    """
+    if len(points) < 3:
+        given = plural_message("fit.given-points", "{count} point given", "{count} points given", count=len(points))
+        text = message(
+            "fit.least-needed-lay-surface",
+            "{given}; at least 3 are needed to fit a surface. Check the horizon's name and the filters of the import.",
+            given=given,
+        )
+        raise PointsError(text)
+    if all(np.ptp(axis) == 0 for axis in points.xyz.T):
+        raise PointsError(
+            message(
+                "fit.points-stand-place-least",
+                "All {count} points are at one location; at least 3 locations are needed.",
+                count=len(points),
+            )
+        )
+    refuse_far(points.xyz)
+    if look_like_degrees(points.xyz):
+        raise PointsError(
+            message(
+                "fit.degrees",
+                "The points look like longitude and latitude in degrees (the first: {x:.6g}, {y:.6g}); easting and "
+                "northing in metres are needed. Project them to the grid of the site (geofit fit --crs EPSG:..., or "
+                "crs in the site file).",
+                x=points.xyz[0, 0],
+                y=points.xyz[0, 1],
+            )
+        )
+    if boundary is None:
+        return None
+    try:
+        corners = np.asarray(boundary, float)
+    except (TypeError, ValueError, OverflowError):
+        raise PointsError(
+            message(
+                "fit.no-corners",
+                "The boundary is not a list of corners; at least three pairs of easting and northing are needed.",
+            )
+        ) from None
+    if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
+        text = message(
+            "fit.boundary-shape-least-three",
+            "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.",
+            shape=corners.shape,
+        )
+        raise PointsError(text)
+    refuse_far(corners)
+    fault = fault_of_area(corners)
+    if fault is not None:
+        raise PointsError(
+            message(
+                "fit.study-area", "{fault}. List the corners in order around the study area, each once.", fault=fault
+            )
+        )
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    off = np.maximum(low - points.xyz[:, :2], points.xyz[:, :2] - high).max(axis=1).min()
+    if off > max(np.hypot(*(high - low)), np.hypot(*np.ptp(points.xyz[:, :2], axis=0))):
+        text = message(
+            "fit.points-off-area",
+            "All points lie off the study area, the nearest by {off:.6g} m. Check the coordinates of both, and the "
+            "order of easting and northing.",
+            off=float(off),
+        )
+        raise PointsError(text)
+    return corners
