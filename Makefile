@@ -40,6 +40,7 @@ lint: .venv/.installed-all
 	$(BIN)/ruff format --check .
 	$(BIN)/python tools/catalogue.py --check
 	$(BIN)/python tools/schema.py --check
+	$(BIN)/python tools/settings_page.py --check
 	$(BIN)/python tools/prose.py
 	rm -rf build
 	$(PIP) install --quiet --no-deps --no-build-isolation --target build/typecheck .

@@ -1,13 +1,14 @@
 """What each setting of a fit is called, what it does, its unit and its choices: described once, read everywhere.
 
-The fit panel, the command line, the report and the errors of :class:`~geofit.data.settings.FitSettings` take their
-words from here.
+The fit panel, the command line, the report, ``docs/settings.md`` and the errors of
+:class:`~geofit.data.settings.FitSettings` take their words and ranges from here.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Literal
 
 from geofit.data.messages import Message, message
 
@@ -28,12 +29,18 @@ class SettingText:
         Unit of a number, empty without one.
     choices : mapping
         Words for values that are not numbers.
+    number : {"", "real", "whole"}
+        Which numbers it takes beside the choices: none, real or whole ones.
+    least : int, optional
+        The smallest whole number that it takes; real numbers must be above 0.
     """
 
     label: Message
     about: Message
     unit: str = ""
     choices: Mapping[object, Message] = field(default_factory=dict)
+    number: Literal["", "real", "whole"] = ""
+    least: int = 0
 
     def with_unit(self) -> Message:
         """Return the name with the unit, as a table has it."""
@@ -53,6 +60,7 @@ SETTINGS: Mapping[str, SettingText] = {
             "The surface passes when σ, the standard deviation of all points from it, is below this.",
         ),
         "m",
+        number="real",
     ),
     "interior_tolerance": SettingText(
         message("settings.interior-tolerance", "Interior tolerance"),
@@ -62,6 +70,7 @@ SETTINGS: Mapping[str, SettingText] = {
             "refinement no longer helps.",
         ),
         "m",
+        number="real",
     ),
     "core": SettingText(
         message("settings.core", "Exact core"),
@@ -84,6 +93,7 @@ SETTINGS: Mapping[str, SettingText] = {
             "smoother, smaller is nearer to the points.",
         ),
         choices={"auto": _AUTO},
+        number="real",
     ),
     "boundary_tolerance": SettingText(
         message("settings.boundary-tolerance", "Seam tolerance"),
@@ -93,6 +103,7 @@ SETTINGS: Mapping[str, SettingText] = {
             "gap.",
         ),
         "m",
+        number="real",
     ),
     "across": SettingText(
         message("settings.across", "Across sections"),
@@ -159,6 +170,7 @@ SETTINGS: Mapping[str, SettingText] = {
             "settings.max-iterations-about",
             "How often the fit may refine and adjust before it stops and reports what is not met.",
         ),
+        number="whole",
     ),
     "max_control_points": SettingText(
         message("settings.max-control-points", "Control points, at most"),
@@ -168,6 +180,8 @@ SETTINGS: Mapping[str, SettingText] = {
             "many as it takes to interpolate the core.",
         ),
         choices={None: _AUTO},
+        number="whole",
+        least=16,
     ),
     "coincidence_distance": SettingText(
         message("settings.coincidence-distance", "Coincidence distance"),
@@ -177,5 +191,6 @@ SETTINGS: Mapping[str, SettingText] = {
             "and the other listed.",
         ),
         "m",
+        number="real",
     ),
 }

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from geofit.data.errors import SettingsError
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.numbers import is_finite, shown
-from geofit.data.setting_texts import SETTINGS
+from geofit.data.setting_texts import SETTINGS, SettingText
 
 __all__ = ["FitSettings", "named"]
 
@@ -91,48 +91,14 @@ class FitSettings:
         return f"FitSettings({', '.join(f'{f.name}={getattr(self, f.name)!r}' for f in changed)})"
 
     def __post_init__(self) -> None:
-        for name in ("epsilon", "interior_tolerance", "boundary_tolerance", "coincidence_distance"):
-            _positive(name, getattr(self, name), message("settings.unit-metres", "metres"))
-        _one_of("across", self.across, ("cubic", "linear"))
-        _one_of("seam", self.seam, ("tangent", "position"))
-        _one_of("frame", self.frame, ("auto", "map", "best-plane", "sections"))
-        if isinstance(self.core, str):
-            _one_of("core", self.core, ("auto", "all", "none"), polygon=True)
-        else:
+        if not isinstance(self.core, str):
             object.__setattr__(self, "core", _polygon(self.core))
-        if self.smoothing != "auto":
-            _positive(
-                "smoothing",
-                self.smoothing,
-                message("settings.auto-value-unit-word", "the auto value's unit, or the word 'auto'"),
-            )
-        for name in ("robust", "strict"):
-            if not isinstance(getattr(self, name), bool):
-                raise SettingsError(
-                    message(
-                        "settings.true-false-needed",
-                        "{setting} is {value}; true or false is needed.",
-                        **_given(name, getattr(self, name)),
-                    )
-                )
-        whole = isinstance(self.max_iterations, int) and not isinstance(self.max_iterations, bool)
-        if not whole or not is_finite(self.max_iterations) or self.max_iterations < 0:
-            raise SettingsError(
-                message(
-                    "settings.whole-number-needed",
-                    "{setting} is {value}; a whole number >= 0 is needed.",
-                    **_given("max_iterations", self.max_iterations),
-                )
-            )
-        most = self.max_control_points
-        if most is not None and (not isinstance(most, int) or not is_finite(most) or most < 16):
-            raise SettingsError(
-                message(
-                    "settings.whole-number-least-16",
-                    "{setting} is {value}; a whole number of at least 16 is needed.",
-                    **_given("max_control_points", most),
-                )
-            )
+        for name, text in SETTINGS.items():
+            value = getattr(self, name)
+            if name == "core" and not isinstance(value, str):
+                continue
+            if not any(value is choice or (isinstance(value, str) and value == choice) for choice in text.choices):
+                _require(name, value, text)
 
 
 def named(name: str) -> Message:
@@ -144,30 +110,48 @@ def _given(name: str, value: Any) -> dict[str, Any]:
     return {"setting": named(name), "value": shown(value)}
 
 
-def _positive(name: str, value: Any, unit: Message) -> None:
-    if not is_finite(value) or value <= 0:
-        text = message(
+def _require(name: str, value: Any, text: SettingText) -> None:
+    """Refuse a value that is no choice of the setting, unless it is a number within its range."""
+    given = _given(name, value)
+    if text.number == "real":
+        if is_finite(value) and value > 0:
+            return
+        unit = message("settings.unit-metres", "metres")
+        if not text.unit:
+            unit = message("settings.auto-value-unit-word", "the auto value's unit, or the word 'auto'")
+        refused = message(
             "settings.finite-number-above-needed",
             "{setting} is {value}; a finite number above 0 is needed ({unit}).",
-            **_given(name, value),
             unit=unit,
+            **given,
         )
-        raise SettingsError(text)
+    elif text.number == "whole":
+        if isinstance(value, int) and is_finite(value) and value >= text.least:
+            return
+        refused = message(
+            "settings.whole-number-needed",
+            "{setting} is {value}; a whole number of at least {least} is needed.",
+            least=text.least,
+            **given,
+        )
+    elif True in text.choices:
+        refused = message("settings.true-false-needed", "{setting} is {value}; true or false is needed.", **given)
+    elif name == "core":
+        refused = message(
+            "settings.choose-polygon-map-coordinates",
+            "{setting} is {value}; choose one of {words} or a polygon of map coordinates.",
+            words=_words(text),
+            **given,
+        )
+    else:
+        refused = message(
+            "settings.unknown-choice", "{setting} is {value}; choose one of {words}.", words=_words(text), **given
+        )
+    raise SettingsError(refused)
 
 
-def _one_of(name: str, value: Any, words: tuple[str, ...], *, polygon: bool = False) -> None:
-    if value in words:
-        return
-    given = {**_given(name, value), "words": ", ".join(map(repr, words))}
-    if polygon:
-        raise SettingsError(
-            message(
-                "settings.choose-polygon-map-coordinates",
-                "{setting} is {value}; choose one of {words} or a polygon of map coordinates.",
-                **given,
-            )
-        )
-    raise SettingsError(message("settings.unknown-choice", "{setting} is {value}; choose one of {words}.", **given))
+def _words(text: SettingText) -> str:
+    return ", ".join(map(repr, text.choices))
 
 
 def _polygon(value: ArrayLike) -> tuple[tuple[float, float], ...]:

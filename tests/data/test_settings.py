@@ -4,6 +4,7 @@ import dataclasses
 import pickle
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -64,7 +65,9 @@ def test_smoothing_is_auto_or_a_positive_number(value):
 
 @pytest.mark.parametrize("value", [-1, 2.5, "20", None])
 def test_iterations_are_a_whole_number(value):
-    with refused(SettingsError, "settings.whole-number-needed", setting=named("max_iterations"), value=repr(value)):
+    with refused(
+        SettingsError, "settings.whole-number-needed", setting=named("max_iterations"), value=repr(value), least=0
+    ):
         FitSettings(max_iterations=value)
     assert FitSettings(max_iterations=0).max_iterations == 0
 
@@ -72,7 +75,7 @@ def test_iterations_are_a_whole_number(value):
 @pytest.mark.parametrize("value", [15, 0, -4, 100.0, True, "many"])
 def test_the_cap_of_control_points_is_a_whole_number_of_at_least_16(value):
     with refused(
-        SettingsError, "settings.whole-number-least-16", setting=named("max_control_points"), value=repr(value)
+        SettingsError, "settings.whole-number-needed", setting=named("max_control_points"), value=repr(value), least=16
     ):
         FitSettings(max_control_points=value)
     assert FitSettings(max_control_points=16).max_control_points == 16
@@ -142,3 +145,9 @@ def test_every_setting_is_described_once_and_all_rooms_read_it():
         assert str(text.about) in " ".join(shown.split()), name
         for choice in text.choices:
             FitSettings(**{name: choice})
+
+
+def test_the_page_of_the_settings_is_that_of_the_table():
+    script = Path(__file__).resolve().parents[2] / "tools" / "settings_page.py"
+    done = subprocess.run([sys.executable, str(script), "--check"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
