@@ -1,9 +1,10 @@
 # The names of `import geofit`, one line each: types for editors, and the table of what is imported when first used.
 from geofit import implicit as implicit
 from geofit import io as io
-from geofit.bodies.body import ImplicitBody as ImplicitBody
+from geofit.bodies.body import BodyFit as BodyFit
 from geofit.bodies.data import BodyData as BodyData
 from geofit.bodies.fit import fit_body as fit_body
+from geofit.bodies.implicit_body import ImplicitBody as ImplicitBody
 from geofit.bodies.settings import BodySettings as BodySettings
 from geofit.caves.body import centreline_body as centreline_body
 from geofit.data import errors as errors

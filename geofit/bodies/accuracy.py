@@ -13,7 +13,7 @@ from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group
 from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["BodyAccuracy", "examine"]
 
@@ -53,7 +53,7 @@ class BodyAccuracy(Accuracy):
     open_sides: tuple[str, ...] = ()
 
 
-def examine(body: ImplicitBody) -> BodyAccuracy:
+def examine(body: BodyFit) -> BodyAccuracy:
     """Return the accuracy of a body."""
     data, settings = body.data, body.settings
     residuals = body.distance(data.contacts)
@@ -185,9 +185,7 @@ def examine(body: ImplicitBody) -> BodyAccuracy:
     )
 
 
-def _between(
-    body: ImplicitBody, xyz: Floats, hole: NDArray[np.str_], length: Floats, *, inside: bool
-) -> tuple[int, float]:
+def _between(body: BodyFit, xyz: Floats, hole: NDArray[np.str_], length: Floats, *, inside: bool) -> tuple[int, float]:
     """Return crossings between neighbouring samples of one hole and side, and the length they take (metres)."""
     if len(xyz) < 2:
         return 0, 0.0
@@ -201,7 +199,7 @@ def _between(
     return 2 * int(crossed.sum()), float(gap[pair][crossed].sum() / 2)
 
 
-def _far_share(body: ImplicitBody, distance: float) -> float:
+def _far_share(body: BodyFit, distance: float) -> float:
     from scipy.spatial import cKDTree
 
     # Crossed edges of a raster: as many a square metre whatever the surface's direction, within a third.
@@ -221,7 +219,7 @@ def _groups(residuals: Floats, names: NDArray[np.str_]) -> Mapping[str, Group]:
     return groups
 
 
-def _notes(body: ImplicitBody) -> tuple[Message, ...]:
+def _notes(body: BodyFit) -> tuple[Message, ...]:
     fitted, region = body.fitted, body.region
     samples = len(fitted.prepared.inside) + len(fitted.prepared.outside)
     notes: list[Message] = [

@@ -14,7 +14,7 @@ from geofit.data.messages import message
 from geofit.implicit.lattice import Lattice
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["BlockModel", "block_lattice", "block_model"]
 
@@ -40,7 +40,7 @@ class BlockModel:
     probability: Floats
 
 
-def block_lattice(body: ImplicitBody, spacing: float | None = None) -> Lattice:
+def block_lattice(body: BodyFit, spacing: float | None = None) -> Lattice:
     """Return nodes about the local origin that cover the body; they lie at whole multiples of the spacing on the map.
 
     Raises
@@ -69,12 +69,12 @@ def block_lattice(body: ImplicitBody, spacing: float | None = None) -> Lattice:
     return Lattice(first - body.origin, spacing, (int(counts[0]), int(counts[1]), int(counts[2])))
 
 
-def block_model(body: ImplicitBody, spacing: float | None = None) -> BlockModel:
+def block_model(body: BodyFit, spacing: float | None = None) -> BlockModel:
     """Return the blocks around a body.
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : BodyFit
         The body.
     spacing : float, optional
         Edge of the blocks, metres; by default 1/48 of the longest side of the body. Centres lie at whole multiples.

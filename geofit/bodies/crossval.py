@@ -17,7 +17,7 @@ from geofit.data.messages import message
 from geofit.prediction.kriging import krige_left_out
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["CrossValidation", "HoleScore", "MethodScore", "leave_one_hole_out"]
 
@@ -80,7 +80,7 @@ class CrossValidation:
     skipped: Mapping[str, str]
 
 
-def leave_one_hole_out(body: ImplicitBody, holes: int = 30) -> CrossValidation:
+def leave_one_hole_out(body: BodyFit, holes: int = 30) -> CrossValidation:
     """Fit a body again without each of its holes, and compare with two usual methods on the same folds.
 
     The linear RBF interpolates signed distances to the nearest contact at all samples, and 0 at contacts. Indicator
@@ -89,7 +89,7 @@ def leave_one_hole_out(body: ImplicitBody, holes: int = 30) -> CrossValidation:
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : BodyFit
         A body whose data name their holes.
     holes : int
         Holes left out at most: of those that meet the body or come within reach of it, some spread over it.
@@ -118,7 +118,7 @@ def leave_one_hole_out(body: ImplicitBody, holes: int = 30) -> CrossValidation:
     return CrossValidation({name: MethodScore(tuple(found)) for name, found in scores.items()}, skipped)
 
 
-def _chosen(body: ImplicitBody, most: int) -> tuple[str, ...]:
+def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
     """Return holes that meet the body or come within its reach, at most so many, spread over it."""
     from scipy.spatial import cKDTree
 

@@ -15,7 +15,7 @@ from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
-    from geofit.bodies.closed import ClosedBody
+    from geofit.bodies.implicit_body import ImplicitBody
 
 __all__ = ["BodyPiece", "CuttingSurface", "cut_body", "split_mesh"]
 
@@ -55,7 +55,7 @@ class BodyPiece:
 
 
 def cut_body(
-    body: ClosedBody,
+    body: ImplicitBody,
     surfaces: Mapping[str, CuttingSurface] | Sequence[CuttingSurface] | CuttingSurface,
     spacing: float | None = None,
 ) -> tuple[BodyPiece, ...]:

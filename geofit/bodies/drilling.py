@@ -14,7 +14,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["SuggestedHole", "suggest_holes"]
 
@@ -41,7 +41,7 @@ class SuggestedHole:
 
 
 def suggest_holes(
-    body: ImplicitBody, count: int = 3, *, azimuth: float = 0.0, dip: float = 90.0
+    body: BodyFit, count: int = 3, *, azimuth: float = 0.0, dip: float = 90.0
 ) -> tuple[SuggestedHole, ...]:
     """Choose the parallel holes that are expected to narrow the volume of a body most, one after the other.
 
@@ -51,7 +51,7 @@ def suggest_holes(
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : BodyFit
         The body.
     count : int
         Holes wanted.

@@ -21,7 +21,7 @@ from geofit.data.errors import FitError
 from geofit.data.messages import message
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["Fitted", "fit_body", "fit_field"]
 
@@ -39,7 +39,7 @@ def fit_body(
     *,
     codes: str | Sequence[str] | None = None,
     name: str = "",
-) -> ImplicitBody:
+) -> BodyFit:
     """Fit a closed body.
 
     Parameters
@@ -56,7 +56,7 @@ def fit_body(
 
     Returns
     -------
-    ImplicitBody
+    BodyFit
         With its accuracy.
 
     Raises
@@ -82,7 +82,7 @@ def fit_body(
     (True, 'PASS')
     """
     from geofit.bodies.accuracy import examine
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
     from geofit.bodies.intervals import as_body_data
 
     settings = BodySettings() if settings is None else settings
@@ -90,7 +90,7 @@ def fit_body(
     fitted = fit_field(given, settings)
     if not name:
         name = "body" if codes is None else codes if isinstance(codes, str) else "+".join(codes)
-    body = ImplicitBody(name, given, settings, fitted)
+    body = BodyFit(name, given, settings, fitted)
     return body.with_accuracy(examine(body))
 
 

@@ -17,7 +17,7 @@ from geofit.data.messages import message
 from geofit.implicit.trace import Crossing, hole_crossings
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["Band", "PlannedHole", "direction_of", "predict_hole"]
 
@@ -76,7 +76,7 @@ class PlannedHole:
 class _Bounded:
     """A body's field in map coordinates, with a bound of its gradient that was measured along one hole."""
 
-    body: ImplicitBody
+    body: BodyFit
     lipschitz: float
 
     @property
@@ -92,13 +92,13 @@ class _Bounded:
 
 
 def predict_hole(
-    body: ImplicitBody, collar: ArrayLike, *, azimuth: float = 0.0, dip: float = 90.0, length: float
+    body: BodyFit, collar: ArrayLike, *, azimuth: float = 0.0, dip: float = 90.0, length: float
 ) -> PlannedHole:
     """Predict where a straight hole will enter and leave a body.
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : BodyFit
         The body.
     collar : (3,) array_like
         Where the hole begins, map coordinates.
@@ -164,7 +164,7 @@ def direction_of(azimuth: float, dip: float) -> Floats:
     return np.array([np.sin(turn) * np.cos(fall), np.cos(turn) * np.cos(fall), -np.sin(fall)])
 
 
-def _drawn(body: ImplicitBody, xyz: Floats) -> Floats:
+def _drawn(body: BodyFit, xyz: Floats) -> Floats:
     """Return what each realization adds to the field at (n, 3) places along a hole, (n, realizations)."""
     posterior = Posterior(body)
     value, deviation = body.value(xyz), SPREAD * posterior.deviation(xyz)

@@ -20,7 +20,7 @@ from geofit.bodies.active import spread
 from geofit.bodies.rbf import Saddle
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["SPREAD", "Posterior"]
 
@@ -49,11 +49,11 @@ class Posterior:
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : BodyFit
         The body.
     """
 
-    body: ImplicitBody
+    body: BodyFit
 
     @cached_property
     def system(self) -> Saddle:

@@ -19,7 +19,7 @@ from geofit.splines import bspline
 from geofit.splines.patch import Patch
 
 if TYPE_CHECKING:
-    from geofit.bodies.closed import ClosedBody
+    from geofit.bodies.implicit_body import ImplicitBody
 
 __all__ = ["PatchedSurface", "patched_surface"]
 
@@ -77,7 +77,7 @@ class _Fit:
         return np.asarray(cross / np.maximum(np.linalg.norm(cross, axis=-1, keepdims=True), 1e-300))
 
 
-def patched_surface(body: ClosedBody, tolerance: float | None = None) -> PatchedSurface:
+def patched_surface(body: ImplicitBody, tolerance: float | None = None) -> PatchedSurface:
     """Return NURBS patches that meet the surface of a body within a tolerance.
 
     Parameters
@@ -93,7 +93,7 @@ def patched_surface(body: ClosedBody, tolerance: float | None = None) -> Patched
     FitError
         If 500 patches do not suffice, or the body is cut at its box, where it has edges.
     """
-    cut: tuple[str, ...] = getattr(body.field, "cut", ())
+    cut = body.cut_sides
     if cut:
         raise FitError(
             message(

@@ -14,7 +14,7 @@ from geofit.bodies.outlines import Outline, SectionPlane, section_planes
 from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["Question", "section_questions"]
 
@@ -58,14 +58,14 @@ class Question:
     text: Message
 
 
-def section_questions(outlines: Sequence[Outline], body: ImplicitBody | None = None) -> tuple[Question, ...]:
+def section_questions(outlines: Sequence[Outline], body: BodyFit | None = None) -> tuple[Question, ...]:
     """Return what the outlines leave open between neighbouring sections.
 
     Parameters
     ----------
     outlines : sequence of Outline
         As given to :func:`geofit.bodies.outlines.from_outlines`.
-    body : ImplicitBody, optional
+    body : BodyFit, optional
         The body fitted to them; with it, each question states what the body does there, and gaps of the body between
         sections with the same number of parts are listed too.
     """
@@ -133,7 +133,7 @@ def _ordered(planes: Sequence[SectionPlane]) -> list[SectionPlane]:
 class _Between:
     """The body on planes between two sections: each is the mean of both, weighted by the share of the way."""
 
-    def __init__(self, body: ImplicitBody, first: SectionPlane, second: SectionPlane) -> None:
+    def __init__(self, body: BodyFit, first: SectionPlane, second: SectionPlane) -> None:
         self.body, self.first, self.second = body, first, second
         # The second section's axes, turned as those of the first.
         u, _, v = np.linalg.svd(second.axes @ first.axes.T)

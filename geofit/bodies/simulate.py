@@ -17,7 +17,7 @@ from geofit.bodies.posterior import SPREAD, Posterior
 from geofit.bodies.rbf import Saddle
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["BodyVolumes", "Draws", "changes", "draws", "simulate", "volumes_of"]
 
@@ -63,12 +63,12 @@ class Draws:
     changes: Floats
 
 
-def simulate(body: ImplicitBody) -> BodyVolumes:
+def simulate(body: BodyFit) -> BodyVolumes:
     """Return the volumes of ``settings.realizations`` conditional simulations of a body."""
     return volumes_of(body.overview.volume, draws(body).changes.sum(axis=0))
 
 
-def draws(body: ImplicitBody) -> Draws:
+def draws(body: BodyFit) -> Draws:
     """Return ``settings.realizations`` conditional simulations of a body."""
     posterior = Posterior(body)
     rng = np.random.default_rng(body.settings.seed)
@@ -104,7 +104,7 @@ def volumes_of(best: float, change: Floats) -> BodyVolumes:
     return BodyVolumes(p10, p50, p90, best, float(values.mean()), float(values.std(ddof=1)), values)
 
 
-def _nodes(body: ImplicitBody) -> tuple[Floats, float]:
+def _nodes(body: BodyFit) -> tuple[Floats, float]:
     """Return raster nodes (n, 3) around the body in map coordinates, and their distance."""
     lower, upper = body.extent
     margin = body.region.reach / 2
@@ -123,9 +123,7 @@ def _first_knots(fitted: Floats, value: Floats, deviation: Floats) -> NDArray[np
     return np.asarray(doubt[spread(fitted[doubt], min(KNOTS, len(doubt)))] if len(doubt) else doubt)
 
 
-def changes(
-    body: ImplicitBody, posterior: Posterior, knots: Floats, places: Floats, rng: np.random.Generator
-) -> Floats:
+def changes(body: BodyFit, posterior: Posterior, knots: Floats, places: Floats, rng: np.random.Generator) -> Floats:
     """Return what each realization adds to the field, (n, realizations), at (n, 3) fitted places."""
     if not len(knots):
         return np.zeros((len(places), body.settings.realizations))
@@ -148,7 +146,7 @@ def changes(
     return np.concatenate([whole.rows(block) @ weights for block in blocks])
 
 
-def _guards(body: ImplicitBody, posterior: Posterior) -> tuple[Floats, Floats, Floats]:
+def _guards(body: BodyFit, posterior: Posterior) -> tuple[Floats, Floats, Floats]:
     """Return the samples most likely to change side in a draw: fitted places, sides, and the field's values there."""
     prepared, region = body.fitted.prepared, body.region
     xyz = np.concatenate([prepared.inside, prepared.outside, region.closing])

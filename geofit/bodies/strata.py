@@ -15,7 +15,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["StratumVolume", "strata_table"]
 
@@ -37,7 +37,7 @@ class StratumVolume:
 
 
 def strata_table(
-    body: ImplicitBody, horizons: Mapping[str, CuttingSurface], spacing: float | None = None
+    body: BodyFit, horizons: Mapping[str, CuttingSurface], spacing: float | None = None
 ) -> tuple[StratumVolume, ...]:
     """Return the volume of a body in each stratum that it reaches, from the top down.
 
@@ -45,12 +45,12 @@ def strata_table(
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : BodyFit
         The body.
     horizons : mapping of str to surface
         In any order: that of their mean elevations over the body counts.
     spacing : float, optional
-        Of the body's triangles, see :meth:`ImplicitBody.triangulate`.
+        Of the body's triangles, see :meth:`BodyFit.triangulate`.
 
     Returns
     -------

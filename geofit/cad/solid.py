@@ -27,7 +27,7 @@ from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
 
 if TYPE_CHECKING:
-    from geofit.bodies.closed import ClosedBody
+    from geofit.bodies.implicit_body import ImplicitBody
 
 __all__ = ["SolidReadBack", "patch_solid", "triangle_solid", "write_body"]
 
@@ -71,7 +71,7 @@ class SolidReadBack:
 
 
 def write_body(
-    body: ClosedBody, path: str | PathLike[str], patches: Sequence[Sequence[Patch]] = (), reason: str = ""
+    body: ImplicitBody, path: str | PathLike[str], patches: Sequence[Sequence[Patch]] = (), reason: str = ""
 ) -> SolidReadBack:
     """Write a body as a STEP AP242 solid, read it back and check it.
 
@@ -332,7 +332,7 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
         Path(temporary).unlink(missing_ok=True)
 
 
-def _read_back(body: ClosedBody, target: Path, *, nurbs: bool) -> SolidReadBack:
+def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBack:
     from OCP.BRep import BRep_Tool
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
@@ -456,7 +456,7 @@ def _read_back(body: ClosedBody, target: Path, *, nurbs: bool) -> SolidReadBack:
     )
 
 
-def _reference_volume(body: ClosedBody) -> float:
+def _reference_volume(body: ImplicitBody) -> float:
     """Return the body's volume from two meshes, by Richardson's extrapolation: triangles err with the square."""
     lower, upper = body.extent
     spacing = float((upper - lower).max()) / 40

@@ -10,11 +10,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.bodies.implicit_body import ImplicitBody
 from geofit.caves.adjust import AdjustedSurvey, adjust
 from geofit.caves.sections import Sections, sections
 from geofit.caves.survey import Survey
@@ -82,7 +83,7 @@ def _area(walls: Floats) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class PassageBody:
+class PassageBody(ImplicitBody):
     """The body of the passages of a survey; a field in the sense of :class:`geofit.implicit.Field`.
 
     Parameters
@@ -97,10 +98,15 @@ class PassageBody:
         Radius of the smooth union where branches meet, metres: the body swells by a quarter of it at most.
     """
 
+    most_cells: ClassVar[int] = 1 << 20
+
     adjusted: AdjustedSurvey
     sections: Sections
     sweeps: Sweeps
     blend: float
+
+    def __repr__(self) -> str:
+        return f"<PassageBody {self.name}: {len(self.sweeps.length)} passages, {self.length:.1f} m>"
 
     @property
     def bounds(self) -> tuple[Floats, Floats]:
@@ -136,17 +142,35 @@ class PassageBody:
 
         return ranges(self.sweeps, self.blend, np.asarray(lower, float), np.asarray(upper, float))
 
-    def triangulate(self, spacing: float) -> TriangleMesh:
-        """Return the closed surface as triangles, from a lattice of this spacing (metres).
+    @property
+    def name(self) -> str:
+        """What files call it."""
+        return "passages"
 
-        Passages thinner than the spacing may break or be lost: see :meth:`thinner_than`.
-        """
-        from geofit.implicit.isosurface import isosurface
-        from geofit.implicit.lattice import Lattice
+    @property
+    def field(self) -> Self:
+        """The body itself."""
+        return self
 
-        low, high = self.bounds
-        shape = np.ceil((high - low) / _spacing(spacing)).astype(int) + 3
-        return isosurface(self, Lattice(low - spacing, spacing, (int(shape[0]), int(shape[1]), int(shape[2]))))
+    @property
+    def origin(self) -> Floats:
+        """(3,) zeros: the stations have the survey's coordinates."""
+        return np.zeros(3)
+
+    @property
+    def extent(self) -> tuple[Floats, Floats]:
+        """The box that contains the body."""
+        return self.bounds
+
+    @property
+    def spacing(self) -> float:
+        """The spacing that resolves the narrowest passages, metres."""
+        return self.fine
+
+    @cached_property
+    def overview(self) -> TriangleMesh:
+        """Closed triangles that resolve most passages; those thinner than :attr:`fine` may be lost."""
+        return self.local_mesh(self.fine)
 
     def thinner_than(self, spacing: float) -> tuple[tuple[str, str], ...]:
         """Return the shots whose section is somewhere thinner than a spacing: triangles and volumes may lose them."""

@@ -111,7 +111,7 @@ def _given(name: str, value: Any) -> dict[str, Any]:
 
 
 def _require(name: str, value: Any, text: SettingText) -> None:
-    """Refuse a value that is no choice of the setting, unless it is a number within its range."""
+    """Refuse a value that is neither one of the setting's choices nor a number within its range."""
     given = _given(name, value)
     if text.number == "real":
         if is_finite(value) and value > 0:

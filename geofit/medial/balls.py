@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.bodies.implicit_body import ImplicitBody
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.medial.kernel import STIFFNESS, reach
 
 if TYPE_CHECKING:
-    from geofit.implicit.mesh import TriangleMesh
     from geofit.medial.ball_sums import BallCells
 
 __all__ = ["MetaballBody"]
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class MetaballBody:
+class MetaballBody(ImplicitBody):
     """The body on which the fields of metaballs sum to 1 or more.
 
     It is a field in the sense of :class:`geofit.implicit.Field`: (1 - sum f_i) times the mean radius over the
@@ -37,6 +37,8 @@ class MetaballBody:
         Visible radii, metres: a lone ball is the sphere of this radius.
     stiffness : float
         s of the kernel (:mod:`geofit.medial.kernel`).
+    name : str
+        Name.
 
     Raises
     ------
@@ -53,6 +55,7 @@ class MetaballBody:
     centre: Floats
     radius: Floats
     stiffness: float = STIFFNESS
+    name: str = "metaballs"
 
     def __post_init__(self) -> None:
         centre, radius = np.array(self.centre, float), np.array(self.radius, float)
@@ -81,6 +84,9 @@ class MetaballBody:
         centre.flags.writeable = radius.flags.writeable = False
         object.__setattr__(self, "centre", centre)
         object.__setattr__(self, "radius", radius)
+
+    def __repr__(self) -> str:
+        return f"<MetaballBody {self.name}: {len(self)} balls>"
 
     def __len__(self) -> int:
         return len(self.radius)
@@ -114,18 +120,25 @@ class MetaballBody:
         low, high = self._cells.range_in(np.asarray(lower, float), np.asarray(upper, float))
         return self._scale * (1.0 - high), self._scale * (1.0 - low)
 
-    def triangulate(self, spacing: float) -> TriangleMesh:
-        """Return the closed surface as triangles, from a lattice of this spacing (metres)."""
-        from geofit.implicit.isosurface import isosurface
-        from geofit.implicit.lattice import Lattice
+    @property
+    def field(self) -> Self:
+        """The body itself."""
+        return self
 
-        if not (np.isfinite(spacing) and spacing > 0):
-            raise SettingsError(
-                message("caves.spacing", "The spacing is {spacing}; give metres above 0.", spacing=spacing)
-            )
-        low, high = self.bounds
-        shape = np.ceil((high - low) / spacing).astype(int) + 3
-        return isosurface(self, Lattice(low - spacing, spacing, (int(shape[0]), int(shape[1]), int(shape[2]))))
+    @property
+    def origin(self) -> Floats:
+        """(3,) zeros: the centres are coordinates as they are."""
+        return np.zeros(3)
+
+    @property
+    def extent(self) -> tuple[Floats, Floats]:
+        """The box that contains every ball's reach."""
+        return self.bounds
+
+    @property
+    def spacing(self) -> float:
+        """Mean radius, metres: over about this length the surface is flat."""
+        return float(self.radius.mean())
 
     def with_ball(self, i: int, *, centre: ArrayLike | None = None, radius: float | None = None) -> Self:
         """Return the body with ball i moved to a centre (3,), resized, or both; metres."""

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import date
 from functools import cached_property
-from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from geofit.data.errors import FitError, SettingsError
+from geofit.bodies.implicit_body import ImplicitBody
+from geofit.data.errors import FitError
 from geofit.data.messages import Message, message
 from geofit.implicit.field import Field
 from geofit.implicit.isosurface import isosurface
@@ -20,8 +19,7 @@ from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
-    from geofit.bodies.cut import BodyPiece
-    from geofit.cad.solid import SolidReadBack
+    pass
 
 __all__ = ["GEOMETRY_ONLY", "MorphBody"]
 
@@ -38,7 +36,7 @@ MOST = 1024
 
 
 @dataclass(frozen=True, eq=False)
-class MorphBody:
+class MorphBody(ImplicitBody):
     """The body at one moment between two surveys. Coordinates of its meshes are map coordinates in metres.
 
     Parameters
@@ -78,14 +76,9 @@ class MorphBody:
         return f"<MorphBody {self.name}: tau {self.tau:.4g}{when}>"
 
     @property
-    def epsilon(self) -> float:
-        """Distance that a file may have from the body, metres: half a spacing of the lattice."""
-        return self.lattice.spacing / 2
-
-    @property
-    def contacts(self) -> Floats:
-        """None: no place of its surface was measured."""
-        return np.zeros((0, 3))
+    def spacing(self) -> float:
+        """Spacing of the lattice, metres: over about this length the surface is flat."""
+        return self.lattice.spacing
 
     @property
     def interpolated(self) -> bool:
@@ -139,73 +132,9 @@ class MorphBody:
         room = 2 * self.lattice.spacing
         return self.overview.vertices.min(axis=0) - room, self.overview.vertices.max(axis=0) + room
 
-    def value(self, xyz: ArrayLike) -> Floats:
-        """Return the field (n,) at (n, 3) places: negative inside, near the surface about the distance in metres."""
-        return self.field.value(self._local(xyz))
-
-    def gradient(self, xyz: ArrayLike) -> Floats:
-        """Return the gradient (n, 3) of the field at (n, 3) places; it points outwards."""
-        return self.field.gradient(self._local(xyz))
-
-    def distance(self, xyz: ArrayLike) -> Floats:
-        """Return the signed orthogonal distance (n,) of (n, 3) places to the surface, metres, positive outside."""
-        from geofit.bodies.distance import signed_distance
-
-        return signed_distance(self.field, self._local(xyz), self.lattice.spacing, lambda: self.overview)
-
-    def local_mesh(self, spacing: float) -> TriangleMesh:
-        """Return closed triangles about the local origin at another spacing, metres."""
-        lower, upper = self.extent
-        longest = float((upper - lower).max())
-        if not np.isfinite(spacing) or spacing <= 0 or longest / spacing > MOST:
-            raise SettingsError(
-                message(
-                    "bodies.spacing-cannot-used",
-                    "A spacing of {spacing} m cannot be used for a body {size:.1f} m long: give {least:.3g} m or more.",
-                    spacing=spacing,
-                    size=longest,
-                    least=longest / MOST,
-                )
-            )
-        counts = np.maximum(np.ceil((upper - lower) / spacing).astype(int), 1) + 4
-        start = (lower + upper) / 2 - counts * spacing / 2
-        shape = (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1)
-        return isosurface(self.field, Lattice(start, spacing, shape), capped=True)
-
     def triangulate(self, spacing: float | None = None) -> TriangleMesh:
         """Return closed triangles in map coordinates, by default those of :attr:`mesh`."""
         if spacing is None:
             return self.mesh
         mesh = self.local_mesh(spacing)
         return TriangleMesh(mesh.vertices + self.origin, mesh.triangles)
-
-    def cut(self, surfaces: Mapping[str, Any] | Sequence[Any], spacing: float | None = None) -> tuple[BodyPiece, ...]:
-        """Return the closed pieces into which surfaces cut the body; see :func:`geofit.bodies.cut.cut_body`."""
-        from geofit.bodies.cut import cut_body
-
-        return cut_body(self, surfaces, spacing)
-
-    def write_step(self, path: str | PathLike[str], nurbs: bool = True) -> SolidReadBack:
-        """Write the body as a STEP AP242 solid, read it back, and return what the reader found.
-
-        Parameters
-        ----------
-        path : path
-            The file, usually ``*.step``.
-        nurbs : bool
-            NURBS patches within half a spacing of the surface; otherwise, and where patches cannot follow the body, a
-            tessellated solid.
-        """
-        from geofit.bodies.quads import patched_surface
-        from geofit.cad.solid import write_body
-
-        if not nurbs or self.given_mesh is not None:
-            return write_body(self, path)
-        try:
-            patches = patched_surface(self).components
-        except FitError as error:
-            return write_body(self, path, reason=str(error))
-        return write_body(self, path, patches)
-
-    def _local(self, xyz: ArrayLike) -> Floats:
-        return np.asarray(np.atleast_2d(np.asarray(xyz, float)).reshape(-1, 3) - self.origin)

@@ -12,15 +12,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
+from geofit.bodies.implicit_body import ImplicitBody
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.implicit.field import Box, Field
-from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 from geofit.pores.balls import balls_of_distance, maximal_balls
@@ -121,8 +121,8 @@ class ContactField:
 
 
 @dataclass(frozen=True, eq=False)
-class PoreSurface:
-    """Implicit body of a pore space. It is a :class:`geofit.implicit.field.Field` itself.
+class PoreSurface(ImplicitBody):
+    """The pore space as a body. It is a :class:`geofit.implicit.field.Field` itself.
 
     Attributes
     ----------
@@ -131,20 +131,28 @@ class PoreSurface:
     shape, voxel : tuple
         Voxels along each axis, and their edges in metres.
     construction : {"contact", "blend"}
+    name : str
     """
+
+    most_cells: ClassVar[int] = 1 << 14
 
     field: Field
     shape: tuple[int, int, int]
     voxel: tuple[float, float, float]
     construction: Construction
+    name: str = "pores"
 
-    def value(self, xyz: Floats) -> Floats:
+    def value(self, xyz: ArrayLike) -> Floats:
         """Return the field at (n, 3) points in metres from the low corner: negative in pores."""
         return self.field.value(np.asarray(xyz, float))
 
-    def gradient(self, xyz: Floats) -> Floats:
+    def gradient(self, xyz: ArrayLike) -> Floats:
         """Return the gradient at (n, 3) points; it points into the rock."""
         return self.field.gradient(np.asarray(xyz, float))
+
+    def __repr__(self) -> str:
+        size = " x ".join(str(n) for n in self.shape)
+        return f"<PoreSurface {self.name}: {size} voxels, {self.construction}>"
 
     @property
     def bounds(self) -> Box:
@@ -162,23 +170,34 @@ class PoreSurface:
 
         return range_in(self.field, lower, upper)
 
-    def triangulate(self, spacing: float | None = None) -> TriangleMesh:
-        """Return the surface as a closed triangle mesh, capped at the faces of the sample.
+    @property
+    def origin(self) -> Floats:
+        """(3,) zeros: the low corner of the sample."""
+        return np.zeros(3)
 
-        Parameters
-        ----------
-        spacing : float, optional
-            Edge of the cells in metres; by default that of a voxel.
-        """
-        step = min(self.voxel) if spacing is None else spacing
-        counts = np.maximum(np.rint(self.bounds[1] / step).astype(int), 1)
-        lattice = Lattice(np.zeros(3), step, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
-        return isosurface(self, lattice, capped=True)
+    @property
+    def extent(self) -> Box:
+        """The box of the sample."""
+        return self.bounds
+
+    @property
+    def spacing(self) -> float:
+        """The shortest edge of a voxel, metres."""
+        return min(self.voxel)
+
+    @cached_property
+    def overview(self) -> TriangleMesh:
+        """Closed triangles at the spacing of the voxels, capped at the faces of the sample."""
+        return self.local_mesh(self.spacing)
+
+    def _lattice(self, spacing: float) -> Lattice:
+        counts = np.maximum(np.rint(self.bounds[1] / spacing).astype(int), 1)
+        return Lattice(np.zeros(3), spacing, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
 
     @cached_property
     def porosity(self) -> float:
         """Share of the sample that lies in the body, by the volume of its triangles."""
-        return float(self.triangulate().volume / np.prod(self.bounds[1]))
+        return float(self.overview.volume / np.prod(self.bounds[1]))
 
     def voxels(self) -> NDArray[np.bool_]:
         """Return the voxels whose middle lies in the body."""

@@ -17,7 +17,7 @@ from geofit.project.body_files import folder_for, write_figures, write_triangles
 
 if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
     from geofit.bodies.data import BodyData
     from geofit.bodies.simulate import BodyVolumes
     from geofit.cad.solid import SolidReadBack
@@ -31,7 +31,7 @@ __all__ = ["BodyRun", "run_body"]
 class BodyRun:
     """A fitted body with its volumes, its STEP file as read back, and all files that were written."""
 
-    body: ImplicitBody
+    body: BodyFit
     volumes: BodyVolumes
     read_back: SolidReadBack
     files: tuple[Path, ...]

@@ -15,7 +15,7 @@ from geofit.data.progress import Progress, tell
 from geofit.data.title_block import TitleBlock
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
     from geofit.bodies.drilling import SuggestedHole
     from geofit.bodies.strata import StratumVolume
     from geofit.data.site import Site
@@ -129,7 +129,7 @@ def _body_part(site: Site, code: str, horizons: Mapping[str, Any], out: Path, la
     return BodyPart(name, body_chapter(found, t), images, run.accuracy.passed)
 
 
-def _over(body: ImplicitBody, horizons: Mapping[str, Any]) -> Sequence[tuple[str, Any]]:
+def _over(body: BodyFit, horizons: Mapping[str, Any]) -> Sequence[tuple[str, Any]]:
     """Return the horizons that reach all over a body: only those can divide its volume."""
     import numpy as np
 

@@ -28,7 +28,7 @@ from geofit.report.gather import check_lines
 
 if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
     from geofit.bodies.crossval import CrossValidation
     from geofit.bodies.drilling import SuggestedHole
     from geofit.bodies.simulate import BodyVolumes
@@ -54,7 +54,7 @@ class BodyFindings:
     ``pictures`` are what was drawn: "view", "section-0" and so on.
     """
 
-    body: ImplicitBody
+    body: BodyFit
     volumes: BodyVolumes
     read_back: SolidReadBack | None = None
     strata: tuple[StratumVolume, ...] = ()

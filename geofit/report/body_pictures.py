@@ -19,7 +19,7 @@ from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing, quiet
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["draw_body"]
 
@@ -32,7 +32,7 @@ RAISED, FLATTEST = (1, 2, 5, 10), 0.25
 SHADES = ("#f6e3d8", "#e9bd9f", "#d58f62")
 
 
-def draw_body(body: ImplicitBody, t: Language = EN) -> tuple[dict[str, bytes], Message | None]:
+def draw_body(body: BodyFit, t: Language = EN) -> tuple[dict[str, bytes], Message | None]:
     """Draw a body; return pictures by their names in the report, and why there is none in space, if so."""
     drawn = {body_picture("section", body.name): _sections(body, t)}
     try:
@@ -42,7 +42,7 @@ def draw_body(body: ImplicitBody, t: Language = EN) -> tuple[dict[str, bytes], M
     return drawn, None
 
 
-def _view(body: ImplicitBody, t: Language) -> bytes:
+def _view(body: BodyFit, t: Language) -> bytes:
     from matplotlib.figure import Figure
 
     mesh = body.overview
@@ -54,7 +54,7 @@ def _view(body: ImplicitBody, t: Language) -> bytes:
         return png(figure)
 
 
-def _sections(body: ImplicitBody, t: Language) -> bytes:
+def _sections(body: BodyFit, t: Language) -> bytes:
     """Draw the level plan through the middle, and beside it the sections along easting and northing."""
     from matplotlib.figure import Figure
 
@@ -87,9 +87,7 @@ def _sections(body: ImplicitBody, t: Language) -> bytes:
         return png(figure)
 
 
-def _section(
-    axes: Axes, body: ImplicitBody, ways: tuple[int, int, int], low: Floats, high: Floats, middle: Floats
-) -> None:
+def _section(axes: Axes, body: BodyFit, ways: tuple[int, int, int], low: Floats, high: Floats, middle: Floats) -> None:
     from matplotlib.ticker import MaxNLocator
 
     from geofit.bodies.posterior import Posterior

@@ -13,7 +13,7 @@ from geofit.data.site import ImportIssue
 from geofit.report.result import HorizonResult
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["write_contacts", "write_issues", "write_residuals"]
 
@@ -50,7 +50,7 @@ def write_residuals(result: HorizonResult, path: Path, language: Language = EN) 
     _write(path, RESIDUAL_HEADER, rows)
 
 
-def write_contacts(body: ImplicitBody, path: Path) -> None:
+def write_contacts(body: BodyFit, path: Path) -> None:
     """Write one line a contact of a body, in their order; metres, residuals are positive outside the surface."""
     assert body.accuracy is not None
     rows = zip(body.data.hole.tolist(), body.data.contacts, body.accuracy.residuals.tolist(), strict=True)

@@ -12,12 +12,12 @@ from geofit.data.files import replacing
 from geofit.data.messages import message
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["write_block_model"]
 
 
-def write_block_model(body: ImplicitBody, path: str | PathLike[str], spacing: float | None = None) -> None:
+def write_block_model(body: BodyFit, path: str | PathLike[str], spacing: float | None = None) -> None:
     """Write every block around a body, in the format of the file's ending.
 
     ``.csv``: columns ``x``, ``y``, ``z`` of the centre in map coordinates and the edge ``size``, metres; ``field``,
@@ -26,7 +26,7 @@ def write_block_model(body: ImplicitBody, path: str | PathLike[str], spacing: fl
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : BodyFit
         The body.
     path : path
         The file.

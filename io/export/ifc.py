@@ -19,7 +19,7 @@ from geofit.io.extra import need
 from geofit.splines.patch import Patch
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["write_ifc"]
 
@@ -38,7 +38,7 @@ def write_ifc(
     site: str = "site",
     crs: str = "",
     tolerance: float = 0.05,
-    bodies: Mapping[str, ImplicitBody] | None = None,
+    bodies: Mapping[str, BodyFit] | None = None,
     voids: Collection[str] = (),
 ) -> None:
     """Write an IFC4X3 file in metres and map coordinates.
@@ -63,7 +63,7 @@ def write_ifc(
         Label of the coordinate system; empty: none in the file.
     tolerance : float
         Largest distance in metres of the triangles from the surface of a horizon.
-    bodies : mapping of str to ImplicitBody, optional
+    bodies : mapping of str to BodyFit, optional
         Bodies by name.
     voids : collection of str
         Names of the bodies that are empty, such as karst and old workings.
@@ -175,7 +175,7 @@ class _Model:
         )
         self._parts.append(stratum)
 
-    def body(self, name: str, body: ImplicitBody, *, void: bool) -> None:
+    def body(self, name: str, body: BodyFit, *, void: bool) -> None:
         add, mesh = self.file, body.overview
         faces = add.createIfcTriangulatedFaceSet(
             add.createIfcCartesianPointList3D(mesh.vertices.tolist()), None, True, (mesh.triangles + 1).tolist()

@@ -15,13 +15,13 @@ from geofit.data.files import replacing
 from geofit.implicit.lattice import sample
 
 if TYPE_CHECKING:
-    from geofit.bodies.body import ImplicitBody
+    from geofit.bodies.body import BodyFit
 
 __all__ = ["write_vti"]
 
 
 def write_vti(
-    body: ImplicitBody, path: str | PathLike[str], spacing: float | None = None, *, probability: bool = True
+    body: BodyFit, path: str | PathLike[str], spacing: float | None = None, *, probability: bool = True
 ) -> None:
     """Write the field of a body at the nodes of a raster around it.
 
@@ -30,7 +30,7 @@ def write_vti(
 
     Parameters
     ----------
-    body : ImplicitBody
+    body : BodyFit
         The body.
     path : path
         The file.

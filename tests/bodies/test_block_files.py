@@ -11,7 +11,7 @@ import pytest
 
 from bodies.planted import ORIGIN, SIZE, drilled, ellipsoid
 from geofit.bodies.blocks import block_model
-from geofit.bodies.body import ImplicitBody
+from geofit.bodies.body import BodyFit
 from geofit.bodies.fit import fit_body
 from geofit.bodies.posterior import Posterior
 from geofit.data.errors import InputError, SettingsError
@@ -20,7 +20,7 @@ from geofit.io.export.ifc import write_ifc
 from geofit.io.export.vti import write_vti
 
 
-def test_vti_as_vtk_reads_it(ring: ImplicitBody, tmp_path: Path) -> None:
+def test_vti_as_vtk_reads_it(ring: BodyFit, tmp_path: Path) -> None:
     pyvista = pytest.importorskip("pyvista")
     path = tmp_path / "ring.vti"
     write_vti(ring, path, 4.0)
@@ -40,7 +40,7 @@ def test_vti_as_vtk_reads_it(ring: ImplicitBody, tmp_path: Path) -> None:
     assert again.read_bytes() == path.read_bytes()
 
 
-def test_block_model(ring: ImplicitBody, tmp_path: Path) -> None:
+def test_block_model(ring: BodyFit, tmp_path: Path) -> None:
     write_block_model(ring, tmp_path / "blocks.csv", 5.0)
     table = np.genfromtxt(tmp_path / "blocks.csv", delimiter=",", names=True)
     model = block_model(ring, 5.0)
@@ -71,12 +71,12 @@ def test_probability_is_calibrated() -> None:
         assert abs(p[own].mean() - inside[own].mean()) < 0.15
 
 
-def test_blocks_that_are_too_small(ring: ImplicitBody) -> None:
+def test_blocks_that_are_too_small(ring: BodyFit) -> None:
     with pytest.raises(SettingsError, match="at most"):
         block_model(ring, 0.01)
 
 
-def test_block_model_as_omf(ring: ImplicitBody, tmp_path: Path) -> None:
+def test_block_model_as_omf(ring: BodyFit, tmp_path: Path) -> None:
     path = tmp_path / "blocks.omf"
     write_block_model(ring, path, 5.0)
     raw, model = path.read_bytes(), block_model(ring, 5.0)
@@ -93,7 +93,7 @@ def test_block_model_as_omf(ring: ImplicitBody, tmp_path: Path) -> None:
         np.testing.assert_array_equal(stored, values)
 
 
-def test_block_model_as_geoh5(ring: ImplicitBody, tmp_path: Path) -> None:
+def test_block_model_as_geoh5(ring: BodyFit, tmp_path: Path) -> None:
     h5py = pytest.importorskip("h5py")
     path = tmp_path / "blocks.geoh5"
     write_block_model(ring, path, 5.0)
@@ -111,12 +111,12 @@ def test_block_model_as_geoh5(ring: ImplicitBody, tmp_path: Path) -> None:
     assert len(centres) == len(model.centres)
 
 
-def test_block_model_of_another_ending(ring: ImplicitBody, tmp_path: Path) -> None:
+def test_block_model_of_another_ending(ring: BodyFit, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"\.csv, \.omf or \.geoh5"):
         write_block_model(ring, tmp_path / "blocks.xyz", 5.0)
 
 
-def test_bodies_in_ifc(ring: ImplicitBody, two: ImplicitBody, tmp_path: Path) -> None:
+def test_bodies_in_ifc(ring: BodyFit, two: BodyFit, tmp_path: Path) -> None:
     ifcopenshell = pytest.importorskip("ifcopenshell")
     path = tmp_path / "bodies.ifc"
     write_ifc({}, path, bodies={"ring": ring, "caves": two}, voids=["caves"])

@@ -9,7 +9,7 @@ from scipy.interpolate import RBFInterpolator
 from scipy.spatial import cKDTree
 
 from bodies.planted import ORIGIN, SIZE, drilled, ellipsoid
-from geofit.bodies.body import ImplicitBody
+from geofit.bodies.body import BodyFit
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
 
@@ -40,7 +40,7 @@ def test_contacts_and_normals_are_met_at_map_coordinates(count: int) -> None:
 
 @pytest.mark.parametrize("name", ["ring", "two"])
 def test_planted_offsets_are_measured_with_their_sign(name: str, request: pytest.FixtureRequest) -> None:
-    body: ImplicitBody = request.getfixturevalue(name)
+    body: BodyFit = request.getfixturevalue(name)
     rng = np.random.default_rng(5)
     surface = body.overview.vertices + body.origin
     foot = surface[rng.choice(len(surface), 200, replace=False)]

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from bodies.planted import ORIGIN, drilled, ellipsoid
-from geofit.bodies.body import ImplicitBody
+from geofit.bodies.body import BodyFit
 from geofit.bodies.crossval import leave_one_hole_out
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
 from geofit.data.errors import FitError
 
 
-def test_a_hole_left_out_by_hand(ring: ImplicitBody) -> None:
+def test_a_hole_left_out_by_hand(ring: BodyFit) -> None:
     found = leave_one_hole_out(ring, holes=4)
     assert list(found.methods) == ["body", "linear RBF", "indicator kriging"]
     assert not found.skipped

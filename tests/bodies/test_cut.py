@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bodies.planted import ORIGIN
-from geofit.bodies.body import ImplicitBody
+from geofit.bodies.body import BodyFit
 from geofit.bodies.strata import strata_table
 from geofit.data.errors import FitError, SettingsError
 
@@ -23,7 +23,7 @@ class Plane:
         return np.where(along > self.end, np.nan, z)
 
 
-def test_pieces_are_closed_and_add_up(ring: ImplicitBody) -> None:
+def test_pieces_are_closed_and_add_up(ring: BodyFit) -> None:
     surfaces = [Plane("top", 3, 0.1, 3), Plane("base", -6, 0), Plane("fault", 0, 3)]
     pieces = ring.cut(surfaces)
     assert len(pieces) == 7
@@ -38,7 +38,7 @@ def test_pieces_are_closed_and_add_up(ring: ImplicitBody) -> None:
     assert sum(piece.volume for piece in pieces) == pytest.approx(ring.triangulate().volume, rel=1e-9)
 
 
-def test_two_sides_share_their_cut_face(ring: ImplicitBody) -> None:
+def test_two_sides_share_their_cut_face(ring: BodyFit) -> None:
     above, below = ring.cut({"h": Plane("", 2, 0.05)})
 
     def face(mesh: object) -> set[tuple[float, ...]]:
@@ -50,18 +50,18 @@ def test_two_sides_share_their_cut_face(ring: ImplicitBody) -> None:
     assert len(face(above.mesh)) > 50
 
 
-def test_a_surface_beyond_the_body_leaves_it_whole(ring: ImplicitBody) -> None:
+def test_a_surface_beyond_the_body_leaves_it_whole(ring: BodyFit) -> None:
     (piece,) = ring.cut([Plane("ground", 300, 0)])
     assert piece.sides == {"ground": "below"}
     assert piece.volume == pytest.approx(ring.triangulate().volume)
 
 
-def test_a_surface_that_ends_within_the_body(ring: ImplicitBody) -> None:
+def test_a_surface_that_ends_within_the_body(ring: BodyFit) -> None:
     with pytest.raises(FitError, match="does not reach"):
         ring.cut([Plane("short", 0, 0, end=10)])
 
 
-def test_table_of_strata(ring: ImplicitBody) -> None:
+def test_table_of_strata(ring: BodyFit) -> None:
     horizons = {"base": Plane("", -8, 0.02), "top": Plane("", 6, 0.05, 2), "far": Plane("", -400, 0)}
     table = strata_table(ring, horizons, 6.0)
     assert [str(row.name) for row in table] == ["above top", "top to base", "base to far"]
@@ -76,6 +76,6 @@ def test_table_of_strata(ring: ImplicitBody) -> None:
     assert whole < sum(row.volumes.sd for row in table) < 3 * whole
 
 
-def test_a_table_without_horizons(ring: ImplicitBody) -> None:
+def test_a_table_without_horizons(ring: BodyFit) -> None:
     with pytest.raises(SettingsError, match="horizon"):
         strata_table(ring, {})

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bodies.planted import ORIGIN, SIZE, Truth, drilled, ellipsoid, pair, torus
-from geofit.bodies.body import ImplicitBody
+from geofit.bodies.body import BodyFit
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
 from geofit.bodies.settings import BodySettings
@@ -42,7 +42,7 @@ def test_ten_layouts_of_holes(make: Callable[[], tuple[Truth, float]], rows: int
     assert max(errors) < 0.10
 
 
-def test_gradient_is_that_of_the_value(ring: ImplicitBody) -> None:
+def test_gradient_is_that_of_the_value(ring: BodyFit) -> None:
     rng = np.random.default_rng(0)
     low, high = (corner + ORIGIN for corner in (ring.field.lower, ring.field.upper))
     # Far outside the box too: the value goes on with the distance.

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bodies.planted import ORIGIN, SIZE, Truth, drilled, ellipsoid, torus
-from geofit.bodies.body import ImplicitBody
+from geofit.bodies.body import BodyFit
 from geofit.bodies.data import BodyData
 from geofit.bodies.drilling import suggest_holes
 from geofit.bodies.fit import fit_body
@@ -14,7 +14,7 @@ from geofit.bodies.planned import predict_hole
 from geofit.data.errors import SettingsError
 
 
-def test_crossings_lie_on_the_surface(ring: ImplicitBody) -> None:
+def test_crossings_lie_on_the_surface(ring: BodyFit) -> None:
     hole = predict_hole(ring, ORIGIN + np.array([-90, 3, 2]), azimuth=90, dip=0, length=180)
     assert [crossing.entering for crossing in hole.crossings] == [True, False, True, False]
     places = hole.collar + np.array([c.depth for c in hole.crossings])[:, None] * hole.direction
@@ -28,7 +28,7 @@ def test_crossings_lie_on_the_surface(ring: ImplicitBody) -> None:
     assert hole.inside.p50 == pytest.approx(88, abs=7)
 
 
-def test_a_hole_along_a_logged_one_has_no_band(ring: ImplicitBody) -> None:
+def test_a_hole_along_a_logged_one_has_no_band(ring: BodyFit) -> None:
     k = int(np.argmax([(ring.data.hole == name).sum() for name in ring.data.holes]))
     own = ring.data.hole == ring.data.holes[k]
     first, last = ring.data.contacts[own][0], ring.data.contacts[own][-1]
@@ -41,7 +41,7 @@ def test_a_hole_along_a_logged_one_has_no_band(ring: ImplicitBody) -> None:
     assert hole.entry.p50 == pytest.approx(20, abs=0.1)
 
 
-def test_a_hole_far_off_meets_nothing(ring: ImplicitBody) -> None:
+def test_a_hole_far_off_meets_nothing(ring: BodyFit) -> None:
     hole = predict_hole(ring, ORIGIN + np.array([500, 0, 100]), length=200)
     assert (hole.crossings, hole.probability, hole.entry, hole.exit) == ((), 0.0, None, None)
     assert hole.inside.p90 == 0.0
@@ -103,7 +103,7 @@ def with_hole(data: BodyData, truth: Truth, collar: np.ndarray) -> BodyData:
     return BodyData(*parts, None, *names)
 
 
-def test_holes_that_cannot_be_planned(ring: ImplicitBody) -> None:
+def test_holes_that_cannot_be_planned(ring: BodyFit) -> None:
     with pytest.raises(SettingsError, match="planned hole"):
         predict_hole(ring, ORIGIN, length=0)
     with pytest.raises(SettingsError, match="suggested"):

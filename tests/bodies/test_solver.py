@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from geofit.bodies.active import complementarity
-from geofit.bodies.body import ImplicitBody
+from geofit.bodies.body import BodyFit
 from geofit.bodies.kernels import gradients, gram, values
 from geofit.bodies.rbf import Saddle
 
@@ -62,7 +62,7 @@ def test_complementarity_against_all_subsets() -> None:
         assert abs(x @ rest) < 1e-7
 
 
-def test_volumes_hold_the_truth(ring: ImplicitBody) -> None:
+def test_volumes_hold_the_truth(ring: BodyFit) -> None:
     volumes = ring.volumes()
     assert volumes.p10 < volumes.p50 < volumes.p90
     assert volumes.p10 < 2 * np.pi**2 * 0.55 * 0.22**2 * 1e6 < volumes.p90

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geofit.bodies.body import ImplicitBody
+from geofit.bodies.body import BodyFit
 from geofit.geometry.mesh import Mesh
 from geofit.io.export import triangles as files
 from geofit.io.export.vtk import write_vtp
 
 
-def mesh_of(body: ImplicitBody) -> Mesh:
+def mesh_of(body: BodyFit) -> Mesh:
     surface = body.overview
     count = len(surface.triangles)
     return Mesh(
@@ -27,7 +27,7 @@ def mesh_of(body: ImplicitBody) -> Mesh:
 
 
 @pytest.mark.parametrize("ending", ["stl", "obj", "vtp"])
-def test_triangles_as_vtk_reads_them(ring: ImplicitBody, tmp_path: Path, ending: str) -> None:
+def test_triangles_as_vtk_reads_them(ring: BodyFit, tmp_path: Path, ending: str) -> None:
     pyvista = pytest.importorskip("pyvista")
     path = tmp_path / f"ring.{ending}"
     if ending == "vtp":
@@ -48,7 +48,7 @@ def test_triangles_as_vtk_reads_them(ring: ImplicitBody, tmp_path: Path, ending:
 
 # VTK reads the doubles of a PLY as floats, so it cannot judge a file in map coordinates.
 @pytest.mark.parametrize("ending", ["ply", "glb"])
-def test_triangles_as_trimesh_reads_them(ring: ImplicitBody, tmp_path: Path, ending: str) -> None:
+def test_triangles_as_trimesh_reads_them(ring: BodyFit, tmp_path: Path, ending: str) -> None:
     trimesh = pytest.importorskip("trimesh")
     path = tmp_path / f"ring.{ending}"
     getattr(files, f"write_{ending}")({"ring": mesh_of(ring)}, path)

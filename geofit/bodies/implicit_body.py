@@ -1,0 +1,177 @@
+"""What every closed body can do, however it was made: values, distances, triangles, cuts, STEP."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from os import PathLike
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from geofit.data.columns import measurable_places
+from geofit.data.errors import FitError, SettingsError
+from geofit.data.messages import message
+from geofit.data.numbers import is_finite
+from geofit.implicit.isosurface import isosurface
+from geofit.implicit.lattice import Lattice
+from geofit.implicit.mesh import TriangleMesh
+
+if TYPE_CHECKING:
+    from geofit.bodies.cut import BodyPiece
+    from geofit.cad.solid import SolidReadBack
+    from geofit.implicit.field import Field
+
+__all__ = ["ImplicitBody"]
+
+Floats = NDArray[np.float64]
+
+#: Cells of the overview mesh along the longest side of the body.
+OVERVIEW = 48
+
+
+class ImplicitBody:
+    """A closed body: the places where a field is negative. Coordinates are map coordinates in metres.
+
+    A fit to drill holes is one (:class:`geofit.BodyFit`), and so are a frame of a metamorphosis, the pore space of a
+    rock, a body of metaballs and the passages of a cave. Each kind has
+
+    - ``name``;
+    - ``field``, a :class:`geofit.implicit.field.Field` about ``origin``, (3,) map coordinates;
+    - ``extent``, the corners (3,) of a box around the body about ``origin``;
+    - ``spacing``, a length in metres over which its surface is about flat.
+    """
+
+    #: The most cells that a mesh may have along the longest side.
+    most_cells: ClassVar[int] = 1024
+
+    if TYPE_CHECKING:  # at run time a dataclass would take a property for the default of its field
+
+        @property
+        def name(self) -> str:
+            """Name."""
+
+        @property
+        def field(self) -> Field:
+            """The field about ``origin``, negative inside."""
+
+        @property
+        def origin(self) -> Floats:
+            """Map coordinates (3,) of the local origin, metres."""
+
+        @property
+        def extent(self) -> tuple[Floats, Floats]:
+            """Corners (3,) of a box around the body about ``origin``."""
+
+        @property
+        def spacing(self) -> float:
+            """Length in metres over which the surface is about flat."""
+
+    @property
+    def epsilon(self) -> float:
+        """Distance in metres that a file may have from the body."""
+        return self.spacing / 2
+
+    @property
+    def contacts(self) -> Floats:
+        """Measured places (n, 3) of the surface, map coordinates; may be none."""
+        return np.zeros((0, 3))
+
+    @property
+    def cut_sides(self) -> tuple[str, ...]:
+        """Sides of its box at which the body is cut: it has sharp edges there."""
+        return ()
+
+    @cached_property
+    def overview(self) -> TriangleMesh:
+        """Closed triangles of moderate size about the local origin, made once."""
+        lower, upper = self.extent
+        return self.local_mesh(float((upper - lower).max()) / OVERVIEW)
+
+    def value(self, xyz: ArrayLike) -> Floats:
+        """Return the field (n,) at (n, 3) places: negative inside; near the surface about the distance in metres."""
+        return self.field.value(self._local(xyz))
+
+    def gradient(self, xyz: ArrayLike) -> Floats:
+        """Return the gradient (n, 3) of the field at (n, 3) places; it points outwards."""
+        return self.field.gradient(self._local(xyz))
+
+    def distance(self, xyz: ArrayLike) -> Floats:
+        """Return the signed orthogonal distance (n,) of (n, 3) places to the surface, metres, positive outside."""
+        from geofit.bodies.distance import signed_distance
+
+        return signed_distance(self.field, self._local(xyz), self.spacing, lambda: self.overview)
+
+    def triangulate(self, spacing: float | None = None) -> TriangleMesh:
+        """Return the surface as a closed triangle mesh in map coordinates.
+
+        Parameters
+        ----------
+        spacing : float, optional
+            Edge of the cells in metres; by default that of the overview.
+
+        Raises
+        ------
+        SettingsError
+            If the spacing is not a length, or gives too many cells along a side.
+        """
+        mesh = self.overview if spacing is None else self.local_mesh(spacing)
+        return TriangleMesh(mesh.vertices + self.origin, mesh.triangles)
+
+    def local_mesh(self, spacing: float) -> TriangleMesh:
+        """Return the same mesh about the local origin, where coordinates keep all their digits."""
+        lower, upper = self.extent
+        longest = float((upper - lower).max())
+        if not is_finite(spacing) or spacing <= 0 or longest / spacing > self.most_cells:
+            raise SettingsError(
+                message(
+                    "bodies.spacing-cannot-used",
+                    "A spacing of {spacing} m cannot be used for a body {size:.1f} m long: give {least:.3g} m or more.",
+                    spacing=spacing,
+                    size=longest,
+                    least=longest / self.most_cells,
+                )
+            )
+        return isosurface(self.field, self._lattice(spacing), capped=True)
+
+    def cut(self, surfaces: Mapping[str, Any] | Sequence[Any], spacing: float | None = None) -> tuple[BodyPiece, ...]:
+        """Return the closed pieces into which surfaces cut the body; see :func:`geofit.bodies.cut.cut_body`."""
+        from geofit.bodies.cut import cut_body
+
+        return cut_body(self, surfaces, spacing)
+
+    def write_step(self, path: str | PathLike[str], nurbs: bool = True) -> SolidReadBack:
+        """Write the body as a STEP AP242 solid, read it back, and return what the reader found.
+
+        Parameters
+        ----------
+        path : path
+            The file, usually ``*.step``.
+        nurbs : bool
+            NURBS patches within :attr:`epsilon` of the surface; otherwise, and where patches cannot follow the body, a
+            tessellated solid.
+        """
+        from geofit.bodies.quads import patched_surface
+        from geofit.cad.solid import write_body
+
+        if not nurbs:
+            return write_body(self, path)
+        try:
+            patches = patched_surface(self).components
+        except FitError as error:
+            return write_body(self, path, reason=str(error))
+        return write_body(self, path, patches)
+
+    def _lattice(self, spacing: float) -> Lattice:
+        """Return the nodes of a mesh: the body's box, and two cells around it."""
+        lower, upper = self.extent
+        counts = np.maximum(np.ceil((upper - lower) / spacing).astype(int), 1) + 4
+        start = (lower + upper) / 2 - counts * spacing / 2
+        return Lattice(start, spacing, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.name}>"
+
+    def _local(self, xyz: ArrayLike) -> Floats:
+        return np.asarray(measurable_places(xyz) - self.origin)
