@@ -2,29 +2,52 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.bodies.dual import dual_quads
 from geofit.implicit.field import Field
-from geofit.implicit.foot import project_along_gradient
 from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["QuadMesh", "quad_mesh"]
+__all__ = ["QuadMesh", "Sides", "quad_meshes"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SMOOTHING = 40
+#: Cells along the longest side of the rasters that are tried, and how much flatter their cells are than the body.
+CELLS = (2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 18, 20, 24, 28)
+FLATTEST = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """Sides of quadrilaterals: the edges (e, 2), the edge (q, 4) of each side, whether it runs against it (q, 4).
+
+    Sides in the order bottom (v = 0), top (v = 1), left (u = 0), right (u = 1), each with growing parameter.
+    """
+
+    edges: Ints
+    edge: Ints
+    reverse: NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, quads: Ints) -> Sides:
+        """Return the sides of quadrilaterals (q, 4)."""
+        ends = quads[:, [[0, 1], [3, 2], [0, 3], [1, 2]]]
+        edges, index = np.unique(np.sort(ends.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+        return cls(edges, index.reshape(-1, 4).astype(np.int64), ends[:, :, 0] > ends[:, :, 1])
 
 
 @dataclass(frozen=True, eq=False)
 class QuadMesh:
-    """Corners (v, 3) on the surface, and quadrilaterals (q, 4), counter-clockwise seen from outside."""
+    """Corners (v, 3) near the surface, quadrilaterals (q, 4), counter-clockwise from outside, and their usual size."""
 
     corners: Floats
     quads: Ints
+    spacing: float
 
     @property
     def triangles(self) -> TriangleMesh:
@@ -32,11 +55,11 @@ class QuadMesh:
         return TriangleMesh(self.corners, np.concatenate([self.quads[:, [0, 1, 2]], self.quads[:, [0, 2, 3]]]))
 
 
-def quad_mesh(field: Field, component: TriangleMesh, others: TriangleMesh, cells: int) -> QuadMesh | None:
-    """Return quadrilaterals over one component of a surface, or None if the raster is too coarse for its topology.
+def quad_meshes(field: Field, component: TriangleMesh, others: TriangleMesh, most: int) -> Iterator[QuadMesh]:
+    """Return quadrilaterals over one component of a surface, few first: duals of coarse rasters of its topology.
 
-    The dual of a coarse raster ("surface nets", S. Gibson, MICCAI 1998): a corner in each cell that the surface
-    crosses, a quadrilateral around each edge of the raster that it crosses; then smoothed along the surface.
+    Rasters along the map's axes and along the component's main axes; cells that are cubes, as flat as the component,
+    or between the two: each suits other shapes.
 
     Parameters
     ----------
@@ -44,22 +67,45 @@ def quad_mesh(field: Field, component: TriangleMesh, others: TriangleMesh, cells
         The field; its zero set is the surface.
     component, others : TriangleMesh
         The component's triangles, and those of the rest of the surface (maybe none).
-    cells : int
-        Cells of the raster along the longest side of the component.
+    most : int
+        Quadrilaterals at most.
     """
-    lower, upper = component.vertices.min(axis=0), component.vertices.max(axis=0)
-    spacing = float((upper - lower).max()) / cells
-    counts = np.ceil((upper - lower) / spacing - 1e-9).astype(int) + 3
-    origin = (lower + upper) / 2 - spacing * (counts - 1) / 2
-    nodes = origin + spacing * np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1)
-    value = field.value(nodes.reshape(-1, 3))
-    _mask_others(value, nodes.reshape(-1, 3), component, others)
-    value = value.reshape(counts)
-    inside = value < 0
-    layout = _net(origin, spacing, value, inside)
-    if layout is None or not _same_topology(layout.triangles, component):
+    middles, weight = component.corners.mean(axis=1), component.areas / component.area
+    off = middles - weight @ middles
+    main = np.linalg.eigh((off * weight[:, None]).T @ off)[1].T
+    # A mirrored raster would turn the quadrilaterals inside out.
+    main *= np.sign(np.linalg.det(main))
+    found = []
+    for axes, power in ((np.eye(3), 0.0), (main, 0.0), (main, 0.5), (main, 1.0)):
+        turned = component.vertices @ axes.T
+        lower, upper = turned.min(axis=0), turned.max(axis=0)
+        longest = float((upper - lower).max())
+        shape = np.maximum((upper - lower) / longest, FLATTEST) ** power
+        for cells in CELLS:
+            layout = _layout(field, component, others, axes, (lower, upper), longest * shape / cells)
+            if layout is None:
+                continue
+            if len(layout.quads) > most:
+                break
+            found.append(layout)
+    yield from sorted(found, key=lambda layout: len(layout.quads))
+
+
+def _layout(
+    field: Field, component: TriangleMesh, others: TriangleMesh, axes: Floats, box: tuple[Floats, Floats], size: Floats
+) -> QuadMesh | None:
+    lower, upper = box
+    counts = np.ceil((upper - lower) / size - 1e-9).astype(int) + 3
+    origin = (lower + upper) / 2 - size * (counts - 1) / 2
+    nodes = (origin + size * np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1)).reshape(-1, 3)
+    places = nodes @ axes
+    value = field.value(places)
+    _mask_others(value, places, component, others)
+    found = dual_quads(value.reshape(counts))
+    if found is None:
         return None
-    return QuadMesh(_smoothed(field, layout, spacing), layout.quads)
+    layout = QuadMesh((origin + size * found[0]) @ axes, found[1], float(size.max()))
+    return layout if _same_topology(layout.triangles, component) else None
 
 
 def _mask_others(value: Floats, nodes: Floats, component: TriangleMesh, others: TriangleMesh) -> None:
@@ -75,52 +121,5 @@ def _mask_others(value: Floats, nodes: Floats, component: TriangleMesh, others: 
     value[closer] = np.where(outward < 0, -near, near)[closer]
 
 
-def _net(origin: Floats, spacing: float, value: Floats, inside: NDArray[np.bool_]) -> QuadMesh | None:
-    shape = np.array(value.shape) - 1
-    corner, weight = np.zeros((*shape, 3)), np.zeros(shape)
-    crossings = []
-    for axis in range(3):
-        low = [slice(None)] * 3
-        high = [slice(None)] * 3
-        low[axis], high[axis] = slice(None, -1), slice(1, None)
-        changed = inside[tuple(low)] != inside[tuple(high)]
-        at = np.argwhere(changed)
-        first, second = value[tuple(low)][changed], value[tuple(high)][changed]
-        place = at.astype(float)
-        place[:, axis] += first / (first - second)
-        b, c = (axis + 1) % 3, (axis + 2) % 3
-        around = []
-        for db, dc in ((-1, -1), (0, -1), (0, 0), (-1, 0)):
-            cell = at.copy()
-            cell[:, b] += db
-            cell[:, c] += dc
-            if len(cell) and ((cell < 0) | (cell >= shape)).any():
-                return None
-            np.add.at(corner, tuple(cell.T), place)
-            np.add.at(weight, tuple(cell.T), 1.0)
-            around.append(cell)
-        ring = np.stack(around, axis=1)
-        ring[~inside[tuple(at.T)]] = ring[~inside[tuple(at.T)]][:, ::-1]
-        crossings.append(ring)
-    rings = np.concatenate(crossings)
-    flat = np.ravel_multi_index(tuple(np.moveaxis(rings, -1, 0)), tuple(shape))
-    used, quads = np.unique(flat, return_inverse=True)
-    places = corner.reshape(-1, 3)[used] / weight.reshape(-1)[used][:, None]
-    return QuadMesh(origin + spacing * places, quads.reshape(-1, 4).astype(np.int64))
-
-
 def _same_topology(layout: TriangleMesh, component: TriangleMesh) -> bool:
     return layout.is_closed and layout.is_manifold and layout.components == 1 and layout.euler == component.euler
-
-
-def _smoothed(field: Field, layout: QuadMesh, spacing: float) -> Floats:
-    """Return the corners moved along the surface towards the middles of their quadrilaterals."""
-    corners, quads = layout.corners, layout.quads
-    count = np.bincount(quads.ravel(), minlength=len(corners))[:, None]
-    for _ in range(SMOOTHING):
-        middle = corners[quads].mean(axis=1)
-        total = np.zeros_like(corners)
-        for k in range(4):
-            np.add.at(total, quads[:, k], middle)
-        corners = project_along_gradient(field, total / count, reach=spacing, steps=3)
-    return project_along_gradient(field, corners, reach=spacing, steps=12)

@@ -114,6 +114,14 @@ def _fork(rng: Random) -> Truth:
     return truth
 
 
+def horn() -> Truth:
+    """Return a body that tapers along an arc, as a horn does."""
+    t = np.linspace(0, 1, 60)
+    turn = 0.75 * np.pi * t
+    line = np.column_stack([0.6 * np.cos(turn) - 0.1, 0.6 * np.sin(turn) - 0.35, 0.3 * t - 0.15])
+    return lambda x: (np.linalg.norm(x[:, None] - line, axis=2) - (0.30 - 0.22 * t)).min(axis=1)
+
+
 KINDS: dict[str, Callable[[Random], Truth]] = {
     "upright ellipsoid": _upright,
     "ellipsoid .6 .4 .3": lambda rng: ellipsoid((0.6, 0.4, 0.3))[0],

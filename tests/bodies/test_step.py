@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from bodies.planted import drilled
+from bodies.shapes import KINDS, horn
 from geofit.bodies.body import BodyFit
+from geofit.bodies.dual import dual_quads
+from geofit.bodies.fit import fit_body
 from geofit.bodies.quads import patched_surface
+from geofit.implicit.mesh import TriangleMesh
+from geofit.io.boreholes import read_boreholes
+
+SAMPLE = Path(__file__).parents[2] / "sample_data" / "bodies"
 
 
 def test_nurbs_solid_of_a_ring(ring: BodyFit, tmp_path: Path) -> None:
@@ -39,3 +48,45 @@ def test_seams_and_deviation(ring: BodyFit) -> None:
     assert patched.deviation <= 0.05
     assert patched.seam_angle <= 1.0
     assert len(patched.patches) <= 500
+
+
+def sample_body(name: str) -> BodyFit:
+    """Return a body of the sample site, or one of the planted shapes."""
+    if name == "horn":
+        return fit_body(drilled(horn(), 1, rows=11), name=name)
+    if name == "fork":
+        return fit_body(drilled(KINDS["fork"](np.random.default_rng(3)), 1, rows=11), name=name)
+    tables = [SAMPLE / f"{table}.csv" for table in ("collar", "survey", "lithology")]
+    return fit_body(read_boreholes(*tables[:2], tables[2:], dip="down-positive"), codes=name, name=name)
+
+
+@pytest.mark.parametrize("name", ["ORE", "VOID", "GABBRO", "horn", "fork"])
+def test_planted_bodies_become_nurbs_solids(name: str, tmp_path: Path) -> None:
+    body = sample_body(name)
+    patched = patched_surface(body)
+    assert len(patched.patches) <= 500
+    assert patched.deviation <= body.epsilon / 2
+    assert patched.seam_angle <= 1.0
+    found = body.write_step(tmp_path / "body.step")
+    assert found.passed
+    assert (found.grade, found.faces, found.brep_valid) == ("nurbs", len(patched.patches), True)
+    assert found.deviation <= body.epsilon
+    assert found.edge_tolerance <= 1e-6
+    (volume,) = (check for check in found.checks if check.name == "volume")
+    assert found.volume == pytest.approx(volume.limit, rel=1e-3)
+
+
+def test_quadrilaterals_of_noise_are_closed() -> None:
+    value = np.random.default_rng(2).normal(size=(12, 12, 12))
+    value[[0, -1]] = value[:, [0, -1]] = value[:, :, [0, -1]] = 1.0
+    found = dual_quads(value)
+    assert found is not None
+    corners, quads = found
+    # Two edges with the same ends are one to a mesh: such a layout is refused, all others are closed.
+    _, count = np.unique(np.sort(quads[:, [[0, 1], [1, 2], [2, 3], [3, 0]]].reshape(-1, 2), axis=1), axis=0,
+                         return_counts=True)  # fmt: skip
+    assert set(count.tolist()) <= {2, 4}
+    mesh = TriangleMesh(corners, np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]))
+    assert mesh.volume > 0
+    value[5, 5, 0] = -1.0
+    assert dual_quads(value) is None
