@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from threadpoolctl import threadpool_limits
 
 from geofit.checks.check import CORE_LIMIT
 from geofit.data.columns import refuse_far
@@ -16,6 +15,7 @@ from geofit.data.messages import Message, message, plural_message
 from geofit.data.points import PointSet, look_like_degrees
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
+from geofit.data.threads import one_thread
 from geofit.fitting.adjust import adjust
 from geofit.fitting.conflicts import resolve_conflicts
 from geofit.fitting.horizon_fit import HorizonFit, fit_of
@@ -30,6 +30,8 @@ __all__ = ["fit_horizon"]
 
 Floats = NDArray[np.float64]
 
+#: Code of the note about a core's point that was let go.
+TORN = "fitting.core-point-contradicts-neighbour"
 #: Rounds of parameter correction for points between the sections of a folded surface.
 CORRECTIONS = 4
 
@@ -96,7 +98,7 @@ def fit_horizon(
     settings = settings or FitSettings()
     corners = _require(points, boundary)
     # The banded systems are small: more threads cost more than they give, and change the last digits.
-    with threadpool_limits(limits=1):
+    with one_thread():
         return _fit_horizon(points, settings, corners, _Clock(progress), name)
 
 
@@ -140,8 +142,7 @@ def _fit_horizon(
 
     clock.stage("adjust", 0.9)
     surface = _adjusted(model, surface)
-    if parametrization.parametric:
-        surface = _exact_or_not(surface)
+    surface = _exact_or_not(surface)
     clock.stage("done", 1.0)
     return surface.with_(diagnostics={**surface.diagnostics, "seconds": dict(clock.seconds)})
 
@@ -195,12 +196,16 @@ def _adjusted(model: Model, surface: HorizonFit) -> HorizonFit:
 
 
 def _exact_or_not(surface: HorizonFit) -> HorizonFit:
-    """Call those points exact that the surface meets: of a fold, points between the sections may be missed."""
+    """Call those points exact that the surface meets.
+
+    It may miss some between the sections of a fold, and one of two that contradict each other.
+    """
     model, accuracy = surface.model, surface.accuracy
     assert model is not None
     assert accuracy is not None
     missed = surface.core & (np.abs(accuracy.residuals) > CORE_LIMIT)
-    if not missed.any():
+    torn = sum(note.code == TORN for note in accuracy.notes)
+    if not missed.any() or not (model.problem.parametrization.parametric or missed.sum() <= torn):
         return surface
     split = model.problem.split
     reason = message(
@@ -308,7 +313,7 @@ def _partition(parametrization: Parametrization, settings: FitSettings, kept: ND
     elif settings.core == "none":
         found = split_none(plane, message("fit.core-none-every-point", "core='none': every point is approximated"))
     elif settings.core == "auto":
-        found = split_auto(plane, parametrization.area)
+        found = split_auto(plane, parametrization.area, parametrization.section[kept] != "")
     elif parametrization.frame.kind != "map":
         text = message(
             "fit.core-polygon-map-coordinates",
