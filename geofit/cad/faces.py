@@ -6,6 +6,7 @@ OpenCASCADE is imported inside the functions: it takes seconds to load. Its shap
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from typing import Any
 
@@ -38,9 +39,10 @@ def to_geom(patch: Patch) -> Any:
 
     nu, nv = patch.control.shape[:2]
     poles = TColgp_Array2OfPnt(1, nu, 1, nv)
-    for i, row in enumerate(patch.control.tolist(), 1):
-        for j, point in enumerate(row, 1):
-            poles.SetValue(i, j, gp_Pnt(*point))
+    rows, columns = (np.ravel(grid).tolist() for grid in np.mgrid[1 : nu + 1, 1 : nv + 1])
+    places = map(gp_Pnt, *patch.control.reshape(-1, 3).T.tolist())
+    # A loop in C: there are thousands of poles.
+    deque(map(poles.SetValue, rows, columns, places), maxlen=0)
     knots_u, count_u = _occ_knots(patch.knots_u)
     knots_v, count_v = _occ_knots(patch.knots_v)
     if patch.weights is None:

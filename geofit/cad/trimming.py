@@ -47,8 +47,8 @@ def needed(surface: Surface, tolerance: float) -> Polygon | None:
     for patch in surface.patches:
         u0, u1, v0, v1 = patch.domain
         samples.append(patch.evaluate(u0 + share[:, None] * (u1 - u0), v0 + share * (v1 - v0))[..., :2].reshape(-1, 2))
-    beyond = shapely.distance(outline, shapely.points(np.concatenate(samples)))
-    return outline if beyond.max() > tolerance else None
+    shapely.prepare(outline)
+    return None if shapely.dwithin(outline, shapely.points(np.concatenate(samples)), tolerance).all() else outline
 
 
 def faces(patch: Patch, outline: Polygon) -> list[Any]:

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from threadpoolctl import threadpool_limits
 
 from geofit.checks.lattice import lattices
 from geofit.checks.oscillation import oscillation
@@ -19,6 +18,7 @@ from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, S
 from geofit.data.guard import guarded
 from geofit.data.labels import Labels
 from geofit.data.messages import Message, message
+from geofit.data.threads import one_thread
 from geofit.geometry.projection import Projection, project
 from geofit.geometry.seams import seams
 from geofit.surfaces.protocol import FittedSurface
@@ -96,7 +96,7 @@ def check(
     checks: list[Check] = []
     missing: list[Message] = []
     # The systems of a few points each are small: starting threads for them costs more than the work.
-    with threadpool_limits(limits=1):
+    with one_thread():
         for examine in examinations:
             checks += guarded(
                 examine,

@@ -86,7 +86,7 @@ def oscillation(
     if not asked.any():
         return None
     least = max(float(np.median(error[known])), surface.settings.interior_tolerance)
-    allowed = TIMES * np.maximum(np.where(known, error, 0.0)[near[asked]].max(axis=1), least)
+    allowed = TIMES * np.maximum(error[near[asked]].max(axis=1), least)
     off, where = np.abs(around[asked].spline()), places[asked] + surface.origin
     worst = np.argsort(-off / allowed, kind="stable")
     value, limit = float(off[worst[0]]), float(allowed[worst[0]])
@@ -167,8 +167,10 @@ def _left_out(
     left = (distance >= 0.999 * gap[:, None]) & (others != np.arange(len(points))[:, None])
     order = np.argsort(~left, axis=1, kind="stable")[:, :NEAR]
     around = _Around.of(feet, normals, np.take_along_axis(others, order, axis=1), points, normals)
-    error = np.abs(around.spline() - ((points - feet) * normals).sum(axis=1))
-    return error, (left.sum(axis=1) >= NEAR) & (around.open_angle() < RIM)
+    known = (left.sum(axis=1) >= NEAR) & (around.open_angle() < RIM)
+    error = np.zeros(len(points))
+    error[known] = np.abs(around[known].spline() - ((points - feet) * normals).sum(axis=1)[known])
+    return error, known
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,7 +185,7 @@ class _Around:
         """Take the points ``near`` (m, k) the places, whose normals are ``upward``."""
         first = _unit(np.cross(upward, np.eye(3)[np.argmin(np.abs(upward), axis=1)]))
         axes = np.stack([first, np.cross(upward, first), upward], axis=1)
-        local = np.einsum("mij,mkj->mki", axes, points[near] - places[:, None])
+        local = (points[near] - places[:, None]) @ axes.transpose(0, 2, 1)
         return cls(local, np.einsum("mkj,mj->mk", normals[near], upward) > SAME_LIMB)
 
     def __getitem__(self, chosen: Bools) -> _Around:

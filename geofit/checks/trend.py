@@ -18,6 +18,7 @@ __all__ = ["trend"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
+Ints = NDArray[np.int64]
 
 #: How many times the largest departure of the points from their plane the surface may show away from them.
 TIMES = 2.0
@@ -26,6 +27,8 @@ AWAY = 2.0
 #: Fewest points of a trend; of more than the most a part tells the plane, and how far away a place is.
 FEWEST, MOST = 10, 20_000
 ROUNDS = 10
+#: Places that are asked at a time how far they are from the points.
+PART = 256
 #: Points whose extent across is below this share of that along lie in a line, and tell no slope across it.
 LINE = 1e-3
 #: Residuals beyond so many standard deviations (by the median) count less in the plane (Huber 1964).
@@ -68,17 +71,16 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
     if across <= LINE * along:
         return None
     spacing = float(np.sqrt(size.prod() / len(local)))
-    away = np.asarray(cKDTree(local[:, :2]).query(there[:, :2])[0]) > AWAY * spacing
-    if not away.any():
-        return None
     design = _design((local[:, :2] - centre) / size)
     plane = _robust_plane(design, local[:, 2])
     shown = float(np.abs(every[:, 2] - _design((every[:, :2] - centre) / size) @ plane).max())
-    off = np.abs(there[away, 2] - _design((there[away, :2] - centre) / size) @ plane)
+    off = np.abs(there[:, 2] - _design((there[:, :2] - centre) / size) @ plane)
     limit = max(TIMES * shown, surface.settings.epsilon)
-    worst = np.argsort(-off, kind="stable")
+    worst = _worst_away(off, there[:, :2], cKDTree(local[:, :2]), AWAY * spacing, limit)
+    if not len(worst):
+        return None
     value = float(off[worst[0]])
-    place = where[away][worst] + surface.origin
+    place = where[worst] + surface.origin
     figures = {"value": value, "shown": shown, "x": place[0, 0], "y": place[0, 1]}
     if value <= limit:
         text = message(
@@ -95,8 +97,24 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
         "do not use it there without further points",
         **figures,
     )
-    named = tuple((float(a), float(b), float(c)) for a, b, c in place[off[worst] > limit][:NAMED])
+    named = tuple((float(a), float(b), float(c)) for a, b, c in place[:NAMED])
     return Check("trend", False, value, limit, "m", partly(text, len(local), len(every)), named)
+
+
+def _worst_away(off: Floats, plan: Floats, points: cKDTree, reach: float, limit: float) -> Ints:
+    """Return the places beyond ``reach`` of all points with the largest departures, the largest first.
+
+    Those beyond the limit, up to ``NAMED``, or the one place that departs most; the search ends with them.
+    """
+    order = np.argsort(-off, kind="stable")
+    found: list[Ints] = []
+    for part in np.split(order, range(PART, len(order), PART)):
+        away = part[points.query(plan[part])[0] > reach]
+        found.append(away)
+        worst = np.concatenate(found)
+        if len(worst) and (off[part[-1]] <= limit or len(worst) >= NAMED):
+            break
+    return np.concatenate([worst[:1], worst[1:][off[worst[1:]] > limit]])[:NAMED]
 
 
 def _plane_axes(points: Floats, normal: Floats) -> Floats:

@@ -13,7 +13,7 @@ from geofit.splines import bspline
 from geofit.splines.patch import Patch
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["Division", "Part", "divide", "multiply_knots", "patches_of"]
+__all__ = ["Division", "Part", "divide", "multiply_knots", "patches_of", "with_knots"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -22,8 +22,14 @@ Rectangle = tuple[float, float, float, float]
 def multiply_knots(
     space: TensorSpace, coefficients: Floats, at_u: dict[float, int], at_v: dict[float, int]
 ) -> tuple[TensorSpace, Floats]:
-    """Raise the multiplicity of knots without changing the surface (The NURBS Book, A5.1)."""
-    knots_u, knots_v = _raised(space.knots_u, at_u), _raised(space.knots_v, at_v)
+    """Raise the multiplicity of knots without changing the surface."""
+    return with_knots(space, coefficients, _raised(space.knots_u, at_u), _raised(space.knots_v, at_v))
+
+
+def with_knots(
+    space: TensorSpace, coefficients: Floats, knots_u: Floats, knots_v: Floats
+) -> tuple[TensorSpace, Floats]:
+    """Insert knots, those of the space among the given ones, without changing the surface (The NURBS Book, A5.1)."""
     tu = bspline.insertion_matrix(space.knots_u, knots_u, space.degree)
     tv = bspline.insertion_matrix(space.knots_v, knots_v, space.degree)
     return TensorSpace(knots_u, knots_v, space.degree), _refined(coefficients, tu, tv)

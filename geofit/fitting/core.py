@@ -16,9 +16,9 @@ from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.approximate import fixed_by_core
-from geofit.fitting.assemble import multiply_knots
+from geofit.fitting.assemble import multiply_knots, with_knots
 from geofit.fitting.field import Field, Smoothed
-from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
+from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes, some_breaks
 from geofit.fitting.net import Data, Net, Periphery, cap_for, choose_field, degree_for, gather, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
@@ -35,6 +35,10 @@ Rectangle = tuple[float, float, float, float]
 A_POINT, LAST_CAP = 15, 60
 #: Longest span beside a core, in units of the spacing of the sparse points.
 LONGEST = 0.6
+#: Slope that two neighbours may ask for beyond the field's own, where not all points of a core can be met.
+CLIFF = 0.5
+#: Span of the field's space where the knots are finer for the core's points alone, in units.
+FIELD_SPAN = 0.3
 #: Spans between neighbours of one section, and of neighbouring sections, as a share of their distance.
 ALONG, ACROSS = 1.8, 1.0
 #: Spans beside a section line, as a share of the distance to the next, and how many there are on each side.
@@ -44,6 +48,8 @@ NARROW = 0.2
 #: Noise above this share of the values' spread: points that do not support each other. It does not follow the
 #: tolerances, which may be raised beyond all relief.
 RESOLVED = 0.03
+#: The same where this share of the points is on named sections: those are drawn, and what varies along them is relief.
+RESOLVED_DRAWN, DRAWN = 0.2, 0.9
 #: The same for noise within the interior tolerance.
 LITTLE = 0.05
 
@@ -73,7 +79,9 @@ def fit_with_core(
     field, coarse = choose_field(data, settings, most)
     chosen = settings.core == "auto" and settings.smoothing == "auto" and not parametrization.parametric
     little = min(settings.interior_tolerance, LITTLE * field.spread)
-    if chosen and field.noise > max(RESOLVED * field.spread, little):
+    drawn = float(np.mean(parametrization.section[kept][inside] != "")) >= DRAWN
+    resolved = (RESOLVED_DRAWN if drawn else RESOLVED) * field.spread
+    if chosen and field.noise > max(resolved, little):
         raise ExactnessError(
             message(
                 "fitting.points-bear-each-other",
@@ -95,17 +103,23 @@ def fit_with_core(
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
+    closer = 1.0
     while True:
         try:
             base, space, coefficients, plane, rule = _through_points(
-                data, core, inside, field, coarse, lines, linear, parametrization.parametric, most, settings
+                data, core, inside, field, coarse, lines, linear, parametrization.parametric, most, closer, settings
             )
             break
         except ExactnessError:
+            torn = _torn(data, inside, coarse, field)
+            if torn.any():
+                notes = (*notes, *(_torn_note(points.describe(int(k))) for k in np.flatnonzero(kept)[torn]))
+                inside = inside & ~torn
+                continue
             # Exactness outranks economy; a cap that a person gave is kept.
             if settings.max_control_points is not None or most > LAST_CAP * len(data.plane):
                 raise
-            most = int(1.5 * most)
+            most, closer = int(1.5 * most), 0.75 * closer
     if linear and rule is None:
         notes = (
             message(
@@ -147,9 +161,12 @@ def _through_points(
     linear: bool,
     parametric: bool,
     most: int,
+    closer: float,
     settings: FitSettings,
 ) -> tuple[TensorSpace, TensorSpace, Floats, Floats, Floats | None]:
     """Lay knots within a cap, fit the field on them, and let it pass through the core's points.
+
+    Between neighbours along the sections the spans are ``closer`` times as long as usual.
 
     Returns the field's space, the surface's, its coefficients, the plane under them, and the section lines of a core
     that is linear across them.
@@ -160,22 +177,24 @@ def _through_points(
         If so many control points cannot pass through the points.
     """
     degree = degree_for(len(data.plane))
-    breaks = _breaks(data, core, inside, field, coarse, lines, most, max(settings.max_iterations, 1))
+    breaks = _breaks(data, core, inside, field, coarse, lines, most, closer, max(settings.max_iterations, 1))
+    coarser = [bspline.clamped_knots(some_breaks(along, FIELD_SPAN), degree) for along in breaks]
+    base = TensorSpace(coarser[0], coarser[1], degree)
+    regional = smoothed(data, base, field)
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
-    base = TensorSpace(knots[0], knots[1], degree)
-    start = smoothed(data, base, field)
+    fine, start = with_knots(base, regional.coefficients, knots[0], knots[1])
     if linear:
         within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
         rule = _thinned(within, (core[0], core[1]), NARROW * (core[1] - core[0]) / len(lines.u))
         try:
-            space, coefficients = _skinned(base, start.coefficients, core, data, inside, settings, rule)
-            return base, space, coefficients, start.plane, rule
+            space, coefficients = _skinned(fine, start, core, data, inside, settings, rule)
+            return base, space, coefficients, regional.plane, rule
         except ExactnessError:
             pass
     if parametric and lines.straight:
-        return base, base, _lofted(base, start.coefficients, data, inside, lines.u), start.plane, None
-    space, coefficients = _skinned(base, start.coefficients, core, data, inside, settings, None)
-    return base, space, coefficients, start.plane, None
+        return base, fine, _lofted(fine, start, data, inside, lines.u), regional.plane, None
+    space, coefficients = _skinned(fine, start, core, data, inside, settings, None)
+    return base, space, coefficients, regional.plane, None
 
 
 def _breaks(
@@ -186,6 +205,7 @@ def _breaks(
     coarse: TensorSpace,
     lines: Lines,
     most: int,
+    closer: float,
     rounds: int,
 ) -> tuple[Floats, Floats]:
     """Lay breaks that follow the core's points, and split them where two points pull one control point apart.
@@ -201,7 +221,7 @@ def _breaks(
     required_u = _thinned(within, (area[0], core[0], core[1], area[1]), narrow)
     required_v = np.array([area[2], core[2], core[3], area[3]])
     sizes_u = _beside_lines(lines) if lines.straight else pair_sizes(plane, pairs, 0, ACROSS)
-    sizes_v = pair_sizes(plane, pairs, 1, ALONG if lines.straight else ACROSS)
+    sizes_v = pair_sizes(plane, pairs, 1, closer * (ALONG if lines.straight else ACROSS))
     stretch = 1.0
     while True:
         scale = np.array([1.0, 1.0, stretch])
@@ -218,6 +238,33 @@ def _breaks(
         return in_patches(shape, core, space) <= most
 
     return refine_knots(breaks_u, breaks_v, plane, misfit, degree, counted, rounds)
+
+
+def _torn(data: Data, inside: NDArray[np.bool_], coarse: TensorSpace, field: Field) -> NDArray[np.bool_]:
+    """Return (n,) the core's points to let go: of two that ask for a cliff, the one farther from the field."""
+    torn = np.zeros(len(inside), bool)
+    if data.value.ndim > 1:
+        return torn
+    chosen = np.flatnonzero(inside)
+    plane = data.plane[chosen]
+    misfit = data.value[chosen] - coarse.matrix(plane) @ smoothed(data, coarse, field).coefficients
+    first, second = neighbour_pairs(plane).T
+    apart = data.unit * np.linalg.norm(plane[first] - plane[second], axis=1)
+    slope = np.abs(misfit[first] - misfit[second]) / np.maximum(apart, 1e-9)
+    for pair in np.argsort(-slope, kind="stable")[: int((slope > CLIFF).sum())]:
+        both = [int(first[pair]), int(second[pair])]
+        if not torn[chosen[both]].any():
+            torn[chosen[max(both, key=lambda k: abs(misfit[k]))]] = True
+    return torn
+
+
+def _torn_note(point: Message) -> Message:
+    note = message(
+        "fitting.core-point-contradicts-neighbour",
+        "{point} contradicts a point right beside it: the core does not meet both, and passes through the other",
+        point=point,
+    )
+    return note.with_severity("warning")
 
 
 def _beside_lines(lines: Lines) -> Floats:

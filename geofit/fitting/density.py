@@ -24,16 +24,19 @@ CONTRAST = 2.0
 FEWEST = 20
 #: More points than these are not interpolated without being asked: they outnumber any sensible control net.
 MOST = 2_000
+#: A cluster narrower than this share of its length is one section.
+LINE = 0.08
 #: More points than these are a cloud, not a survey: no core of it is interpolated, and no point of it chased.
 CLOUD = 100 * MOST
 
 
-def split_auto(plane: Floats, area: Rectangle) -> Split:
+def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None = None) -> Split:
     """Find a dense four-sided core by the spacing of the points.
 
     The spacing of a point is its distance to the eighth neighbour. The threshold that best separates the
     logarithms of the spacings (Otsu 1979) divides dense from sparse; the largest connected cluster of dense
-    points gives the rectangle, and the rectangle must be clearly denser than the rest (:data:`CONTRAST`).
+    points gives the rectangle, and the rectangle must be clearly denser than the rest (:data:`CONTRAST`). ``drawn``
+    (n,) marks the points of named sections: where the cluster is one line, theirs is the rectangle.
     """
     n = len(plane)
     if n < 2 * FEWEST:
@@ -59,7 +62,13 @@ def split_auto(plane: Floats, area: Rectangle) -> Split:
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
     # The points of the box, not of the cluster: the edges may be drawn in to one section.
     length, width = _extents(plane[cluster][within(plane[cluster], (low[0], high[0], low[1], high[1]))])
-    if width < 0.08 * length:
+    if width < LINE * length and drawn is not None and drawn.sum() >= FEWEST:
+        # A few sections near to each other; the others are farther apart, and part of the core all the same.
+        cluster = np.flatnonzero(drawn)
+        limit = float(spacing[cluster].max())
+        low, high = plane[cluster].min(axis=0), plane[cluster].max(axis=0)
+        length, width = _extents(plane[cluster])
+    if width < LINE * length:
         return split_none(
             plane,
             message(

@@ -1,4 +1,4 @@
-"""What is called exact is exact: points of a fold that its surface misses count as approximated."""
+"""What is called exact is exact: points of a core that its surface misses count as approximated."""
 
 from __future__ import annotations
 
@@ -13,16 +13,21 @@ from geofit.fitting.split import Split
 
 __all__ = ["exact_or_not"]
 
+#: Code of the note about a core's point that was let go.
+TORN = "fitting.core-point-contradicts-neighbour"
+
 
 def exact_or_not(surface: HorizonFit) -> HorizonFit:
-    """Call those points exact that the surface meets: of a fold, points between the sections may be missed."""
+    """Call those points exact that the surface meets.
+
+    It may miss some between the sections of a fold, and one of two that contradict each other.
+    """
     model, accuracy = surface.model, surface.accuracy
     assert model is not None
     assert accuracy is not None
-    if not model.problem.parametrization.parametric:
-        return surface
     missed = surface.core & (np.abs(accuracy.residuals) > CORE_LIMIT)
-    if not missed.any():
+    torn = sum(note.code == TORN for note in accuracy.notes)
+    if not missed.any() or not (model.problem.parametrization.parametric or missed.sum() <= torn):
         return surface
     split = model.problem.split
     reason = message(

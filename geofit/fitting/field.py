@@ -308,10 +308,10 @@ def smooth(
         wide, plane, trend, field = wide.turned, plane[:, ::-1], _exchanged(trend), field.turned
     band, right = wide.normal_equations(plane, z, weight)
     precision, slope = MaternPrecision(wide, field.alpha), slope_of(plane, trend)
-    prior = field.rho * precision.band(field.kappa, field.stretch)
+    band += field.rho * precision.band(field.kappa, field.stretch)
     held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
     columns = right.reshape(len(right), -1)
-    solved = Factor(band + prior).solve(np.column_stack([columns, held]))
+    solved = Factor(band).solve(np.column_stack([columns, held]))
     free, drifted = solved[:, : columns.shape[1]], solved[:, columns.shape[1] :]
     moment, cross = planes_of(wide, slope, field.hold, held, free, drifted)
     slopes = np.linalg.lstsq(moment, cross, rcond=None)[0]

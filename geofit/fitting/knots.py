@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import Delaunay, QhullError
 
-__all__ = ["graded_breaks", "neighbour_pairs", "pair_sizes"]
+__all__ = ["graded_breaks", "neighbour_pairs", "pair_sizes", "some_breaks"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -80,3 +80,12 @@ def graded_breaks(required: ArrayLike, largest: float, sizes: Floats) -> Floats:
         inner = np.interp(np.linspace(start, end, count + 1)[1:-1], spent, x)
         breaks += [inner, np.array([high])]
     return np.concatenate(breaks)
+
+
+def some_breaks(breaks: Floats, least: float) -> Floats:
+    """Return as few of ascending breaks as leave no span longer than ``least`` that is not one of theirs already."""
+    chosen = [0]
+    for k in range(1, len(breaks) - 1):
+        if breaks[k + 1] - breaks[chosen[-1]] > least:
+            chosen.append(k)
+    return breaks[[*chosen, len(breaks) - 1]]

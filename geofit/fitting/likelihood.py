@@ -51,7 +51,7 @@ RISE = 0.25
 _WIDER = np.exp(np.arange(0.0, 14.5))
 #: First steps along each parameter, the least gain that another round of steps is worth, and how far behind a rival,
 #: after a round, a search is given up.
-STEPS, SETTLED, BEHIND = (0.7, 1.5, 0.12, 0.12), 0.2, 60.0
+STEPS, SETTLED, BEHIND = (0.7, 1.5, 0.12, 0.12), 2.0, 60.0
 
 
 @dataclass(frozen=True)
@@ -229,7 +229,7 @@ class Likelihood:
         low, high = np.array(self.bounds()).T
         at: Floats = min((np.clip(np.array(one), low, high) for one in starts), key=self)
         size = np.array(steps)
-        for _ in range(rounds if self(at) < UNSOLVABLE else 0):
+        for _ in range(rounds if self(at) < min(UNSOLVABLE, rival + 2 * BEHIND) else 0):
             before = self(at)
             # The noise first: it needs no new E.
             for k in sorted(range(free), key=lambda k: k != 1):

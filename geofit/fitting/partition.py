@@ -33,7 +33,7 @@ def partition(parametrization: Parametrization, settings: FitSettings, kept: NDA
     elif settings.core == "none":
         found = split_none(plane, message("fit.core-none-every-point", "core='none': every point is approximated"))
     elif settings.core == "auto":
-        found = split_auto(plane, parametrization.area)
+        found = split_auto(plane, parametrization.area, parametrization.section[kept] != "")
     elif parametrization.frame.kind != "map":
         text = message(
             "fit.core-polygon-map-coordinates",

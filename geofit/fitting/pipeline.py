@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from numpy.typing import ArrayLike
-from threadpoolctl import threadpool_limits
 
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress
 from geofit.data.settings import FitSettings
+from geofit.data.threads import one_thread
 from geofit.fitting.adjust import adjust
 from geofit.fitting.conflicts import resolve_conflicts
 from geofit.fitting.exactness import exact_or_not
@@ -68,7 +68,7 @@ def fit_horizon(
     corners = require(points, boundary)
     stage = Stages(progress)
     # The banded systems are small: more threads cost more than they give, and change the last digits.
-    with threadpool_limits(limits=1):
+    with one_thread():
         stage("conflicts", 0.0)
         parametrization = parametrize(points, settings, corners)
         kept, conflicts = resolve_conflicts(

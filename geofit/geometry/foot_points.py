@@ -31,6 +31,8 @@ CONVEX = 0.5
 #: Steps of Newton's method, and how short (metres) the last one is: it leaves an error near its square. What has not
 #: come to rest is searched for.
 STEPS, LAST = 8, 1e-6
+#: Metres from the surface within which a point is on it: its place in plan is its foot point, at a seam too.
+TOUCHING = 1e-9
 #: Shares of their size by which the plans of patches side by side may differ and overlap.
 ONE = 1e-11
 #: How far the control points may be from the plan's map, metres.
@@ -144,7 +146,9 @@ def _walk(field: _Field, u0: Floats, v0: Floats, rows: Ints, target: Floats, fou
             at = rows[rest]
             found.distance[at] = np.where(side < 0, -length, length)[rest]
             found.foot[at] = target[at] + off[:, rest].T
-            found.patch[at], found.u[at], found.v[at], found.converged[at] = field.patch, u[rest], v[rest], True
+            low_u, high_u, low_v, high_v = field.domain
+            found.u[at], found.v[at] = u[rest].clip(low_u, high_u), v[rest].clip(low_v, high_v)
+            found.patch[at], found.converged[at] = field.patch, True
         go &= ~rest
         if not go.any():
             return
@@ -154,6 +158,7 @@ def _walk(field: _Field, u0: Floats, v0: Floats, rows: Ints, target: Floats, fou
 
 def _within(field: _Field, u: Floats, v: Floats, reach: Floats) -> Bools:
     """Whether disks of a radius in plan are inside the patch: there is no other surface in them."""
+    reach = np.where(reach < TOUCHING, 0.0, reach)
     low_u, high_u, low_v, high_v = field.domain
     reach_u, reach_v = (float(np.hypot(*row)) * reach for row in field.inverse)
     across = (u - reach_u >= low_u) & (u + reach_u <= high_u)

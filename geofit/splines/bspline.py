@@ -14,6 +14,7 @@ __all__ = [
     "clamped_knots",
     "collocation",
     "energy_matrix",
+    "gram_diagonals",
     "greville",
     "insertion_matrix",
     "intervals",
@@ -143,6 +144,34 @@ def energy_matrix(knots: Floats, degree: int, order: int) -> Floats:
     w = np.sqrt(half[:, None] * weights)
     matrix = collocation(knots, degree, x.ravel(), order) * w.reshape(-1, 1)
     return matrix.T @ matrix
+
+
+def gram_diagonals(knots: Floats, degree: int) -> Floats:
+    """Return the diagonals of the Gram matrices G[r][s] of all derivatives, the integrals of B_i^(r) B_j^(s).
+
+    Returns
+    -------
+    diagonals : (degree + 1, degree + 1, 2 degree + 1, count) array
+        ``diagonals[r, s, degree + k, j]`` is G[r][s][j + k, j], zero where that leaves the matrix.
+
+    Notes
+    -----
+    Gauss points are taken so that the integrals are exact on each span.
+    """
+    nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
+    breaks = np.unique(knots)
+    half = np.diff(breaks) / 2
+    x = ((breaks[:-1] + half)[:, None] + half[:, None] * nodes).ravel()
+    root = np.sqrt(half[:, None] * weights).reshape(-1, 1)
+    tables = [basis(knots, degree, x, order) for order in range(degree + 1)]
+    values = np.stack([table * root for _, table in tables]).reshape(degree + 1, len(half), degree + 1, degree + 1)
+    blocks = np.einsum("rcqi,scqj->rsijc", values, values, optimize=True)
+    first = tables[0][0][:: degree + 1]
+    result = np.zeros((degree + 1, degree + 1, 2 * degree + 1, len(knots) - degree - 1))
+    for i in range(degree + 1):
+        for j in range(degree + 1):
+            result[:, :, degree + i - j, first + j] += blocks[:, :, i, j]
+    return result
 
 
 def insertion_matrix(coarse: Floats, fine: Floats, degree: int) -> Floats:

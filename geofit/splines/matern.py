@@ -55,27 +55,21 @@ class MaternPrecision:
         return [(m, k, n) for m in range(self.alpha + 1) for k in range(m + 1) for n in range(m + 1)]
 
     @cached_property
-    def _grams(self) -> tuple[list[list[Floats]], list[list[Floats]]]:
-        p = self.space.degree
-        return _grams(self.space.knots_u, p, self.alpha), _grams(self.space.knots_v, p, self.alpha)
-
-    @cached_property
     def _factors(self) -> tuple[Floats, Floats]:
         """Diagonals of the factors of each term: (terms, (p + 1) nu) at and below, (terms, (2 p + 1) nv) of all."""
-        p, (gu, gv) = self.space.degree, self._grams
-        along = [[_diagonal(gu[m - k][m - n], a) for a in range(p + 1)] for m, k, n in self._terms]
-        across = [[_diagonal(gv[k][n], b) for b in range(-p, p + 1)] for _, k, n in self._terms]
-        return np.array(along).reshape(len(along), -1), np.array(across).reshape(len(across), -1)
+        p, (gu, gv) = self.space.degree, self.space.gram_diagonals
+        m, k, n = np.array(self._terms).T
+        return gu[m - k, m - n, p:].reshape(len(m), -1), gv[k, n].reshape(len(m), -1)
 
     @cached_property
     def _of_planes(self) -> Floats:
         """Return (terms, size, 3) each term times the coefficients of 1, u and v; those of order 2 and more vanish."""
-        p, (gu, gv) = self.space.degree, self._grams
+        p, (gu, gv) = self.space.degree, self.space.gram_diagonals
         u, v = (bspline.greville(knots, p) for knots in (self.space.knots_u, self.space.knots_v))
         planes = ((np.ones_like(u), np.ones_like(v)), (u, np.ones_like(v)), (np.ones_like(u), v))
         terms = [(m, k, n) for m, k, n in self._terms if m < 2]
         products = [
-            [np.outer(gu[m - k][m - n] @ along, gv[k][n] @ across).ravel() for along, across in planes]
+            [np.outer(_times(gu[m - k, m - n], along), _times(gv[k, n], across)).ravel() for along, across in planes]
             for m, k, n in terms
         ]
         return np.swapaxes(np.array(products), 1, 2)
@@ -101,12 +95,13 @@ class MaternPrecision:
         p, (nu, nv) = self.space.degree, self.space.shape
         along, across = self._factors
         blocks = ((along * self.weights(kappa, stretch)[:, None]).T @ across).reshape(p + 1, nu, 2 * p + 1, nv)
-        band = np.zeros((self.space.bandwidth + 1, nu, nv))
+        # Column by column, as LAPACK takes it.
+        band = np.zeros((nu, nv, self.space.bandwidth + 1))
         for a in range(p + 1):
             for b in range(-p, p + 1):
                 if a * nv + b >= 0:
-                    band[a * nv + b] += blocks[a, :, b + p]
-        return band.reshape(self.space.bandwidth + 1, self.space.size)
+                    band[:, :, a * nv + b] += blocks[a, :, b + p]
+        return band.reshape(self.space.size, self.space.bandwidth + 1).T
 
     def times_planes(self, kappa: float, stretch: tuple[float, float] = (0.0, 0.0)) -> Floats:
         """Return E times the coefficients of 1, u and v, (size, 3)."""
@@ -114,19 +109,11 @@ class MaternPrecision:
         return np.asarray(np.tensordot(self.weights(kappa, stretch)[: len(terms)], terms, axes=1))
 
 
-def _grams(knots: Floats, degree: int, order: int) -> list[list[Floats]]:
-    """Return G[r][s], the integrals of B_i^(r) B_j^(s), (count, count), for r and s up to an order."""
-    nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
-    breaks = np.unique(knots)
-    half = np.diff(breaks) / 2
-    x = ((breaks[:-1] + half)[:, None] + half[:, None] * nodes).ravel()
-    w = np.sqrt(half[:, None] * weights).reshape(-1, 1)
-    rows = [bspline.collocation(knots, degree, x, derivative) * w for derivative in range(order + 1)]
-    return [[first.T @ second for second in rows] for first in rows]
-
-
-def _diagonal(matrix: Floats, below: int) -> Floats:
-    """Return d with d[i] = matrix[i + below, i], zero where that leaves the matrix."""
-    diagonal = np.diagonal(matrix, -below)
-    pad = np.zeros(min(abs(below), len(matrix)))
-    return np.concatenate([diagonal, pad] if below >= 0 else [pad, diagonal])[: len(matrix)]
+def _times(diagonals: Floats, x: Floats) -> Floats:
+    """Return the matrix of the given diagonals, (2 p + 1, count) from the upmost on, times x."""
+    p, count = len(diagonals) // 2, len(x)
+    result = np.zeros(count)
+    for below, diagonal in enumerate(diagonals, -p):
+        low, high = max(-below, 0), count - max(below, 0)
+        result[low + below : high + below] += diagonal[low:high] * x[low:high]
+    return result

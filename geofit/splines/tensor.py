@@ -104,9 +104,10 @@ class TensorSpace:
         below = index[:, :, None] - index[:, None, :]
         column = np.broadcast_to(index[:, None, :], below.shape)
         lower = below >= 0
-        place = below[lower] * self.size + column[lower]
+        # Column by column, as LAPACK takes it.
+        place = column[lower] * (self.bandwidth + 1) + below[lower]
         band = _sums(place, blocks[lower], (self.bandwidth + 1) * self.size)
-        return band.reshape(self.bandwidth + 1, self.size)
+        return band.reshape(self.size, self.bandwidth + 1).T
 
     def sums(self, plane: Rows, z: Rows, weight: Floats) -> CellSums:
         """Return what (n,) heights at (n, 2) places say, summed by cells."""
@@ -132,6 +133,11 @@ class TensorSpace:
             if a * nv + b >= 0:
                 band[a * nv + b] += along[a].T @ across[b]
         return band.reshape(self.bandwidth + 1, self.size)
+
+    @cached_property
+    def gram_diagonals(self) -> tuple[Floats, Floats]:
+        """Diagonals of the Gram matrices of both directions (see :func:`geofit.splines.bspline.gram_diagonals`)."""
+        return bspline.gram_diagonals(self.knots_u, self.degree), bspline.gram_diagonals(self.knots_v, self.degree)
 
     @cached_property
     def _grams_u(self) -> list[Floats]:
@@ -166,7 +172,9 @@ class Factor:
             )
         self._scale = 1 / np.sqrt(diagonal)
         beyond = np.concatenate([self._scale, np.zeros(len(band) - 1)])
-        scaled = band * self._scale * sliding_window_view(beyond, band.shape[1])
+        scaled = np.array(band, order="F")
+        scaled *= self._scale
+        scaled *= sliding_window_view(beyond, band.shape[1])
         for ridge in RIDGES:
             scaled[0] += ridge
             try:

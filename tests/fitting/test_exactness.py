@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from truth import paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.checks.check import CORE_LIMIT
@@ -91,3 +92,33 @@ def test_a_surface_beyond_the_digits_of_a_double_is_not_written(tmp_path):
     with pytest.raises(InputError, match="at most 1e"):
         surface.with_(origin=surface.origin + 1e10).write_step(tmp_path / "far.step")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_of_two_points_of_a_core_that_contradict_each_other_one_is_let_go():
+    """The core is kept: all its other points are met, and the one that is not is named."""
+    truth = paper_arrangement(4)
+    points = truth.points
+    first = int(np.flatnonzero(points.section == "S06")[20])
+    beside = points.xyz[[first]] + [0.02, 0.0, 0.4]
+    both = PointSet(np.concatenate([points.xyz, beside]), section=[*points.section, "X01"], hole=[*points.hole, ""])
+    surface = fit_horizon(both, FitSettings(), truth.boundary)
+    torn = [note for note in surface.accuracy.notes if note.code == "fitting.core-point-contradicts-neighbour"]
+    assert len(torn) == 1
+    assert torn[0].severity == "warning"
+    assert surface.core.sum() == 440
+    assert np.abs(surface.accuracy.residuals[surface.core]).max() < CORE_LIMIT
+    assert not surface.core[[first, len(points)]].all()
+
+
+def test_relief_below_the_spans_of_the_field_is_no_reason_to_lose_a_core_of_sections():
+    """Drawn sections over rough ground: what the field leaves is relief, not noise."""
+    truth = paper_arrangement(2)
+    x, y = truth.points.xyz[:, :2].T
+    rough = 1.5 * np.sin(x / 11) * np.sin(y / 17)
+    points = PointSet(
+        truth.points.xyz + np.column_stack([0 * x, 0 * x, rough]), section=truth.points.section, hole=truth.points.hole
+    )
+    surface = fit_horizon(points, FitSettings(), truth.boundary)
+    assert surface.diagnostics["noise"] > 0.5
+    assert surface.core.sum() == 440
+    assert np.abs(surface.accuracy.residuals[surface.core]).max() < CORE_LIMIT

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes
+from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes, some_breaks
 
 NONE = np.empty((0, 3))
 
@@ -85,3 +85,15 @@ def test_a_pair_speaks_for_the_direction_in_which_it_is_farther_apart():
     pairs = np.array([[0, 1], [0, 2]])
     np.testing.assert_allclose(pair_sizes(plane, pairs, 0, 2.0), [[0, 10, 20]])
     np.testing.assert_allclose(pair_sizes(plane, pairs, 1, 2.0), [[0, 2, 4]])
+
+
+@given(st.lists(st.floats(0.01, 1.0), min_size=1, max_size=40), st.floats(0.05, 0.8))
+@settings(max_examples=60, deadline=None)
+def test_some_breaks_are_as_few_as_leave_no_longer_span_than_there_was(spans, least):
+    breaks = np.concatenate([[0.0], np.cumsum(spans)])
+    some = some_breaks(breaks, least)
+    assert set(some) <= set(breaks)
+    assert some[0] == breaks[0]
+    assert some[-1] == breaks[-1]
+    assert np.diff(some).max() <= max(least, np.diff(breaks).max()) + 1e-12
+    assert (some[2:] - some[:-2] > least).all()

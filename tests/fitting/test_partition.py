@@ -176,3 +176,19 @@ def test_a_box_drawn_in_to_one_section_is_no_core():
     split = split_auto(np.concatenate([section, beside, uniform(25, seed=1)]), AREA)
     assert split.core is None
     assert "one section makes no core" in str(split.reason)
+
+
+def test_sections_of_unequal_distances_make_one_core():
+    """Three sections near to each other are the densest part, but a line; the others belong to the core too."""
+    rng = np.random.default_rng(3)
+    lines = [700, 760, 900, 1010, 1130, 1150, 1170, 1300]
+    sections = np.concatenate(
+        [np.column_stack([np.full(40, x), np.sort(rng.uniform(0, 2000, 40))]) for x in map(float, lines)]
+    )
+    side = np.where(rng.uniform(size=120) < 0.5, 0.0, 1360.0)
+    plane = np.concatenate([sections, np.column_stack([side + rng.uniform(0, 640, 120), rng.uniform(0, 2000, 120)])])
+    drawn = np.arange(len(plane)) < len(sections)
+    assert split_auto(plane, AREA).reason.code == "fit.dense-points-lie-along"
+    split = split_auto(plane, AREA, drawn)
+    assert split.core is not None
+    np.testing.assert_array_equal(split.inside, drawn)

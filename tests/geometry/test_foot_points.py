@@ -52,3 +52,15 @@ def test_creases_folds_and_patches_over_each_other_prove_nothing():
     above = height_field(z=lambda x, y: 1 + wave(x, y))
     for patches in ([creased], [fold()], [height_field(), above], [height_field(), height_field(turn=0.3)]):
         assert not foot_points_over_plan(patches, xyz).converged.any()
+
+
+def test_points_on_a_seam_or_a_rim_need_no_search():
+    _, patches = nine()
+    u0, u1, v0, v1 = patches[0].domain
+    v = np.linspace(v0, v1, 9)
+    for edge in (u0, u1):
+        on = patches[0].evaluate(np.full(9, edge), v)
+        found = foot_points_over_plan(patches, on)
+        assert found.converged.all()
+        np.testing.assert_allclose(found.distance, 0, atol=1e-9)
+        np.testing.assert_allclose(found.foot, on, atol=1e-9)

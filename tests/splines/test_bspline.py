@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -170,3 +172,22 @@ def test_intervals_are_those_of_a_search_however_many_places(even):
         for x in (ends, np.concatenate([np.tile(ends, 50), rng.uniform(-10, 100, 100_000)])):
             wanted = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, count - 2)
             np.testing.assert_array_equal(bspline.intervals(breaks, x), wanted)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_diagonals_of_gram_matrices_are_those_of_products_of_the_basis(degree):
+    knots = bspline.clamped_knots([0, 0.4, 1.0, 1.3, 2.1, 3.0], degree, [1, 2, 1, 1] if degree > 1 else 1)
+    diagonals = bspline.gram_diagonals(knots, degree)
+    count = len(knots) - degree - 1
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    ends = np.unique(knots)
+    x = np.concatenate([(a + b) / 2 + (b - a) / 2 * nodes for a, b in pairwise(ends)])
+    w = np.concatenate([(b - a) / 2 * weights for a, b in pairwise(ends)])
+    rows = [bspline.collocation(knots, degree, x, order) for order in range(degree + 1)]
+    for r in range(degree + 1):
+        for s in range(degree + 1):
+            gram = np.zeros((count, count))
+            for below, diagonal in enumerate(diagonals[r, s], -degree):
+                for j in range(max(-below, 0), count - max(below, 0)):
+                    gram[j + below, j] = diagonal[j]
+            np.testing.assert_allclose(gram, rows[r].T @ (w[:, None] * rows[s]), atol=1e-9)
