@@ -17,6 +17,7 @@ from geofit.data.site import Site
 
 __all__ = [
     "DocumentError",
+    "Earlier",
     "ManualEdit",
     "Move",
     "MoveToPointEdit",
@@ -25,6 +26,7 @@ __all__ = [
     "Row",
     "SeparationEdit",
     "Weigh",
+    "data_digest",
     "find_rows",
     "fingerprint",
     "matched",
@@ -216,6 +218,23 @@ class Provenance:
                     yield from other.ancestors()
 
 
+@dataclass(frozen=True)
+class Earlier:
+    """The state of a horizon before the data of the site changed: a name of the data, and what its surface was of."""
+
+    data: str
+    provenance: Provenance
+
+    def to_data(self) -> dict[str, Any]:
+        """Return numbers, words, lists and mappings only."""
+        return {"data": self.data, "provenance": self.provenance.to_data()}
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Earlier:
+        """Return what :meth:`to_data` was called on."""
+        return cls(data["data"], Provenance.from_data(data["provenance"]))
+
+
 def settings_from(data: Mapping[str, Any]) -> FitSettings:
     """Return settings from plain data: lists of corners become tuples again."""
     return FitSettings(**data)
@@ -303,6 +322,16 @@ def fingerprint(points: PointSet, site: Site) -> str:
         digest.update(np.ascontiguousarray(array).tobytes())
     for words in (points.kind, points.hole, points.section, points.file):
         digest.update("\n".join(words.tolist()).encode())
+    return digest.hexdigest()[:16]
+
+
+def data_digest(site: Site) -> str:
+    """Return the name of the data of a site: a hash of all that was read and of the files that it came from."""
+    digest = hashlib.sha256(site_digest(site))
+    for name, points in site.horizons.items():
+        digest.update(f"{name}\n{fingerprint(points, site)}\n".encode())
+    for name, value in sorted(site.inputs.items()):
+        digest.update(f"{name}\n{value}\n".encode())
     return digest.hexdigest()[:16]
 
 
