@@ -133,11 +133,14 @@ class Delivering(QObject):
     def _result(self, name: str, surface: HorizonFit) -> HorizonResult:
         """Return what a report says of a surface; of a STEP file only if one was written of this very surface."""
         site, prediction = self._document.site_in_use(), self._document.prediction(name)
+        change = self._document.comparison(name)
         provenance = self._document.state.provenances.get(name)
         excluded, edits = (None, ()) if provenance is None else interventions_of(self._document.site, provenance)
         exported, file = self._exported.get(name, (None, None))
         if file is None or exported is not surface:
-            return HorizonResult(surface, site, prediction=prediction, excluded=excluded, edits=edits)
+            return HorizonResult(
+                surface, site, prediction=prediction, excluded=excluded, edits=edits, change=change
+            )
         return HorizonResult(
             surface,
             site,
@@ -146,6 +149,7 @@ class Delivering(QObject):
             prediction=prediction,
             excluded=excluded,
             edits=edits,
+            change=change,
         )
 
     def list_report(self, path: object) -> None:

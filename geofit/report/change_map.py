@@ -33,30 +33,35 @@ def levels_for(comparison: Comparison) -> list[float]:
     return [*(-value for value in reversed(outer)), *outer]
 
 
-def change_map(axes: Axes, comparison: Comparison, t: Language = EN, *, scale: bool = True) -> None:
+def _words(low: float, high: float, epsilon: float, t: Language) -> str:
+    """Return the words for one colour."""
+    if low < 0 < high:
+        return t("within ± {limit:g} m", limit=epsilon)
+    if low > 0:
+        return t("higher by {low:.3g} to {high:.3g} m", low=low, high=high)
+    return t("lower by {low:.3g} to {high:.3g} m", low=-high, high=-low)
+
+
+def change_map(axes: Axes, comparison: Comparison, t: Language = EN, stayed: str = STAYED) -> None:
     """Draw where a horizon rose and fell, what moved by more than epsilon in a line, and the new contacts."""
     from matplotlib.colors import BoundaryNorm, ListedColormap
 
     change, levels = comparison.change, levels_for(comparison)
-    colours = ListedColormap([*BELOW, STAYED, *ABOVE])
+    colours = ListedColormap([*BELOW, stayed, *ABOVE])
     norm = BoundaryNorm(levels, colours.N)
     grid = change.difference
     if change.area:
         z = np.ma.masked_invalid(grid.z)
         step = (grid.x[1] - grid.x[0]) / 2
         around = (grid.x[0] - step, grid.x[-1] + step, grid.y[0] - step, grid.y[-1] + step)
-        image = axes.imshow(z, cmap=colours, norm=norm, extent=around, origin="lower", interpolation="nearest",
-                            zorder=0)  # fmt: skip
+        axes.imshow(z, cmap=colours, norm=norm, extent=around, origin="lower", interpolation="nearest", zorder=0)
         lines = [value for value in levels if abs(abs(value) - change.epsilon) < 1e-12]
         if np.nanmax(np.abs(grid.z)) > change.epsilon:
             axes.contour(grid.x, grid.y, z, levels=lines, colors=TEXT, linewidths=0.6, linestyles="solid", zorder=1)
-        if scale:
-            bar_axes = axes.inset_axes((1.03, 0.0, 0.035, 0.55))
-            bar = axes.figure.colorbar(image, cax=bar_axes, ticks=levels[1:-1], spacing="uniform")
-            bar.ax.set_yticklabels([f"{value:+.3g}" for value in levels[1:-1]])
-            bar.outline.set_visible(False)
-            bar_axes.tick_params(length=0, pad=2)
-            bar_axes.set_title(t("m"), fontsize=7.5, fontweight="normal", color=MUTED, pad=4)
+        for k in reversed(range(colours.N)):
+            low, high = levels[k], levels[k + 1]
+            if ((z >= low) & (z < high)).any():
+                axes.fill([], [], color=colours(k), lw=0.4, ec=MUTED, label=_words(low, high, change.epsilon, t))
     for inside, marker, colour, word in (
         (True, "o", PASS, t("new, inside the band")),
         (False, "X", FAIL, t("new, outside the band")),
