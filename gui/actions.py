@@ -41,6 +41,8 @@ _PLAIN: dict[str, _Spec] = {
                QT_TRANSLATE_NOOP("Actions", "Accuracy report as HTML or PDF, in English or Chinese"), "report"),
     "section_sheet": (QT_TRANSLATE_NOOP("Actions", "Section s&heet…"), None,
                       QT_TRANSLATE_NOOP("Actions", "Sections to scale with a title block, as PDF, SVG or DXF"), ""),
+    "plan_sheet": (QT_TRANSLATE_NOOP("Actions", "Contour &plan…"), None,
+                   QT_TRANSLATE_NOOP("Actions", "Contours to scale with a title block, as PDF, SVG or DXF"), ""),
     "screenshot": (QT_TRANSLATE_NOOP("Actions", "S&creenshot…"), "Ctrl+Shift+P",
                    QT_TRANSLATE_NOOP("Actions", "Picture of the 3D view at print size"), "screenshot"),
     "issues": (QT_TRANSLATE_NOOP("Actions", "Import pro&blems…"), None,

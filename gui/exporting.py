@@ -115,6 +115,18 @@ class Delivering(QObject):
         if dialog.files:
             self._written(list(dialog.files))
 
+    def plan_sheet(self) -> None:
+        """Ask for an interval and a title block, and write contour plans to scale."""
+        from geofit.gui.dialogs.plan_sheet import PlanSheetDialog
+
+        surfaces = self._surfaces()
+        if surfaces:
+            chosen = self._document.selection.horizon
+            dialog = PlanSheetDialog(self._document.site_in_use(), surfaces, chosen, self._folder(), self._window)
+            dialog.exec()
+            if dialog.files:
+                self._written(list(dialog.files))
+
     def report(self) -> None:
         """Ask for language and format, and write the accuracy report."""
         from geofit.gui.dialogs.report import ReportDialog

@@ -159,6 +159,7 @@ class MainWindow(QMainWindow):
             "export_step": give.export_step,
             "export_other": give.export_other,
             "section_sheet": give.section_sheet,
+            "plan_sheet": give.plan_sheet,
             "report": give.report,
             "screenshot": give.screenshot,
             "issues": lambda: self.help.issues(self.session.document.site),
@@ -217,6 +218,9 @@ class MainWindow(QMainWindow):
         panels.fit.fit_requested.connect(fitting.fit)
         panels.fit.fit_all_requested.connect(fitting.fit_all)
         panels.plan.core_changed.connect(fitting.set_core)
+        panels.plan.area_changed.connect(fitting.set_area)
+        # Also one that was refused: the plan goes back to what holds.
+        panels.plan.area_changed.connect(lambda _: self.showing.renew())
         panels.plan.pointer_moved.connect(lambda x, y: self.bar.show_place(x, y, float("nan")))
         panels.residuals.exclude_requested.connect(self._exclude)
         panels.residuals.move_requested.connect(self.adjusting.move_to)

@@ -38,8 +38,8 @@ class Menus(QObject):
         self.recent = file.addMenu(self.tr("Open &recent"))
         self._menu(
             file,
-            "| add_data reload | save save_as | export_step export_other section_sheet report screenshot | issues "
-            "close | quit",
+            "| add_data reload | save save_as | export_step export_other section_sheet plan_sheet report screenshot "
+            "| issues close | quit",
         )
         edit = bar.addMenu(self.tr("&Edit"))
         edit.addActions([self.undo, self.redo])

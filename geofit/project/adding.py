@@ -22,6 +22,7 @@ from geofit.project.import_tables import Tables, site_tables
 
 __all__ = ["Added", "add_files"]
 
+
 @dataclass(frozen=True, eq=False)
 class Added:
     """The ``site`` with the new files, all ``tables`` beside those of its site file (TOML), what was not used."""

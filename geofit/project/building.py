@@ -41,9 +41,7 @@ def given_of(site: Site, provenance: Provenance) -> Given:
             horizons[one.horizon] = site.horizons[one.horizon]
         else:
             horizons[one.horizon] = one.part.of(site.horizons[one.part.horizon])
-    return Given(
-        Site(site.name, horizons, boundary=site.boundary, ground=site.ground, orientations=site.orientations)
-    )
+    return Given(Site(site.name, horizons, boundary=site.boundary, ground=site.ground, orientations=site.orientations))
 
 
 def make(provenance: Provenance, given: Given, progress: Progress | None = None) -> HorizonFit:

@@ -12,6 +12,7 @@ from typing import Any
 
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
+from geofit.project.area_command import SetArea
 from geofit.project.command import Command, known
 from geofit.project.data_commands import ChangeData
 from geofit.project.provenance import (
@@ -40,6 +41,7 @@ __all__ = [
     "MoveToPoint",
     "RenameSite",
     "SeparateHorizons",
+    "SetArea",
     "SetCore",
     "SetOrder",
     "SetSettings",
@@ -334,7 +336,7 @@ COMMANDS: dict[str, type[Command]] = {
     command.kind: command
     for command in (
         SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, SplitAtFaults, AdjustControlPoint, ChangeWeight,
-        MoveToPoint, SeparateHorizons, SetOrder, RenameSite, ChangeData,
+        MoveToPoint, SeparateHorizons, SetOrder, RenameSite, ChangeData, SetArea,
     )
 }  # fmt: skip
 

@@ -11,6 +11,7 @@ from geofit.data.messages import Message, Untranslated, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
+from geofit.project.area_command import with_area
 from geofit.project.data_commands import ChangeData
 from geofit.project.fault_blocks import site_with_blocks
 from geofit.project.provenance import Earlier, Row, data_digest, fingerprint, turns
@@ -85,7 +86,8 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
     state : State
         The present work.
     before, after : Site
-        The site as it was read, and as it is read now; horizons whole, not in blocks.
+        The site as it was read, and as it is read now; horizons whole, not in blocks. A study area that was drawn
+        stays.
     added : iterable of str
         Tables that were read beside the site file's, as TOML; all of them.
 
@@ -95,6 +97,7 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
         Excluded rows follow their points to other lines of their file; those whose points are not there any more, or
         were corrected, are lost, as are manual edits: they belong to the earlier fit.
     """
+    data, before, after = data_digest(after), with_area(before, state.area), with_area(after, state.area)
     parts = {name: part for name, part in state.parts.items() if part.horizon in after.horizons}
     blocks_before, blocks_after = site_with_blocks(before, state.parts), site_with_blocks(after, parts)
     settings = {name: _settings(name, state, after, parts) for name in blocks_after.horizons}
@@ -123,7 +126,7 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
         same = fingerprint(before.horizons[whole], before) == fingerprint(after.horizons[whole], after)
         of_present_data = provenance.given == fingerprint(blocks_before.horizons[name], before)
         if not same and of_present_data:
-            earlier[name] = Earlier(state.data, provenance)
+            earlier[name] = Earlier(state.data, provenance, state.area)
         if not same and provenance.edits:
             lost.append(
                 plural_message(
@@ -138,7 +141,7 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
     lost += [message("project.horizon-gone", "{name}: the new data have no point of it", name=Untranslated(name))
              for name in gone_names]  # fmt: skip
     files = tuple(name for name, digest in after.inputs.items() if before.inputs.get(name) != digest)
-    command = ChangeData(data_digest(after), files, tuple(added), settings, parts, excluded, earlier)
+    command = ChangeData(data, files, tuple(added), settings, parts, excluded, earlier)
     names = dict.fromkeys([*before.horizons, *after.horizons])
     empty = PointSet([])
     found_arrivals = tuple(

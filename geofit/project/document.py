@@ -12,6 +12,7 @@ from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.project.area_command import with_area
 from geofit.project.building import Given, given_of
 from geofit.project.fault_blocks import Blocks, site_with_blocks
 from geofit.project.listing import Listing, listing
@@ -93,8 +94,8 @@ class Document:
         self._comparisons.clear()
         self._state = self._saved = state or State.of_site(site)
         self._data = {data_digest(one): one for one in (*data, site)}
-        self._read = self._data.setdefault(self._state.data, site)
-        self._take_parts()
+        self._data.setdefault(self._state.data, site)
+        self._take_data()
         worked_on = [name for name in self._state.order if name in self._state.provenances]
         self.selection = Selection(next(iter((*worked_on, *self._state.order)), None))
         self.site_changed.emit()
@@ -113,7 +114,7 @@ class Document:
 
     @property
     def read(self) -> Site:
-        """The site as it was read: horizons that faults cut are whole."""
+        """The site as it was read, with the study area that was drawn: horizons that faults cut are whole."""
         return self._read
 
     def know(self, site: Site) -> None:
@@ -143,9 +144,8 @@ class Document:
         """Take another state, and tell what is different. For commands only."""
         former, was_dirty = self._state, self.dirty
         self._state = state
-        if former.parts != state.parts or former.data != state.data:
-            self._read = self._data.get(state.data, self._read)
-            self._take_parts()
+        if (former.parts, former.data, former.area) != (state.parts, state.data, state.area):
+            self._take_data()
             if self.selection.horizon not in state.order:
                 self.selection = Selection(self._nearest(self.selection.horizon))
             self.site_changed.emit()
@@ -281,6 +281,7 @@ class Document:
         site = None if earlier is None else self._data.get(earlier.data)
         if earlier is None or site is None:
             return None
+        site = with_area(site, earlier.area)
         return earlier.provenance, given_of(site, earlier.provenance), self.shelf.surface(earlier.provenance)
 
     def comparison(self, name: str) -> Comparison | None:
@@ -390,7 +391,8 @@ class Document:
         made = {fault: one.with_(model=None) for fault in faults if (one := self.shelf.surface(fault)) and one.model}
         return Given(reduced, made)
 
-    def _take_parts(self) -> None:
+    def _take_data(self) -> None:
+        self._read = with_area(self._data.get(self._state.data, self._read), self._state.area)
         self._site = self._used = site_with_blocks(self._read, self._state.parts)
         self._points.clear()
         self._fingerprints.clear()

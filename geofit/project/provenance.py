@@ -16,6 +16,7 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 
 __all__ = [
+    "Corners",
     "DocumentError",
     "Earlier",
     "ManualEdit",
@@ -26,6 +27,7 @@ __all__ = [
     "Row",
     "SeparationEdit",
     "Weigh",
+    "corners_from",
     "data_digest",
     "find_rows",
     "fingerprint",
@@ -34,6 +36,10 @@ __all__ = [
     "turns",
     "without_rows",
 ]
+
+
+#: Corners of a polygon in map coordinates, metres, not closed.
+Corners = tuple[tuple[float, float], ...]
 
 
 class DocumentError(GeofitError):
@@ -220,19 +226,29 @@ class Provenance:
 
 @dataclass(frozen=True)
 class Earlier:
-    """The state of a horizon before the data of the site changed: a name of the data, and what its surface was of."""
+    """The state of a horizon before the data of the site changed.
+
+    ``data`` names the data, ``provenance`` what its surface was made from, ``area`` is the study area that was drawn.
+    """
 
     data: str
     provenance: Provenance
+    area: Corners | None = None
 
     def to_data(self) -> dict[str, Any]:
         """Return numbers, words, lists and mappings only."""
-        return {"data": self.data, "provenance": self.provenance.to_data()}
+        area = None if self.area is None else [list(corner) for corner in self.area]
+        return {"data": self.data, "provenance": self.provenance.to_data(), "area": area}
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> Earlier:
         """Return what :meth:`to_data` was called on."""
-        return cls(data["data"], Provenance.from_data(data["provenance"]))
+        return cls(data["data"], Provenance.from_data(data["provenance"]), corners_from(data.get("area")))
+
+
+def corners_from(data: Any) -> Corners | None:
+    """Return corners from plain data; None where none are given."""
+    return None if data is None else tuple((float(x), float(y)) for x, y in data)
 
 
 def settings_from(data: Mapping[str, Any]) -> FitSettings:

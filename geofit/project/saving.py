@@ -22,7 +22,7 @@ from geofit.io.site_file import read_site
 from geofit.io.snapshot import read_snapshot, write_snapshot
 from geofit.project.building import beside
 from geofit.project.fault_blocks import site_with_blocks
-from geofit.project.provenance import Earlier, Part, Provenance, Row, data_digest, without_rows
+from geofit.project.provenance import Earlier, Part, Provenance, Row, corners_from, data_digest, without_rows
 from geofit.project.state import State
 
 __all__ = [
@@ -185,8 +185,9 @@ def state_of(project: Project, site: Site) -> State:
         if edit.kind == "earlier" and edit.horizon in order
     }
     return State(
-        project.name, order, settings, excluded, provenances, parts, data_digest(site), _added(project), earlier
-    )
+        project.name, order, settings, excluded, provenances, parts, data_digest(site), _added(project), earlier,
+        next((corners_from(edit.values["corners"]) for edit in project.edits if edit.kind == "area"), None),
+    )  # fmt: skip
 
 
 def _added(project: Project) -> tuple[str, ...]:
@@ -228,6 +229,8 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
         for row in sorted(rows)
     ]
     edits += [Edit(kind="add", values={"tables": tables}) for tables in state.added]
+    if state.area is not None:
+        edits.append(Edit(kind="area", values={"corners": [list(corner) for corner in state.area]}))
     edits += [Edit(kind="earlier", horizon=name, values=one.to_data()) for name, one in state.earlier.items()]
     edits += [Edit(kind="part", horizon=name, values=part.to_data()) for name, part in state.parts.items()]
     edits.append(Edit(kind="order", values={"horizons": list(state.order)}))

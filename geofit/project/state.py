@@ -8,7 +8,7 @@ from typing import Any
 
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
-from geofit.project.provenance import Earlier, Part, Provenance, Row, data_digest, settings_from
+from geofit.project.provenance import Corners, Earlier, Part, Provenance, Row, corners_from, data_digest, settings_from
 
 __all__ = ["State"]
 
@@ -20,7 +20,8 @@ class State:
     ``name`` of the site; ``order`` of the horizons, the highest first; ``settings``, ``excluded`` rows and the
     ``provenances`` of the surfaces by horizon. ``parts`` names the blocks that are in the place of horizons that faults
     cut: each is a horizon like the others. ``data`` names the data of the site, ``added`` holds the tables of files
-    that its site file does not name, as TOML; ``earlier`` is from what surfaces were made before the data changed.
+    that its site file does not name, as TOML; ``earlier`` is from what surfaces were made before the data changed,
+    ``area`` the study area if one was drawn.
     """
 
     name: str = ""
@@ -32,6 +33,7 @@ class State:
     data: str = ""
     added: tuple[str, ...] = ()
     earlier: Mapping[str, Earlier] = field(default_factory=dict)
+    area: Corners | None = None
 
     @classmethod
     def of_site(cls, site: Site) -> State:
@@ -50,6 +52,7 @@ class State:
             "parts": {name: part.to_data() for name, part in self.parts.items()},
             "data": self.data,
             "added": list(self.added),
+            "area": None if self.area is None else [list(corner) for corner in self.area],
             "earlier": {name: one.to_data() for name, one in self.earlier.items()},
         }
 
@@ -66,4 +69,5 @@ class State:
             data.get("data", ""),
             tuple(data.get("added", ())),
             {name: Earlier.from_data(one) for name, one in data.get("earlier", {}).items()},
+            corners_from(data.get("area")),
         )

@@ -26,6 +26,7 @@ from geofit.project.commands import (
     MoveToPoint,
     RenameSite,
     SeparateHorizons,
+    SetArea,
     SetCore,
     SetOrder,
     SetSettings,
@@ -119,6 +120,7 @@ commands = st.one_of(
     st.builds(SeparateHorizons, st.just(("low",)), st.just(("up", "low")), st.floats(0, 10)),
     st.builds(SetOrder, st.permutations(["up", "low"]).map(tuple)),
     st.builds(RenameSite, st.text(min_size=1)),
+    st.builds(SetArea, polygon | st.none()),
     st.builds(
         ChangeData,
         st.text(max_size=4),
@@ -172,6 +174,7 @@ def test_every_command_is_told_in_words_that_can_be_translated():
         ChangeWeight("low", "core", 1, 2, 0.5), SeparateHorizons(("low",), ("up", "low"), 0.5),
         SplitAtFaults("low", {"low (A)": Part("low", "", (provenance,), (1,), "0-9", ())}),
         MoveToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
+        SetArea(None), SetArea(((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))),
         ChangeData("x", ("a.csv", "b.csv"), (), {"low": FitSettings()}, {}, {}, {}),
     ]  # fmt: skip
     assert {type(command) for command in samples} == set(COMMANDS.values())
