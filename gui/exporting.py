@@ -115,6 +115,18 @@ class Delivering(QObject):
         if dialog.files:
             self._written(list(dialog.files))
 
+    def plan_sheet(self) -> None:
+        """Ask for an interval and a title block, and write contour plans to scale."""
+        from geofit.gui.dialogs.plan_sheet import PlanSheetDialog
+
+        surfaces = self._surfaces()
+        if surfaces:
+            chosen = self._document.selection.horizon
+            dialog = PlanSheetDialog(self._document.site_in_use(), surfaces, chosen, self._folder(), self._window)
+            dialog.exec()
+            if dialog.files:
+                self._written(list(dialog.files))
+
     def report(self) -> None:
         """Ask for language and format, and write the accuracy report."""
         from geofit.gui.dialogs.report import ReportDialog
@@ -133,11 +145,14 @@ class Delivering(QObject):
     def _result(self, name: str, surface: HorizonFit) -> HorizonResult:
         """Return what a report says of a surface; of a STEP file only if one was written of this very surface."""
         site, prediction = self._document.site_in_use(), self._document.prediction(name)
+        change = self._document.comparison(name)
         provenance = self._document.state.provenances.get(name)
         excluded, edits = (None, ()) if provenance is None else interventions_of(self._document.site, provenance)
         exported, file = self._exported.get(name, (None, None))
         if file is None or exported is not surface:
-            return HorizonResult(surface, site, prediction=prediction, excluded=excluded, edits=edits)
+            return HorizonResult(
+                surface, site, prediction=prediction, excluded=excluded, edits=edits, change=change
+            )
         return HorizonResult(
             surface,
             site,
@@ -146,6 +161,7 @@ class Delivering(QObject):
             prediction=prediction,
             excluded=excluded,
             edits=edits,
+            change=change,
         )
 
     def list_report(self, path: object) -> None:

@@ -21,7 +21,7 @@ from geofit.gui.session import Session
 from geofit.gui.translate import translated
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Provenance
-from geofit.project.saving import Opened, Written, read_project, read_surfaces, save_state
+from geofit.project.saving import Opened, Written, earlier_data, read_again, read_project, read_surfaces, save_state
 
 __all__ = ["Files"]
 
@@ -123,7 +123,8 @@ class Files(QObject):
         title = self.tr("Save {name}").format(name=path.name)
         # Of the site its label and the hashes of its files are enough.
         site = Site(document.site.name, {}, crs=document.site.crs, inputs=document.site.inputs)
-        work = (state, site, document.site_file, path, surfaces, same)
+        data = {name: earlier for name in earlier_data(state) if (earlier := document.data(name)) is not None}
+        work = (state, site, document.site_file, path, surfaces, same, data)
         self._activity.do(title, save_state, *work, on_done=self._saved, in_process=bool(surfaces))
 
     def leave(self, then: Callable[[], object]) -> None:
@@ -168,7 +169,8 @@ class Files(QObject):
             session.discard()
             return
         title = self.tr("Bring back {name}").format(name=session.base.name)
-        self._activity.do(title, _read_site, session.site_file, on_done=lambda site: self._recovered(session, site))
+        work = (session.site_file, session.final.added)
+        self._activity.do(title, read_again, *work, on_done=lambda site: self._recovered(session, site))
 
     def _open(self, path: Path) -> None:
         self._preferences.folder = str(path.parent)
@@ -208,7 +210,7 @@ class Files(QObject):
             site = found
         else:
             site = found.site
-            self._session.begin(site, found.site_file, found.state, path)
+            self._session.begin(site, found.site_file, found.state, path, found.data)
             for file, what in found.changed.items():
                 _LOG.warning(
                     message(

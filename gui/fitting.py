@@ -24,13 +24,14 @@ from geofit.project.commands import (
     ExcludeRows,
     IncludeRows,
     MoveToPoint,
+    SetArea,
     SetCore,
     SetSettings,
     SetSurface,
     SplitAtFaults,
 )
 from geofit.project.fault_blocks import SplitHorizon, measured, split_at_faults
-from geofit.project.provenance import DocumentError, Provenance, Row
+from geofit.project.provenance import Corners, DocumentError, Provenance, Row
 from geofit.site.throw import FaultCut
 
 __all__ = ["Fitting"]
@@ -176,6 +177,11 @@ class Fitting(QObject):
         corners = core if isinstance(core, str) else tuple((float(x), float(y)) for x, y in core)
         if corners != self._document.settings(name).core:
             self.push(SetCore(name, corners))
+
+    def set_area(self, corners: Corners | None) -> None:
+        """End the surfaces at another study area; None: that of the site's files."""
+        if corners != self._document.state.area:
+            self.push(SetArea(corners))
 
     def exclude(self, name: str, rows: Sequence[Row]) -> None:
         """Leave rows out of the next fit; where all of them are left out already, take them in again."""

@@ -10,10 +10,10 @@ from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabBar, QToolBar
 __all__ = ["BOTTOM", "Layout"]
 
 #: Of the layout that is remembered; one more when docks come or go.
-VERSION = 2
+VERSION = 3
 _Area = Qt.DockWidgetArea
 #: What folds away below the view.
-BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "log")
+BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "changes", "log")
 _PLACES = (
     (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
     (_Area.RightDockWidgetArea, ("fit", "adjust"), True),

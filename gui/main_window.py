@@ -19,6 +19,7 @@ from geofit.gui.files import Files
 from geofit.gui.fitting import Fitting
 from geofit.gui.help import Help
 from geofit.gui.icons import application_icon
+from geofit.gui.living import Living
 from geofit.gui.menus import Menus
 from geofit.gui.ordering import Ordering
 from geofit.gui.preferences import Preferences
@@ -64,6 +65,8 @@ class MainWindow(QMainWindow):
         self.showing = Showing(document, self.panels, self, lambda: self.activity.busy)
         self.fitting = Fitting(session, self.activity, self)
         self.files = Files(session, self.activity, self.fitting, preferences, self)
+        self.living = Living(session, self.activity, self.fitting, self.panels, self.panels.offer, self)
+        self.showing.also.append(self.living.show)
         self.selecting = Selecting(document, self.panels, self.showing, self)
         self.adjusting = Adjusting(document, self.fitting, self.panels.adjust, self)
         self.ordering = Ordering(document, self.activity, self.fitting, self.showing, self.panels, self)
@@ -105,7 +108,7 @@ class MainWindow(QMainWindow):
         self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)
-        for part in (self.showing, self.selecting, self.fitting):
+        for part in (self.showing, self.selecting, self.fitting, self.living):
             part.close()
         for end in self._ends:
             end()
@@ -138,6 +141,8 @@ class MainWindow(QMainWindow):
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Draw in the colours of another theme."""
         super().changeEvent(event)
+        if event.type() == QEvent.Type.ActivationChange and self._ready and self.isActiveWindow():
+            self.living.look()
         if event.type() == QEvent.Type.PaletteChange and self._ready:
             self.actions_.draw_icons()
             self.menus.draw_icons()
@@ -154,9 +159,12 @@ class MainWindow(QMainWindow):
             "export_step": give.export_step,
             "export_other": give.export_other,
             "section_sheet": give.section_sheet,
+            "plan_sheet": give.plan_sheet,
             "report": give.report,
             "screenshot": give.screenshot,
             "issues": lambda: self.help.issues(self.session.document.site),
+            "add_data": self.living.ask_files,
+            "reload": self.living.reload,
             "close": files.close,
             "quit": self.close,
             "steps": self._show_steps,
@@ -210,10 +218,16 @@ class MainWindow(QMainWindow):
         panels.fit.fit_requested.connect(fitting.fit)
         panels.fit.fit_all_requested.connect(fitting.fit_all)
         panels.plan.core_changed.connect(fitting.set_core)
+        panels.plan.area_changed.connect(fitting.set_area)
+        # Also one that was refused: the plan goes back to what holds.
+        panels.plan.area_changed.connect(lambda _: self.showing.renew())
         panels.plan.pointer_moved.connect(lambda x, y: self.bar.show_place(x, y, float("nan")))
         panels.residuals.exclude_requested.connect(self._exclude)
         panels.residuals.move_requested.connect(self.adjusting.move_to)
         panels.prediction.examine_requested.connect(self._with_horizon(fitting.examine))
+        panels.changes.add_requested.connect(self.living.ask_files)
+        panels.changes.fit_requested.connect(fitting.fit)
+        panels.changes.place_chosen.connect(panels.view.focus_place)
         panels.section.failed.connect(lambda error: self.fail(self.tr("Section"), error))
         panels.view.pointer_moved.connect(self.bar.show_place)
         panels.view.measured.connect(self.tell)
@@ -228,7 +242,7 @@ class MainWindow(QMainWindow):
         for refusing in (self.fitting, self.delivering, self.ordering):
             refusing.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
-        for part in (self.files, self.delivering, self.ordering, self.fitting):
+        for part in (self.files, self.delivering, self.ordering, self.fitting, self.living):
             part.reported.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.reported.connect(self.tell)

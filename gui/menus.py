@@ -37,7 +37,9 @@ class Menus(QObject):
         file = self._menu(bar.addMenu(self.tr("&File")), "new open sample")
         self.recent = file.addMenu(self.tr("Open &recent"))
         self._menu(
-            file, "| save save_as | export_step export_other section_sheet report screenshot | issues close | quit"
+            file,
+            "| add_data reload | save save_as | export_step export_other section_sheet plan_sheet report screenshot "
+            "| issues close | quit",
         )
         edit = bar.addMenu(self.tr("&Edit"))
         edit.addActions([self.undo, self.redo])

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QUndoCommand, QUndoStack
 
+from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.site import Site
 from geofit.data.verdict import verdict_of
 from geofit.gui.translate import shown_error, translated
-from geofit.project.commands import Command, SetSurface
+from geofit.project.commands import ChangeData, Command, SetSurface
 from geofit.project.document import Document
 from geofit.project.journal import Journal, Unfinished
 from geofit.project.state import State
@@ -38,12 +40,17 @@ class Session(QObject):
         self._journal: Journal | None = None
 
     def begin(
-        self, site: Site, site_file: Path | None, state: State | None = None, project_file: Path | None = None
+        self,
+        site: Site,
+        site_file: Path | None,
+        state: State | None = None,
+        project_file: Path | None = None,
+        data: Iterable[Site] = (),
     ) -> None:
-        """Begin with a site; what was worked on before is over."""
+        """Begin with a site; what was worked on before is over. ``data`` are earlier data that the state names."""
         self.end()
         self.stack.clear()
-        self.document.open(site, site_file, state, project_file)
+        self.document.open(site, site_file, state, project_file, data)
         try:
             self._journal = Journal(self._folder, self.document.state, site_file, project_file)
         except OSError as error:
@@ -57,18 +64,36 @@ class Session(QObject):
 
     def resume(self, unfinished: Unfinished, site: Site) -> int:
         """Do again what a session did that was cut off; return how many steps came back."""
-        self.begin(site, unfinished.site_file, unfinished.base, unfinished.project_file)
+        self.begin(site, unfinished.site_file, unfinished.base, unfinished.project_file, unfinished.data())
         if unfinished.project_file is not None:
             self.saved(unfinished.project_file, unfinished.saved)
         for command in unfinished.commands:
             self.push(command)
-        unfinished.discard()
+        unfinished.taken_over()
         return len(unfinished.commands)
 
     def push(self, command: Command) -> None:
         """Do a command; DocumentError, and nothing done, if it does not apply."""
         command.on(self.document.state)
+        if isinstance(command, ChangeData):
+            self._keep_data()
         self.stack.push(_Step(self, command))
+
+    def _keep_data(self) -> None:
+        """Keep the data that a command is about to replace where a recovery finds them."""
+        name = self.document.state.data
+        site = self.document.data(name)
+        if self._journal is not None and site is not None:
+            try:
+                self._journal.keep(name, site)
+            except InputError as error:
+                _LOG.warning(
+                    message(
+                        "log.data-not-kept",
+                        "The former data cannot be kept, so a crash would lose the way back to them: {error}",
+                        error=shown_error(error),
+                    )
+                )
 
     def saved(self, project_file: Path, state: State) -> None:
         """Hear that ``state`` was written to a project file."""

@@ -49,6 +49,8 @@ class Showing(QObject):
         self.line: ArrayLike | None = None
         self.thickness = THICKNESS
         self.faded = True
+        #: What else shows the chosen horizon.
+        self.also: list[Callable[[], object]] = []
         self.orders: tuple[Order, ...] = ()
         self.cuts: tuple[FaultCut, ...] = ()
         self._read_back: dict[str, tuple[HorizonFit, ReadBack]] = {}
@@ -216,6 +218,8 @@ class Showing(QObject):
         )
         panels.adjust.show_surface(surface)
         panels.plan.show_surface(document.site_in_use() if known else None, name or "", surface, settings)
+        for show in self.also:
+            show()
         if waiting:
             self._say_waiting()
 

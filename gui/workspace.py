@@ -6,8 +6,10 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
 
 from geofit.gui.layout import Layout
+from geofit.gui.offer_bar import OfferBar
 from geofit.gui.panel_bar import PanelBar
 from geofit.gui.panels.adjust import AdjustPanel
+from geofit.gui.panels.changes import ChangesPanel
 from geofit.gui.panels.checks import ChecksPanel
 from geofit.gui.panels.fit_panel import FitPanel
 from geofit.gui.panels.histogram import HistogramPanel
@@ -37,12 +39,14 @@ class Workspace(QObject):
         self.centre = QStackedWidget()
         self.centre.addWidget(self.start)
         self.centre.addWidget(self.view)
-        window.setCentralWidget(self.centre)
+        self.offer = OfferBar()
+        window.setCentralWidget(_stacked(self.offer, self.centre))
         self.tree, self.scene = ProjectTree(), SceneList(self.view.layers)
         self.fit, self.verdict, self.adjust = FitPanel(), VerdictBadge(), AdjustPanel()
         self.residuals, self.section, self.histogram = ResidualTable(), SectionPanel(), HistogramPanel()
         self.log, self.seams, self.checks = LogPanel(), SeamTable(), ChecksPanel()
         self.prediction, self.plan = PredictionPanel(), PlanPanel()
+        self.changes = ChangesPanel()
         self.docks = {
             "tree": self._dock("tree", self.tr("Project"), self.tree),
             "scene": self._dock("scene", self.tr("Scene"), self.scene),
@@ -55,6 +59,7 @@ class Workspace(QObject):
             "seams": self._dock("seams", self.tr("Seams"), self.seams),
             "checks": self._dock("checks", self.tr("Checks", "Workspace"), self.checks),
             "prediction": self._dock("prediction", self.tr("Away from the data"), self.prediction),
+            "changes": self._dock("changes", self.tr("What moved"), self.changes),
             "log": self._dock("log", self.tr("Log"), self.log),
         }
         self.layout = Layout(window, self.docks)

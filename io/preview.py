@@ -268,6 +268,8 @@ def _merit(table: Table, schema: Schema, guesses: Mapping[str, RoleGuess]) -> fl
     match schema.name:
         case "collar":
             merit *= _once(table, guesses, "hole") * (1.0 if "z" in guesses else 0.8)
+            # Collars name no horizon: such a table holds picks, one a hole.
+            merit *= 0.8 if "horizon" in guess_roles(table, SCHEMAS["picks"], Source(path=Path(table.name))) else 1.0
         case "intervals" if "from" not in guesses:
             # Layer upon layer repeats the hole; a table of one row a hole shows how deep the holes are.
             merit *= 0.85 if _once(table, guesses, "hole") < 0.95 else 0.4

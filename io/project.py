@@ -4,7 +4,7 @@
 
     {
       "format": "geofit project",
-      "version": 2,
+      "version": 3,
       "name": "Dam site",
       "crs": "EPSG:32648",
       "sources": [{"path": "data/collar.csv", "role": "collar", "sha256": "...", "mapping": {...}}],
@@ -66,7 +66,7 @@ _TYPES: dict[str, tuple[type, ...]] = {
     "Mapping[str, Any]": (Mapping,),
 }
 #: Version of the layout. A change that an older reader would misread makes it one more, with a migration.
-VERSION = 2
+VERSION = 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -367,8 +367,13 @@ def _from_1(data: Mapping[str, Any]) -> dict[str, Any]:
     return {**data, **changed, "version": 2}
 
 
+def _from_2(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Version 2 had no files beside those of the site file, and no earlier data."""
+    return {**data, "version": 3}
+
+
 #: What turns version k into version k + 1.
-MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {0: _from_0, 1: _from_1}
+MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {0: _from_0, 1: _from_1, 2: _from_2}
 
 
 def _written(target: Path) -> tuple[ProjectResult, ...]:

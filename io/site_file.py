@@ -18,6 +18,7 @@ from geofit.data.points import KINDS, PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.data.site import Ground, Hole, Orientations, Site
+from geofit.io.added_tables import with_tables
 from geofit.io.adits import load_adit_contacts, load_adits
 from geofit.io.axes import Region, place_in, region_of
 from geofit.io.boreholes import Boreholes, load_boreholes
@@ -58,7 +59,7 @@ class _Horizon:
     settings: FitSettings
 
 
-def read_site(path: str | Path, progress: Progress | None = None) -> Site:
+def read_site(path: str | Path, progress: Progress | None = None, *, added: Sequence[str] = ()) -> Site:
     """Read a site file and everything that it names.
 
     The format is described in ``docs/site_file.md``. Rows that cannot be used are listed in ``issues``; for
@@ -70,6 +71,8 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
         The ``site.toml``; the files that it names count from its folder.
     progress : callable, optional
         Called as ``progress(stage, fraction)``.
+    added : sequence of str
+        Tables that count as if they were at the end of the site file, as TOML.
 
     Returns
     -------
@@ -84,7 +87,7 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
     -----
     Keys of the site file: ``docs/site_file.md``; formats of the tables: ``docs/formats_in.md``.
     """
-    site = load_site(path, progress)
+    site = load_site(path, progress, added=added)
     if not site.horizons:
         raise Reader(Path(path)).fail(
             message("import.site-no-horizon", "The site has no horizon"),
@@ -93,11 +96,12 @@ def read_site(path: str | Path, progress: Progress | None = None) -> Site:
     return site
 
 
-def load_site(path: str | Path, progress: Progress | None = None) -> Site:
+def load_site(path: str | Path, progress: Progress | None = None, *, added: Sequence[str] = ()) -> Site:
     """Read a site file, which may have no horizon yet; see :func:`read_site`."""
     source = Source(path=Path(path))
     journal = Journal()
-    return build_site(_parse(journal.read(source), source.name), source.path, journal, progress=progress)
+    top = with_tables(_parse(journal.read(source), source.name), added, source.name)
+    return build_site(top, source.path, journal, progress=progress)
 
 
 def build_site(

@@ -12,8 +12,8 @@ from geofit.cli.app import app
 __all__ = ["app", "main"]
 
 _COMMANDS = (
-    "demo", "fit", "report", "check", "info", "import_files", "export", "section", "body", "morph", "pores",
-    "metaballs", "cave", "gui",
+    "demo", "fit", "report", "check", "compare", "info", "import_files", "export", "section", "body", "morph",
+    "pores", "metaballs", "cave", "gui",
 )  # fmt: skip
 for _command in _COMMANDS:
     import_module(f"geofit.cli.{_command}")

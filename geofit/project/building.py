@@ -16,7 +16,9 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.project.provenance import ManualEdit, Move, MoveToPointEdit, Part, Provenance, SeparationEdit, without_rows
 
-__all__ = ["Given", "beside", "changed", "edited", "examined", "fault_surfaces", "get_ready", "made", "make"]
+__all__ = [
+    "Given", "beside", "changed", "edited", "examined", "fault_surfaces", "get_ready", "given_of", "made", "make",
+]  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +31,17 @@ class Given:
 
     site: Site
     faults: Mapping[Provenance, HorizonFit] = field(default_factory=dict)
+
+
+def given_of(site: Site, provenance: Provenance) -> Given:
+    """Return what a surface is made from, of a site whose horizons are whole: nothing is made already."""
+    horizons = {}
+    for one in provenance.ancestors():
+        if one.part is None:
+            horizons[one.horizon] = site.horizons[one.horizon]
+        else:
+            horizons[one.horizon] = one.part.of(site.horizons[one.part.horizon])
+    return Given(Site(site.name, horizons, boundary=site.boundary, ground=site.ground, orientations=site.orientations))
 
 
 def make(provenance: Provenance, given: Given, progress: Progress | None = None) -> HorizonFit:

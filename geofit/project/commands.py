@@ -12,7 +12,9 @@ from typing import Any
 
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
+from geofit.project.area_command import SetArea
 from geofit.project.command import Command, known
+from geofit.project.data_commands import ChangeData
 from geofit.project.provenance import (
     DocumentError,
     ManualEdit,
@@ -31,6 +33,7 @@ from geofit.project.state import State
 __all__ = [
     "COMMANDS",
     "AdjustControlPoint",
+    "ChangeData",
     "ChangeWeight",
     "Command",
     "ExcludeRows",
@@ -38,6 +41,7 @@ __all__ = [
     "MoveToPoint",
     "RenameSite",
     "SeparateHorizons",
+    "SetArea",
     "SetCore",
     "SetOrder",
     "SetSettings",
@@ -332,7 +336,7 @@ COMMANDS: dict[str, type[Command]] = {
     command.kind: command
     for command in (
         SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, SplitAtFaults, AdjustControlPoint, ChangeWeight,
-        MoveToPoint, SeparateHorizons, SetOrder, RenameSite,
+        MoveToPoint, SeparateHorizons, SetOrder, RenameSite, ChangeData, SetArea,
     )
 }  # fmt: skip
 

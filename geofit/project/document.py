@@ -12,13 +12,15 @@ from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.project.building import Given
+from geofit.project.area_command import with_area
+from geofit.project.building import Given, given_of
 from geofit.project.fault_blocks import Blocks, site_with_blocks
 from geofit.project.listing import Listing, listing
-from geofit.project.provenance import DocumentError, Provenance, Row, fingerprint, without_rows
+from geofit.project.provenance import DocumentError, Provenance, Row, data_digest, fingerprint, without_rows
 from geofit.project.shelf import Shelf
 from geofit.project.signal import Signal
 from geofit.project.state import State
+from geofit.site.states import Comparison
 
 __all__ = ["Document", "Selection"]
 
@@ -63,6 +65,8 @@ class Document:
         self._points: dict[tuple[str, frozenset[Row]], PointSet] = {}
         self._fingerprints: dict[str, str] = {}
         self._used = _EMPTY
+        self._data: dict[str, Site] = {}
+        self._comparisons: dict[str, tuple[tuple[Provenance, Provenance], Comparison]] = {}
         self._judged: dict[str, tuple[HorizonFit, HorizonFit]] = {}
         self._listings: dict[str, tuple[tuple[object, object, object], Listing]] = {}
         self.site_changed: Signal[[]] = Signal()
@@ -75,16 +79,23 @@ class Document:
         self.saved_changed: Signal[[]] = Signal()
 
     def open(
-        self, site: Site, site_file: Path | None, state: State | None = None, project_file: Path | None = None
+        self,
+        site: Site,
+        site_file: Path | None,
+        state: State | None = None,
+        project_file: Path | None = None,
+        data: Iterable[Site] = (),
     ) -> None:
-        """Begin with a site, and with the work that a project or a journal holds."""
+        """Begin with a site, and with the work that a project or a journal holds; ``data`` are its earlier data."""
         self.site_file, self.project_file = site_file, project_file
         self.shelf.clear()
         self._judged.clear()
         self._listings.clear()
+        self._comparisons.clear()
         self._state = self._saved = state or State.of_site(site)
-        self._read = site
-        self._take_parts()
+        self._data = {data_digest(one): one for one in (*data, site)}
+        self._data.setdefault(self._state.data, site)
+        self._take_data()
         worked_on = [name for name in self._state.order if name in self._state.provenances]
         self.selection = Selection(next(iter((*worked_on, *self._state.order)), None))
         self.site_changed.emit()
@@ -100,6 +111,19 @@ class Document:
     def site(self) -> Site:
         """The site, blocks in the place of horizons that were is_block at their faults."""
         return self._site
+
+    @property
+    def read(self) -> Site:
+        """The site as it was read, with the study area that was drawn: horizons that faults cut are whole."""
+        return self._read
+
+    def know(self, site: Site) -> None:
+        """Keep data of the site for the states that name them."""
+        self._data[data_digest(site)] = site
+
+    def data(self, name: str) -> Site | None:
+        """Return the data of the site that a state names, None if they are not known."""
+        return self._data.get(name)
 
     @property
     def state(self) -> State:
@@ -120,8 +144,8 @@ class Document:
         """Take another state, and tell what is different. For commands only."""
         former, was_dirty = self._state, self.dirty
         self._state = state
-        if former.parts != state.parts:
-            self._take_parts()
+        if (former.parts, former.data, former.area) != (state.parts, state.data, state.area):
+            self._take_data()
             if self.selection.horizon not in state.order:
                 self.selection = Selection(self._nearest(self.selection.horizon))
             self.site_changed.emit()
@@ -251,6 +275,33 @@ class Document:
         self.shelf.examined(provenance, prediction)
         self._tell_of(provenance)
 
+    def earlier(self, name: str) -> tuple[Provenance, Given, HorizonFit | None] | None:
+        """Return what a horizon was before its data changed: from what it was made, and its surface if available."""
+        earlier = self._state.earlier.get(name)
+        site = None if earlier is None else self._data.get(earlier.data)
+        if earlier is None or site is None:
+            return None
+        site = with_area(site, earlier.area)
+        return earlier.provenance, given_of(site, earlier.provenance), self.shelf.surface(earlier.provenance)
+
+    def comparison(self, name: str) -> Comparison | None:
+        """Return how a horizon moved since its data changed; None while its new surface was not compared."""
+        known = self._comparisons.get(name)
+        return known[1] if known is not None and known[0] == self.compared_pair(name) else None
+
+    def compared_pair(self, name: str) -> tuple[Provenance, Provenance] | None:
+        """Return from what the earlier and the present surface of a horizon were made, if both can be compared."""
+        earlier, now = self._state.earlier.get(name), self._state.provenances.get(name)
+        if earlier is None or now is None or now.given == earlier.provenance.given or self.surface(name) is None:
+            return None
+        return earlier.provenance, now
+
+    def put_comparison(self, pair: tuple[Provenance, Provenance], found: Comparison) -> None:
+        """Keep how a horizon moved from one surface to another."""
+        name = pair[1].horizon
+        self._comparisons[name] = (pair, found)
+        self._tell_of(pair[1])
+
     def stale(self, name: str) -> bool:
         """Whether the surface was made from other settings, rows or files than the horizon has now."""
         provenance = self._state.provenances.get(name)
@@ -340,7 +391,8 @@ class Document:
         made = {fault: one.with_(model=None) for fault in faults if (one := self.shelf.surface(fault)) and one.model}
         return Given(reduced, made)
 
-    def _take_parts(self) -> None:
+    def _take_data(self) -> None:
+        self._read = with_area(self._data.get(self._state.data, self._read), self._state.area)
         self._site = self._used = site_with_blocks(self._read, self._state.parts)
         self._points.clear()
         self._fingerprints.clear()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
@@ -16,6 +16,7 @@ from geofit.data.legible import legible
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground, ImportIssue, Site, TableCount
+from geofit.io.added_tables import tables_text
 from geofit.io.boreholes import load_boreholes
 from geofit.io.columns import SCHEMAS
 from geofit.io.contacts import load_contacts
@@ -26,12 +27,10 @@ from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
 from geofit.io.site_file import build_site
 from geofit.io.source import Source
-from geofit.io.toml_text import toml_value
+from geofit.project.import_tables import Tables, site_tables
 
 __all__ = ["Import", "import_files"]
 
-#: The tables of a site file in order: each with its head, "[site]" or "[[picks]]".
-Tables = list[tuple[str, dict[str, Any]]]
 #: Fewer contacts make no surface: the code gets no [[horizon]] unless it is asked for.
 FEWEST_CONTACTS = 3
 
@@ -121,7 +120,7 @@ def import_files(
     while True:
         complete(plan)
         horizons = _horizons(plan, site_file, mapping_file, crs, base, top, language)
-        tables = _tables(plan, site_file, mapping_file, crs, horizons)
+        tables = site_tables(plan, _label(site_file, mapping_file, crs), horizons)
         tell(progress, "read the site", 0.6)
         try:
             site = _read(tables, plan, site_file)
@@ -194,7 +193,7 @@ def _horizons(
     if not limits:
         return []
     # Beside a [[horizon]] only listed names are read, so those of the other files are asked for first.
-    tables = _tables(plan, site_file, mapping_file, crs, [], boreholes=False)
+    tables = site_tables(plan, _label(site_file, mapping_file, crs), [], boreholes=False)
     try:
         others = list(_read(tables, plan, site_file).horizons)
     except InputError:
@@ -275,47 +274,9 @@ def _name(limit: str, code: str) -> Message:
     return message("import.base-of-stratum", "base of {code}", code=Untranslated(code))
 
 
-def _tables(
-    plan: Plan,
-    site_file: Path,
-    mapping_file: Path,
-    crs: str,
-    horizons: Sequence[Mapping[str, Any]],
-    *,
-    boreholes: bool = True,
-) -> Tables:
-    """Return the tables of the site file, each with its head."""
-    blocks: Tables = [
-        ("[site]", {"name": site_file.stem, **({"crs": crs} if crs else {}), "mapping": mapping_file.name})
-    ]
-    for key in ("boundary", "ground"):
-        blocks += [(f"[{key}]", _file(part)) for part in plan.of(key)[:1]]
-    if boreholes:
-        for collar, survey, intervals in campaigns(plan):
-            table: dict[str, Any] = {"collar": _entry(collar)}
-            if survey:
-                table["survey"] = _entry(survey)
-            if intervals:
-                table["intervals"] = [_entry(part) for part in intervals]
-            blocks.append(("[[boreholes]]", table))
-    for part in plan.of("adit path")[:1]:
-        table = {"path": _entry(part)}
-        if contacts := plan.of("adit contacts"):
-            table["contacts"] = _entry(contacts[0])
-        blocks.append(("[adits]", table))
-    blocks += [("[[section_lines]]", _file(part)) for part in plan.of("section lines")]
-    for part in (*plan.of("section"), *plan.of("drawing")):
-        blocks.append(("[[section]]", {"name": part.section, **_file(part)}))
-    blocks += [("[[sections]]", _file(part)) for part in plan.of("sections")]
-    blocks += [("[[traces]]", _file(part)) for part in plan.of("traces")]
-    for part in plan.of("picks"):
-        alone = "horizon" not in part.mapping.columns
-        blocks.append(("[[picks]]", {**_file(part), **({"horizon": part.source.path.stem} if alone else {})}))
-    blocks += [("[[horizon_columns]]", _file(part)) for part in plan.of("horizon columns")]
-    blocks += [("[[grids]]", {**_file(part), "horizon": part.source.path.stem}) for part in plan.of("grid")]
-    blocks += [("[[orientations]]", _file(part)) for part in plan.of("orientations")]
-    blocks += [("[[horizon]]", dict(table)) for table in horizons]
-    return blocks
+def _label(site_file: Path, mapping_file: Path, crs: str) -> dict[str, Any]:
+    """Return the [site] table."""
+    return {"name": site_file.stem, **({"crs": crs} if crs else {}), "mapping": mapping_file.name}
 
 
 def _parts(plan: Plan) -> list[Part]:
@@ -342,18 +303,5 @@ def _write(tables: Tables, plan: Plan, site_file: Path, mapping_file: Path) -> N
         for guess in part.preview.roles
     }
     save_mappings([part.mapping for part in parts], mapping_file, remarks)
-    lines = []
-    for head, table in tables:
-        lines += [head, *(f"{key} = {toml_value(value)}" for key, value in table.items()), ""]
     with replacing(site_file) as written:
-        written.write_text("\n".join(lines), encoding="utf-8")
-
-
-def _entry(part: Part) -> str | dict[str, str]:
-    """Return a part as the value of a key."""
-    return {"file": part.name, "table": part.preview.table} if part.preview.table else part.name
-
-
-def _file(part: Part) -> dict[str, str]:
-    """Return a part as keys of its own table."""
-    return {"file": part.name, **({"table": part.preview.table} if part.preview.table else {})}
+        written.write_text(tables_text(tables), encoding="utf-8")

@@ -26,7 +26,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+from geofit.data.errors import InputError
+from geofit.data.files import file_stems
+from geofit.data.site import Site
+from geofit.io.snapshot import read_snapshot, write_snapshot
 from geofit.project.commands import Command, command_from
+from geofit.project.saving import earlier_data, saved_data
 from geofit.project.state import State
 
 __all__ = ["Journal", "Unfinished", "unfinished"]
@@ -43,6 +48,7 @@ class Journal:
     def __init__(self, folder: Path, state: State, site_file: Path | None, project_file: Path | None) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         self.path, self._stream = _new_file(folder)
+        self._kept: list[Path] = []
         _hold(self._stream)
         self._write(
             {
@@ -54,6 +60,13 @@ class Journal:
             }
         )
         _sync_folder(folder)
+
+    def keep(self, name: str, site: Site) -> None:
+        """Keep data of the site that a command replaces, until the session ends: undoing it needs them."""
+        file = _data_file(self.path.parent, name)
+        if not file.is_file():
+            write_snapshot(site, file)
+        self._kept.append(file)
 
     def done(self, command: Command) -> None:
         """Write that a command was done."""
@@ -75,6 +88,8 @@ class Journal:
         """End the session: nothing is to be recovered."""
         self._stream.close()
         self.path.unlink(missing_ok=True)
+        for file in self._kept:
+            file.unlink(missing_ok=True)
 
     def _write(self, record: Mapping[str, Any]) -> None:
         # A path may have bytes that are not UTF-8: they come back as they are.
@@ -100,6 +115,17 @@ class Unfinished:
     saved: State
     time: float
 
+    def data(self) -> list[Site]:
+        """Return the data of the site that states of the session name and that the journal, or its project, kept."""
+        found = {}
+        for state in self.states():
+            for name in (state.data, *earlier_data(state)):
+                with suppress(InputError):
+                    found[name] = read_snapshot(_data_file(self.path.parent, name))
+            if self.project_file is not None:
+                found |= saved_data(state, self.project_file)
+        return list(found.values())
+
     @property
     def final(self) -> State:
         """The state when it was cut off."""
@@ -113,9 +139,15 @@ class Unfinished:
             state = command.on(state)
             yield state
 
+    def taken_over(self) -> None:
+        """Remove the journal: another session goes on with it, and with the data that it kept."""
+        self.path.unlink(missing_ok=True)
+
     def discard(self) -> None:
         """Remove the journal: the session is recovered, or nobody wants it."""
         self.path.unlink(missing_ok=True)
+        for state in self.states():
+            _data_file(self.path.parent, state.data).unlink(missing_ok=True)
 
 
 def unfinished(folder: Path) -> list[Unfinished]:
@@ -196,6 +228,10 @@ def _records(data: bytes) -> Iterator[dict[str, Any]]:
         if checksum != b"%08x" % zlib.crc32(text):
             return
         yield json.loads(text)
+
+
+def _data_file(folder: Path, name: str) -> Path:
+    return folder / "data" / f"{file_stems([name])[name]}.npz"
 
 
 def _path(text: str | None) -> Path | None:

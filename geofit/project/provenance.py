@@ -16,7 +16,9 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 
 __all__ = [
+    "Corners",
     "DocumentError",
+    "Earlier",
     "ManualEdit",
     "Move",
     "MoveToPointEdit",
@@ -25,6 +27,8 @@ __all__ = [
     "Row",
     "SeparationEdit",
     "Weigh",
+    "corners_from",
+    "data_digest",
     "find_rows",
     "fingerprint",
     "matched",
@@ -32,6 +36,10 @@ __all__ = [
     "turns",
     "without_rows",
 ]
+
+
+#: Corners of a polygon in map coordinates, metres, not closed.
+Corners = tuple[tuple[float, float], ...]
 
 
 class DocumentError(GeofitError):
@@ -216,6 +224,33 @@ class Provenance:
                     yield from other.ancestors()
 
 
+@dataclass(frozen=True)
+class Earlier:
+    """The state of a horizon before the data of the site changed.
+
+    ``data`` names the data, ``provenance`` what its surface was made from, ``area`` is the study area that was drawn.
+    """
+
+    data: str
+    provenance: Provenance
+    area: Corners | None = None
+
+    def to_data(self) -> dict[str, Any]:
+        """Return numbers, words, lists and mappings only."""
+        area = None if self.area is None else [list(corner) for corner in self.area]
+        return {"data": self.data, "provenance": self.provenance.to_data(), "area": area}
+
+    @classmethod
+    def from_data(cls, data: Mapping[str, Any]) -> Earlier:
+        """Return what :meth:`to_data` was called on."""
+        return cls(data["data"], Provenance.from_data(data["provenance"]), corners_from(data.get("area")))
+
+
+def corners_from(data: Any) -> Corners | None:
+    """Return corners from plain data; None where none are given."""
+    return None if data is None else tuple((float(x), float(y)) for x, y in data)
+
+
 def settings_from(data: Mapping[str, Any]) -> FitSettings:
     """Return settings from plain data: lists of corners become tuples again."""
     return FitSettings(**data)
@@ -303,6 +338,16 @@ def fingerprint(points: PointSet, site: Site) -> str:
         digest.update(np.ascontiguousarray(array).tobytes())
     for words in (points.kind, points.hole, points.section, points.file):
         digest.update("\n".join(words.tolist()).encode())
+    return digest.hexdigest()[:16]
+
+
+def data_digest(site: Site) -> str:
+    """Return the name of the data of a site: a hash of all that was read and of the files that it came from."""
+    digest = hashlib.sha256(site_digest(site))
+    for name, points in site.horizons.items():
+        digest.update(f"{name}\n{fingerprint(points, site)}\n".encode())
+    for name, value in sorted(site.inputs.items()):
+        digest.update(f"{name}\n{value}\n".encode())
     return digest.hexdigest()[:16]
 
 

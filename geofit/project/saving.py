@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -11,31 +12,48 @@ import numpy as np
 
 from geofit.checks.check import check
 from geofit.data.errors import InputError
+from geofit.data.files import file_stems
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
 from geofit.io.site_file import read_site
+from geofit.io.snapshot import read_snapshot, write_snapshot
 from geofit.project.building import beside
 from geofit.project.fault_blocks import site_with_blocks
-from geofit.project.provenance import Part, Provenance, Row, without_rows
+from geofit.project.provenance import Earlier, Part, Provenance, Row, corners_from, data_digest, without_rows
 from geofit.project.state import State
 
-__all__ = ["Opened", "Written", "project_of", "read_project", "read_surfaces", "save_state", "state_of"]
+__all__ = [
+    "Opened",
+    "Written",
+    "earlier_data",
+    "project_of",
+    "read_again",
+    "read_project",
+    "read_surfaces",
+    "save_state",
+    "saved_data",
+    "state_of",
+]
 
 _SITE = "site"
 
 
 @dataclass(frozen=True, eq=False)
 class Opened:
-    """A project that was read: its site, the work on it, and what is "missing" or "changed" since, by path."""
+    """A project that was read: its site, the work on it, and what is "missing" or "changed" since, by path.
+
+    ``data`` are the earlier data of the site that the work names.
+    """
 
     site: Site
     site_file: Path
     state: State
     project: Project
     changed: Mapping[str, str]
+    data: tuple[Site, ...] = ()
 
 
 def read_project(path: Path, progress: Progress | None = None) -> Opened:
@@ -62,8 +80,19 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
             message("project.put-back-open-site", "Put it back, or open the site file where it is now."),
             file=str(site_file),
         )
-    site = read_site(site_file, progress)
-    return Opened(site, site_file, state_of(project, site), project, project.changed(path.parent))
+    site = read_site(site_file, progress, added=_added(project))
+    state, changed = state_of(project, site), project.changed(path.parent)
+    data = saved_data(state, path)
+    for digest in earlier_data(state):
+        if digest not in data:
+            file = _data_file(path, digest)
+            changed[_relative(file, path.parent)] = "changed" if file.is_file() else "missing"
+    return Opened(site, site_file, state, project, changed, tuple(data.values()))
+
+
+def read_again(site_file: Path, added: tuple[str, ...], *, progress: Progress | None = None) -> Site:
+    """Read a site file as it is now, with the tables of files that were added to it."""
+    return read_site(site_file, progress, added=added)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,10 +111,14 @@ def save_state(
     path: Path,
     surfaces: Mapping[Provenance, HorizonFit],
     same: bool,
+    data: Mapping[str, Site] | None = None,
     *,
     progress: Progress,
 ) -> Written:
-    """Write a state as a project; ``same`` if it replaces the project that was opened, whose surfaces may stay."""
+    """Write a state as a project; ``same`` if it replaces the project that was opened, whose surfaces may stay.
+
+    ``data`` are the earlier data that the state names, by their names.
+    """
     former = None
     if same and path.is_file():
         try:
@@ -94,6 +127,9 @@ def save_state(
             former = None  # whatever is there is replaced
     project = project_of(state, site, site_file, path, former)
     tell(progress, "write", 0.3)
+    for digest, earlier in (data or {}).items():
+        if not _data_file(path, digest).is_file():
+            write_snapshot(earlier, _data_file(path, digest))
     return Written(path, state, write_project(project, path, new_surfaces(project, surfaces)))
 
 
@@ -143,7 +179,39 @@ def state_of(project: Project, site: Site) -> State:
         for result in project.results
         if result.provenance and result.horizon in order
     }
-    return State(project.name, order, settings, excluded, provenances, parts)
+    earlier = {
+        edit.horizon: Earlier.from_data(edit.values)
+        for edit in project.edits
+        if edit.kind == "earlier" and edit.horizon in order
+    }
+    return State(
+        project.name, order, settings, excluded, provenances, parts, data_digest(site), _added(project), earlier,
+        next((corners_from(edit.values["corners"]) for edit in project.edits if edit.kind == "area"), None),
+    )  # fmt: skip
+
+
+def _added(project: Project) -> tuple[str, ...]:
+    """Return the tables of files that the project adds to its site file."""
+    return tuple(edit.values["tables"] for edit in project.edits if edit.kind == "add")
+
+
+def saved_data(state: State, project_file: Path) -> dict[str, Site]:
+    """Return the earlier data that a state names and that are beside a project, whole, by their names."""
+    found = {}
+    for digest in earlier_data(state):
+        with suppress(InputError):
+            found[digest] = read_snapshot(_data_file(project_file, digest))
+    return found
+
+
+def earlier_data(state: State) -> tuple[str, ...]:
+    """Return the names of the earlier data that a state compares with."""
+    return tuple(dict.fromkeys(one.data for one in state.earlier.values()))
+
+
+def _data_file(project_file: Path, digest: str) -> Path:
+    """Return the file that holds earlier data of the site, beside the project."""
+    return project_file.with_name(f"{project_file.stem}_data") / f"{file_stems([digest])[digest]}.npz"
 
 
 def project_of(state: State, site: Site, site_file: Path, target: Path, former: Project | None) -> Project:
@@ -160,6 +228,10 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
         for name, rows in state.excluded.items()
         for row in sorted(rows)
     ]
+    edits += [Edit(kind="add", values={"tables": tables}) for tables in state.added]
+    if state.area is not None:
+        edits.append(Edit(kind="area", values={"corners": [list(corner) for corner in state.area]}))
+    edits += [Edit(kind="earlier", horizon=name, values=one.to_data()) for name, one in state.earlier.items()]
     edits += [Edit(kind="part", horizon=name, values=part.to_data()) for name, part in state.parts.items()]
     edits.append(Edit(kind="order", values={"horizons": list(state.order)}))
     kept = () if former is None else tuple(

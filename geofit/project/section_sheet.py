@@ -15,7 +15,8 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.report.section_pages import SheetTitle, fitting_scale, write_sheet_pdf, write_sheet_svg
+from geofit.report.paper import SheetTitle
+from geofit.report.section_pages import fitting_scale, write_sheet_pdf, write_sheet_svg
 from geofit.site.section_view import TOLERANCE, SectionView, section_view
 
 __all__ = ["SheetForm", "SheetOrder", "write_section_sheet"]
@@ -41,7 +42,7 @@ class SheetOrder:
     forms : tuple of {"pdf", "svg", "dxf"}
         Which files.
     paper : str
-        One of :data:`geofit.report.section_pages.PAPERS`.
+        One of :data:`geofit.report.paper.PAPERS`.
     scale : int or None
         1 : so many; None: the largest that fits.
     exaggeration : float

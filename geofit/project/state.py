@@ -8,7 +8,7 @@ from typing import Any
 
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
-from geofit.project.provenance import Part, Provenance, Row, settings_from
+from geofit.project.provenance import Corners, Earlier, Part, Provenance, Row, corners_from, data_digest, settings_from
 
 __all__ = ["State"]
 
@@ -19,7 +19,9 @@ class State:
 
     ``name`` of the site; ``order`` of the horizons, the highest first; ``settings``, ``excluded`` rows and the
     ``provenances`` of the surfaces by horizon. ``parts`` names the blocks that are in the place of horizons that faults
-    cut: each is a horizon like the others.
+    cut: each is a horizon like the others. ``data`` names the data of the site, ``added`` holds the tables of files
+    that its site file does not name, as TOML; ``earlier`` is from what surfaces were made before the data changed,
+    ``area`` the study area if one was drawn.
     """
 
     name: str = ""
@@ -28,12 +30,16 @@ class State:
     excluded: Mapping[str, frozenset[Row]] = field(default_factory=dict)
     provenances: Mapping[str, Provenance] = field(default_factory=dict)
     parts: Mapping[str, Part] = field(default_factory=dict)
+    data: str = ""
+    added: tuple[str, ...] = ()
+    earlier: Mapping[str, Earlier] = field(default_factory=dict)
+    area: Corners | None = None
 
     @classmethod
     def of_site(cls, site: Site) -> State:
         """Return the work on a site that nobody has begun."""
         settings = {name: site.settings.get(name, FitSettings()) for name in site.horizons}
-        return cls(site.name, tuple(site.horizons), settings)
+        return cls(site.name, tuple(site.horizons), settings, data=data_digest(site))
 
     def to_data(self) -> dict[str, Any]:
         """Return numbers, words, lists and mappings only."""
@@ -44,6 +50,10 @@ class State:
             "excluded": {name: [asdict(row) for row in sorted(rows)] for name, rows in self.excluded.items()},
             "provenances": {name: provenance.to_data() for name, provenance in self.provenances.items()},
             "parts": {name: part.to_data() for name, part in self.parts.items()},
+            "data": self.data,
+            "added": list(self.added),
+            "area": None if self.area is None else [list(corner) for corner in self.area],
+            "earlier": {name: one.to_data() for name, one in self.earlier.items()},
         }
 
     @classmethod
@@ -56,4 +66,8 @@ class State:
             {name: frozenset(Row(**row) for row in rows) for name, rows in data["excluded"].items()},
             {name: Provenance.from_data(provenance) for name, provenance in data["provenances"].items()},
             {name: Part.from_data(part) for name, part in data.get("parts", {}).items()},
+            data.get("data", ""),
+            tuple(data.get("added", ())),
+            {name: Earlier.from_data(one) for name, one in data.get("earlier", {}).items()},
+            corners_from(data.get("area")),
         )

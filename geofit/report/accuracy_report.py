@@ -17,8 +17,10 @@ from geofit.data.verdict import Lamp
 
 __all__ = [
     "AccuracyReport",
+    "ChangeReport",
     "CheckLine",
     "ConflictLine",
+    "ContactLine",
     "ContradictionLine",
     "CutLine",
     "CutPlace",
@@ -27,6 +29,7 @@ __all__ = [
     "HorizonReport",
     "InputFile",
     "LeftOutLine",
+    "MovedLine",
     "OrderLine",
     "OutlierLine",
     "PartLine",
@@ -300,6 +303,62 @@ class SectionSheet:
 
 
 @dataclass(frozen=True)
+class MovedLine:
+    """A connected area that moved by more than epsilon: m2; where it moved most, and by how much there; its mean."""
+
+    area: float
+    x: float
+    y: float
+    most: float
+    mean: float
+
+
+@dataclass(frozen=True)
+class ContactLine:
+    """A contact found since: elevation, what the earlier surface predicted there, its 90 % band, the difference.
+
+    None where the earlier surface did not reach, or its band is not known.
+    """
+
+    group: str
+    kind: str
+    x: float
+    y: float
+    z: float
+    predicted: float | None
+    low: float | None
+    high: float | None
+    residual: float | None
+    inside: bool | None
+
+
+@dataclass(frozen=True)
+class ChangeReport:
+    """How a horizon moved since its data changed, metres: later minus earlier; and the test of the earlier band.
+
+    ``share`` of the common ``area`` (m2) moved by more than ``epsilon``; ``inside`` is the share of the ``judged`` new
+    contacts within the earlier 90 % band.
+    """
+
+    epsilon: float
+    mean: float | None
+    rms: float | None
+    largest: float | None
+    x: float | None
+    y: float | None
+    area: float
+    share: float | None
+    areas: tuple[MovedLine, ...]
+    contacts: tuple[ContactLine, ...]
+    judged: int
+    inside: float | None
+    residual_rms: float | None
+    too_narrow: bool
+    text: Message
+    verdict: Message
+
+
+@dataclass(frozen=True)
 class PlanSheet:
     """A contour plan to scale: the denominator, and metres between contours."""
 
@@ -315,7 +374,8 @@ class HorizonReport:
     checks, away from the data. ``sound`` shows whether sigma is below epsilon and every check passes.
     ``over`` counts points beyond tolerances, by the name of the setting. ``pictures`` names those that
     belong here, by what they show. ``plan`` is None for a folded surface, of which contours would cross.
-    ``excluded`` are points that a person left out, ``edits`` manual edits.
+    ``excluded`` are points that a person left out, ``edits`` manual edits. ``change`` is how the horizon moved since
+    its data changed; None where no earlier state is known.
     """
 
     horizon: str
@@ -350,6 +410,7 @@ class HorizonReport:
     plan: PlanSheet | None = None
     excluded: tuple[PointLine, ...] = ()
     edits: tuple[Message, ...] = ()
+    change: ChangeReport | None = None
 
     @property
     def name(self) -> str:

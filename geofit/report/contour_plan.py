@@ -18,8 +18,9 @@ from geofit.sampling.contours import contours, interval_for
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.lines import Line2D
 
-__all__ = ["draw_contour_plan", "plan_caption", "plan_sheet"]
+__all__ = ["draw_contour_plan", "draw_map", "map_corners", "map_handles", "plan_caption", "plan_sheet"]
 
 Floats = NDArray[np.float64]
 
@@ -36,7 +37,7 @@ def plan_sheet(result: HorizonResult) -> PlanSheet | None:
     """Choose scale and interval of a contour plan; None for a folded surface, of which contours would cross."""
     if result.surface.frame == "sections":
         return None
-    low, high = _corners(result)
+    low, high = map_corners(result)
     wide, tall = high - low
     z = np.concatenate([rim[:, 2] for rim in rims(result.surface).values()] or [result.surface.points.xyz[:, 2]])
     scale = max(scale_for(float(wide), DRAWING), scale_for(float(tall), TALLEST))
@@ -47,7 +48,7 @@ def draw_contour_plan(sheet: PlanSheet, result: HorizonResult, t: Language = EN)
     """Draw the contour plan of a horizon, 174 mm wide, at the scale of its sheet."""
     from matplotlib.figure import Figure
 
-    low, high = _corners(result)
+    low, high = map_corners(result)
     # A narrow strip still has room for the arrow and the labels of its axis.
     short = np.array([0.0, max(LOWEST * sheet.scale / 1000 - (high - low)[1], 0.0) / 2])
     low, high = low - short, high + short
@@ -58,14 +59,23 @@ def draw_contour_plan(sheet: PlanSheet, result: HorizonResult, t: Language = EN)
         axes = figure.add_axes((LEFT / SHEET, BELOW / height, wide / SHEET, tall / height))
         axes.set_xlim(low[0], high[0])
         axes.set_ylim(low[1], high[1])
-        _contours(axes, result, sheet.interval)
-        _base_map(axes, result, wide)
-        _points(axes, result)
-        _frame(axes, t)
+        draw_map(axes, result, sheet.interval, wide, t)
         north_arrow(axes, wide + 8.0, tall - 17.0, t("N"))
         scale_bar(axes, sheet.scale, max(wide - 44.0, 0.0), -13.5)
-        _legend(figure, result, t)
+        height = figure.get_size_inches()[1] / MM
+        figure.legend(
+            handles=map_handles(result, t), loc="lower left", bbox_to_anchor=(LEFT / SHEET, 1.0 / height), ncols=5,
+            fontsize=6.5, handlelength=1.8, columnspacing=1.4, borderaxespad=0, handletextpad=0.5,
+        )  # fmt: skip
     return figure
+
+
+def draw_map(axes: Axes, result: HorizonResult, interval: float, wide: float, t: Language = EN) -> None:
+    """Draw contours, study area, core, section lines, holes with names and points; the axes are ``wide`` mm wide."""
+    _contours(axes, result, interval)
+    _base_map(axes, result, wide)
+    _points(axes, result)
+    _frame(axes, t)
 
 
 def plan_caption(name: str, sheet: PlanSheet, t: Language) -> str:
@@ -78,7 +88,7 @@ def plan_caption(name: str, sheet: PlanSheet, t: Language) -> str:
     )
 
 
-def _corners(result: HorizonResult) -> tuple[Floats, Floats]:
+def map_corners(result: HorizonResult) -> tuple[Floats, Floats]:
     """Return the corners of the sheet's frame, metres."""
     parts = [result.surface.points.xyz[:, :2]]
     if result.surface.outline is not None:
@@ -178,7 +188,8 @@ def _frame(axes: Axes, t: Language) -> None:
     axes.set_ylabel(t("Northing, m"), fontsize=7, labelpad=2)
 
 
-def _legend(figure: Figure, result: HorizonResult, t: Language) -> None:
+def map_handles(result: HorizonResult, t: Language) -> list[Line2D]:
+    """Return the entries of the legend."""
     from matplotlib.lines import Line2D
 
     from geofit.data.languages import translate
@@ -193,8 +204,4 @@ def _legend(figure: Figure, result: HorizonResult, t: Language) -> None:
     for kind in sorted(set(result.surface.points.kind.tolist())):
         marker, colour = kind_style(kind)
         handles.append(Line2D([], [], color=colour, lw=0, marker=marker, ms=3, label=translate(kind, t)))
-    height = figure.get_size_inches()[1] / MM
-    figure.legend(
-        handles=handles, loc="lower left", bbox_to_anchor=(LEFT / SHEET, 1.0 / height), ncols=5, fontsize=6.5,
-        handlelength=1.8, columnspacing=1.4, borderaxespad=0, handletextpad=0.5,
-    )  # fmt: skip
+    return handles

@@ -22,8 +22,10 @@ from geofit.data.prediction import LeftOut, PredictionResult
 from geofit.data.site import ImportIssue, Section, Site
 from geofit.report.accuracy_report import (
     AccuracyReport,
+    ChangeReport,
     CheckLine,
     ConflictLine,
+    ContactLine,
     ContradictionLine,
     CutLine,
     CutPlace,
@@ -32,6 +34,7 @@ from geofit.report.accuracy_report import (
     HorizonReport,
     InputFile,
     LeftOutLine,
+    MovedLine,
     OrderLine,
     OutlierLine,
     PartLine,
@@ -52,11 +55,13 @@ from geofit.report.section_sheet import section_sheet
 if TYPE_CHECKING:
     from geofit.site.order import Order
     from geofit.site.separate import Contradiction
+    from geofit.site.states import Comparison
     from geofit.site.throw import FaultCut
 
 __all__ = [
     "PICTURES",
     "accuracy_report",
+    "change_report",
     "check_lines",
     "cut_of",
     "horizon_report",
@@ -69,7 +74,7 @@ __all__ = [
 ]
 
 #: What the pictures of a horizon show, in the order of the report.
-PICTURES = ("plan", "view", "deviation", "residuals", "uncertainty")
+PICTURES = ("plan", "view", "deviation", "residuals", "uncertainty", "change")
 SITE_PICTURE = "site"
 WORST = 20
 _PROGRAMS = ("numpy", "scipy")
@@ -214,13 +219,45 @@ def horizon_report(result: HorizonResult) -> HorizonReport:
         if result.excluded is None
         else tuple(_excluded(result.excluded, i) for i in range(len(result.excluded))),
         edits=result.edits,
+        change=None if result.change is None else change_report(result.change),
     )
+
+
+def change_report(found: Comparison) -> ChangeReport:
+    """Return what is reported of how a horizon moved."""
+    change, test = found.change, found.test
+    return ChangeReport(
+        epsilon=change.epsilon,
+        mean=_finite(change.mean),
+        rms=_finite(change.rms),
+        largest=_finite(change.largest),
+        x=_finite(change.place[0]),
+        y=_finite(change.place[1]),
+        area=change.area,
+        share=_finite(change.share),
+        areas=tuple(MovedLine(**asdict(one)) for one in change.areas),
+        contacts=tuple(
+            ContactLine(
+                one.group, one.kind, one.x, one.y, one.z, _finite(one.predicted), _finite(one.low), _finite(one.high),
+                _finite(one.residual), one.inside,
+            )
+            for one in test.contacts
+        ),
+        judged=len(test.judged),
+        inside=_finite(test.share),
+        residual_rms=_finite(test.rms),
+        too_narrow=test.too_narrow,
+        text=change.text,
+        verdict=test.text,
+    )  # fmt: skip
 
 
 def _shown(what: str, result: HorizonResult, approximated: NDArray[np.float64]) -> bool:
     """Whether a picture has something to show: residuals where not every point is interpolated."""
     if what == "residuals":
         return bool(np.abs(approximated).max(initial=0.0) >= NOISE)
+    if what == "change":
+        return result.change is not None
     return what != "uncertainty" or _has_uncertainty(result.prediction)
 
 

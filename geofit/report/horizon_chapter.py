@@ -8,6 +8,7 @@ from geofit.data.languages import Language, sentence, together, translate
 from geofit.data.messages import Message, gravest_first
 from geofit.report import digits
 from geofit.report.accuracy_report import FileCheck, HorizonReport
+from geofit.report.change_blocks import change_blocks
 from geofit.report.checks_table import check_table
 from geofit.report.contour_plan import plan_caption
 from geofit.report.document import (
@@ -40,6 +41,7 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
         *_checked(h, t),
         *_read_back(h.read_back, t),
         *prediction_blocks(h, t),
+        *change_blocks(h.change, h.pictures.get("change", ""), t),
     ]
     return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h, t))
 

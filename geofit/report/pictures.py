@@ -17,6 +17,7 @@ from geofit.data.messages import Message
 from geofit.data.site import Section
 from geofit.report import digits, plots, scene
 from geofit.report.box import draw_boxed
+from geofit.report.change_map import change_map
 from geofit.report.contour_plan import draw_contour_plan, plan_sheet
 from geofit.report.gather import SITE_PICTURE, cut_of, picture_name, section_picture
 from geofit.report.histogram import histogram, normal_plot
@@ -30,8 +31,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from geofit.report.scene import Scene
+    from geofit.site.states import Comparison
 
-__all__ = ["Pictures", "draw", "draw_sections", "draw_site", "png", "write_picture"]
+__all__ = ["Pictures", "draw", "draw_change", "draw_sections", "draw_site", "png", "write_picture"]
 
 #: Width of the report's pictures, inches: what an A4 page has between its margins; their dots an inch; height of the
 #: picture of the cover, inches.
@@ -69,7 +71,21 @@ def draw(result: HorizonResult, t: Language = EN) -> Pictures:
     if result.prediction is not None and result.prediction.uncertainty is not None:
         field = result.prediction.uncertainty
         flat["uncertainty"] = _map(uncertainty_map, result, t, float(np.ptp(field.y) / np.ptp(field.x)))
+    if result.change is not None:
+        flat["change"] = draw_change(result.change, t)
     return Pictures({picture_name(what, result.name): data for what, data in flat.items()}, view, missing)
+
+
+def draw_change(comparison: Comparison, t: Language = EN) -> bytes:
+    """Draw how a horizon moved between two states of its data, as PNG."""
+    from matplotlib.figure import Figure
+
+    grid = comparison.change.difference
+    height = float(np.clip(4.3 * np.ptp(grid.y) / np.ptp(grid.x) + 0.75, 2.4, 5.0))
+    with drawing(TYPE):
+        figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
+        change_map(figure.add_axes((0.115, 0.45 / height, 0.63, 1 - 0.7 / height)), comparison, t)
+        return png(figure)
 
 
 def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:

@@ -17,6 +17,7 @@ from geofit.data.site import ImportIssue, Site
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.profile import Profile
+from geofit.site.states import Comparison
 
 __all__ = ["HorizonResult", "sigma_of"]
 
@@ -49,6 +50,8 @@ class HorizonResult:
         Changes by hand after the fit, in their order.
     orders : tuple of Check
         How the horizon lies to its neighbours (:meth:`geofit.site.order.Order.check`).
+    change : Comparison or None
+        How the horizon moved since its data changed; None: no earlier state is known.
     """
 
     surface: HorizonFit
@@ -62,6 +65,7 @@ class HorizonResult:
     excluded: PointSet | None = None
     edits: tuple[Message, ...] = ()
     orders: tuple[Check, ...] = ()
+    change: Comparison | None = None
 
     @property
     def verdict(self) -> Verdict:

@@ -2,52 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from geofit.data.errors import SettingsError
-from geofit.data.files import file_stems, replacing
 from geofit.data.languages import EN, Language
 from geofit.data.messages import message
-from geofit.report.style import LINE, MUTED, TEXT, drawing, horizon_colours, kind_style
+from geofit.report.paper import BLOCK, EDGE, PAPERS, SCALES, SheetTitle, framed_page, save_pdf, save_svg
+from geofit.report.style import LINE, MUTED, TEXT, horizon_colours, kind_style
 from geofit.site.section_view import HoleTrack, SectionView, lithologies
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["PAPERS", "SCALES", "SheetTitle", "fitting_scale", "lithology_style", "write_sheet_pdf", "write_sheet_svg"]
+__all__ = ["fitting_scale", "lithology_style", "write_sheet_pdf", "write_sheet_svg"]
 
-#: Paper in landscape, millimetres.
-PAPERS = {"A4": (297.0, 210.0), "A3": (420.0, 297.0), "A1": (841.0, 594.0), "A0": (1189.0, 841.0)}
-#: Scales on offer, 1 : so many.
-SCALES = (100, 200, 250, 500, 1000, 2000, 2500, 5000, 10_000, 20_000, 25_000, 50_000, 100_000)
-#: Millimetres: frame from the paper's edge, title block, room for the numbers at the left and below, legend.
-EDGE, BLOCK, LEFT, BELOW, LEGEND = 10.0, 24.0, 20.0, 14.0, 44.0
+#: Millimetres: room for the numbers at the left and below, legend.
+LEFT, BELOW, LEGEND = 20.0, 14.0, 44.0
 #: Width of a hole's column of lithology, millimetres.
 COLUMN = 2.2
 GROUND = "#6b7d3a"
 DASHES = (0, (5.0, 3.0))
-#: Lines of the patterns, and letters of the PDF as text.
-_THIN: dict[Any, Any] = {"hatch.linewidth": 0.25, "pdf.fonttype": 42}
 _SOILS = ("#e8d9a0", "#c9b18a", "#b7c9a8", "#9fb6c4", "#d3a6a0", "#a9a1c6", "#dcc3d8", "#8fb3a2", "#d9cbb6", "#b2b2b2")
 _HATCHES = ("", "....", "////", "\\\\\\\\", "xxxx", "----", "++++", "oo", "||||", "**")
-
-
-@dataclass(frozen=True)
-class SheetTitle:
-    """What the title block says; empty lines stay empty. ``date`` is ISO 8601."""
-
-    title: str
-    project: str = ""
-    number: str = ""
-    author: str = ""
-    date: str = ""
 
 
 def lithology_style(codes: Sequence[str]) -> dict[str, tuple[str, str]]:
@@ -65,7 +48,7 @@ def lithology_style(codes: Sequence[str]) -> dict[str, tuple[str, str]]:
 
 
 def fitting_scale(views: Sequence[SectionView], paper: str, exaggeration: float = 1.0) -> int:
-    """Return the largest of :data:`SCALES` at which every section fits the paper.
+    """Return the largest of :data:`geofit.report.paper.SCALES` at which every section fits the paper.
 
     Raises
     ------
@@ -108,7 +91,7 @@ def write_sheet_pdf(
     path : path
         The file.
     paper : str
-        One of :data:`PAPERS`.
+        One of :data:`geofit.report.paper.PAPERS`.
     scale : int, optional
         1 : so many; None: the largest at which all fit.
     exaggeration : float
@@ -121,14 +104,8 @@ def write_sheet_pdf(
     SettingsError
         If a section does not fit the paper at the scale.
     """
-    import matplotlib as mpl
-    from matplotlib.backends.backend_pdf import PdfPages
-
     chosen = _checked(views, paper, scale, exaggeration)
-    information: dict[str, Any] = {"CreationDate": None, "ModDate": None, "Title": block.title}
-    with drawing(8.0), mpl.rc_context(_THIN), replacing(path) as part, PdfPages(part, metadata=information) as pages:
-        for number, view in enumerate(views, 1):
-            pages.savefig(_page(views, view, number, block, paper, chosen, exaggeration, language))
+    save_pdf(_pages(views, block, paper, chosen, exaggeration, language), block.title, path)
     return chosen
 
 
@@ -146,19 +123,18 @@ def write_sheet_svg(
 
     Parameters and errors are those of :func:`write_sheet_pdf`.
     """
-    import matplotlib as mpl
+    chosen = _checked(views, paper, scale, exaggeration)
+    pages = _pages(views, block, paper, chosen, exaggeration, language)
+    return save_svg(pages, [view.name for view in views], path)
 
-    chosen, path = _checked(views, paper, scale, exaggeration), Path(path)
-    stems = file_stems([view.name or str(k) for k, view in enumerate(views, 1)])
-    files = []
-    with drawing(8.0), mpl.rc_context({**_THIN, "svg.hashsalt": "geofit", "svg.fonttype": "path"}):
-        for number, (view, stem) in enumerate(zip(views, stems.values(), strict=True), 1):
-            file = path if len(views) == 1 else path.with_name(f"{path.stem}_{stem}{path.suffix}")
-            figure = _page(views, view, number, block, paper, chosen, exaggeration, language)
-            with replacing(file) as part:
-                figure.savefig(part, format="svg", metadata={"Date": None})
-            files.append(file)
-    return tuple(files)
+
+def _pages(
+    views: Sequence[SectionView], block: SheetTitle, paper: str, scale: int, exaggeration: float, t: Language
+) -> list[Callable[[], Figure]]:
+    return [
+        partial(_page, views, view, number, block, paper, scale, exaggeration, t)
+        for number, view in enumerate(views, 1)
+    ]
 
 
 def _checked(views: Sequence[SectionView], paper: str, scale: int | None, exaggeration: float) -> int:
@@ -214,19 +190,14 @@ def _page(
     exaggeration: float,
     t: Language,
 ) -> Figure:
-    from matplotlib.figure import Figure
-    from matplotlib.patches import Rectangle
-
+    (x0, y0), (x1, y1) = view.line[[0, -1]]
+    line = t(
+        "from ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m; holes and points within {half:g} m",
+        x0=x0, y0=y0, x1=x1, y1=y1, length=view.length, half=view.thickness / 2,
+    )  # fmt: skip
+    true = t("true to scale") if exaggeration == 1 else t("elevations {factor:g} times higher", factor=exaggeration)
     wide, high = PAPERS[paper]
-    figure = Figure(figsize=(wide / 25.4, high / 25.4), dpi=72)
-
-    def box(x: float, y: float, width: float, height: float) -> None:
-        figure.add_artist(
-            Rectangle((x / wide, y / high), width / wide, height / high, fill=False, ec=TEXT, lw=0.7,
-                      transform=figure.transFigure)
-        )  # fmt: skip
-
-    box(EDGE, EDGE, wide - 2 * EDGE, high - 2 * EDGE)
+    figure = framed_page(paper, block, view.name, line, f"1:{scale} · {true}", (number, len(views)), t)
     room_wide, room_high = _room(paper)
     across, up = _size(view, scale, exaggeration)
     bottom = EDGE + BLOCK + BELOW + max((room_high - up) / 2, 0)
@@ -236,7 +207,6 @@ def _page(
     styles = lithology_style(lithologies(list(views)))
     _draw(axes, view, colours, styles, scale, exaggeration, t)
     _legend(figure, axes, view, styles, (wide, high), t)
-    _block(figure, view, number, len(views), block, (wide, high), scale, exaggeration, t, box)
     return figure
 
 
@@ -326,42 +296,3 @@ def _legend(
             labels.append(code)
     corner = ((wide - EDGE - LEGEND) / wide, (high - EDGE - 14) / high)
     figure.legend(handles, labels, loc="upper left", bbox_to_anchor=corner, fontsize=6.5, borderaxespad=0)
-
-
-def _block(
-    figure: Figure,
-    view: SectionView,
-    number: int,
-    total: int,
-    block: SheetTitle,
-    paper: tuple[float, float],
-    scale: int,
-    exaggeration: float,
-    t: Language,
-    box: Any,
-) -> None:
-    """Write the title over the drawing, and the title block below it."""
-    wide, high = paper
-    name = f"{block.title} · {view.name}" if view.name else block.title
-    figure.text((EDGE + 6) / wide, (high - EDGE - 9) / high, name, size=13, weight="bold", color=TEXT)
-    (x0, y0), (x1, y1) = view.line[[0, -1]]
-    line = t(
-        "from ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m; holes and points within {half:g} m",
-        x0=x0, y0=y0, x1=x1, y1=y1, length=view.length, half=view.thickness / 2,
-    )  # fmt: skip
-    figure.text((EDGE + 6) / wide, (high - EDGE - 14) / high, line, size=7, color=MUTED)
-    true = t("true to scale") if exaggeration == 1 else t("elevations {factor:g} times higher", factor=exaggeration)
-    cells = (
-        (t("Project"), block.project, 0.28),
-        (t("Drawing number"), block.number, 0.16),
-        (t("Prepared"), block.author, 0.16),
-        (t("Date"), block.date, 0.12),
-        (t("Scale"), f"1:{scale} · {true}", 0.2),
-        (t("Sheet"), f"{number} / {total}", 0.08),
-    )
-    at, width = EDGE, wide - 2 * EDGE
-    for word, value, share in cells:
-        box(at, EDGE, share * width, BLOCK - 8)
-        figure.text((at + 2) / wide, (EDGE + BLOCK - 12) / high, word, size=6, color=MUTED)
-        figure.text((at + 2) / wide, (EDGE + 4) / high, value, size=8.5, color=TEXT)
-        at += share * width

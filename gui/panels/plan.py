@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
@@ -12,6 +13,7 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.parametrize import Parametrization
 from geofit.geometry.frame import Frame, map_frame
+from geofit.gui.panels.area_overlay import AreaOverlay
 from geofit.gui.panels.core_box import CoreBox, parametrization_of, taken
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
@@ -30,16 +32,18 @@ class PlanPanel(QWidget):
     """The plan of one horizon.
 
     ``core_changed`` carries the horizon and its new core: "auto", "all", "none", or the four corners that were dragged,
-    when Use is pressed.
+    when Use is pressed. ``area_changed`` carries the corners of the study area after each drag; None: as in the files.
     """
 
     core_changed = Signal(str, object)
+    area_changed = Signal(object)
     pointer_moved = Signal(float, float)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.view = PlanView()
         self.view.setAccessibleName(self.tr("Plan with the core's rectangle"))
+        self.area = AreaOverlay(self.view)
         self.buttons: dict[str, QPushButton] = {}
         tools = FlowLayout()
         for key, words, about in (
@@ -49,10 +53,12 @@ class PlanPanel(QWidget):
             ("draw", self.tr("Draw"), self.tr("Draw a new rectangle: press and drag in the plan.")),
             ("undo", self.tr("Undo drag"), self.tr("Take back the last drag that was not used yet.")),
             ("use", self.tr("Use"), self.tr("Make the rectangle the core of the next fit.")),
+            ("area", self.tr("Study area"), self.tr("Draw the study area, or drag its corners.")),
+            ("file area", self.tr("As in files"), self.tr("Take the study area that the site's files state.")),
         ):
             button = QPushButton(words)
             button.setToolTip(about)
-            button.setCheckable(key in {"auto", "all", "none", "draw"})
+            button.setCheckable(key in {"auto", "all", "none", "draw", "area"})
             button.setAutoDefault(False)
             # Narrow enough for all to are set in two lines of a dock.
             button.setMinimumWidth(button.fontMetrics().horizontalAdvance(words) + 22)
@@ -79,12 +85,16 @@ class PlanPanel(QWidget):
         for word in ("auto", "all", "none"):
             self.buttons[word].clicked.connect(lambda _, word=word: self._choose_word(word))
         self.buttons["draw"].toggled.connect(self._draw)
+        self.buttons["area"].toggled.connect(self._edit_area)
+        self.buttons["file area"].clicked.connect(lambda: self.area_changed.emit(None))
+        self.area.changed.connect(self.area_changed)
         self.buttons["undo"].clicked.connect(self.undo_drag)
         self.buttons["use"].clicked.connect(self.use)
         self.view.box_dragging.connect(self._tell_pending)
         self.view.box_dragged.connect(self._dragged)
         self.view.pointer_moved.connect(self.pointer_moved)
         self._name, self._settings = "", FitSettings()
+        self._boundary: NDArray[np.float64] | None = None
         self._why = ""
         self._parametrization: Parametrization | None = None
         self._past: list[CoreBox | None] = []
@@ -119,6 +129,8 @@ class PlanPanel(QWidget):
             ),
             keep_view=same,
         )
+        self._boundary = site.boundary
+        self._edit_area(self.buttons["area"].isChecked())
         self.view.blank = CoreBox(frame, np.zeros(2), np.zeros(2))
         self.view.locked = frame.kind != "map"
         self.view.show_box(self._last)
@@ -181,6 +193,22 @@ class PlanPanel(QWidget):
             self.reason.setText(self.tr("Press and drag in the plan to draw the core's rectangle."))
         else:
             self._update_state()
+
+    def _edit_area(self, editing: bool) -> None:
+        self.buttons["file area"].setVisible(editing)
+        if not editing:
+            self.area.hide()
+            return
+        corners = self._boundary
+        if corners is None:
+            # Around the points, to be dragged from there.
+            xy = self.view.data.points
+            low, high = xy.min(axis=0), xy.max(axis=0)
+            room = 0.05 * float((high - low).max())
+            (x0, y0), (x1, y1) = low - room, high + room
+            corners = np.array([[x0, y0], [x1, y0], [x1, y1], [x0, y1]])
+        self.area.edit(corners)
+        self.view.fit()
 
     def _dragged(self, box: CoreBox) -> None:
         self._past.append(self._last)

@@ -84,3 +84,30 @@ def test_a_scale_that_does_not_fit_is_said_and_leaves_nothing(shown, qtbot, tmp_
     qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
     assert "At 1:100 the sections are larger than A3" in dialog.message.text()
     assert not list(folder.iterdir())
+
+
+def test_a_contour_plan_with_an_interval_of_ones_own(shown, qtbot, tmp_path, monkeypatch):
+    from geofit.gui.dialogs.plan_sheet import PlanSheetDialog
+
+    said = []
+
+    def drive(dialog):
+        dialog.show()
+        assert dialog.which.currentText() == NAME
+        assert dialog.order().interval is None
+        dialog.interval.setValue(4.0)
+        dialog.forms["dxf"].setChecked(True)
+        dialog.target.setText(str(tmp_path / "plan.pdf"))
+        qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+        qtbot.waitUntil(lambda: not dialog.running, timeout=120_000)
+        said.append(dialog.message.text())
+        dialog.close()
+
+    monkeypatch.setattr(PlanSheetDialog, "exec", drive)
+    shown.trigger("plan_sheet")
+    pdf = pypdfium2.PdfDocument(tmp_path / "plan.pdf")
+    words = pdf[0].get_textpage().get_text_range()
+    pdf.close()
+    assert "contours every 4 m" in words
+    assert (tmp_path / "plan.dxf").is_file()
+    assert str(tmp_path / "plan.pdf") in said[0]

@@ -19,12 +19,14 @@ from geofit.project.building import make
 from geofit.project.commands import (
     COMMANDS,
     AdjustControlPoint,
+    ChangeData,
     ChangeWeight,
     ExcludeRows,
     IncludeRows,
     MoveToPoint,
     RenameSite,
     SeparateHorizons,
+    SetArea,
     SetCore,
     SetOrder,
     SetSettings,
@@ -35,6 +37,7 @@ from geofit.project.commands import (
 from geofit.project.document import Document
 from geofit.project.provenance import (
     DocumentError,
+    Earlier,
     Move,
     MoveToPointEdit,
     Part,
@@ -117,6 +120,17 @@ commands = st.one_of(
     st.builds(SeparateHorizons, st.just(("low",)), st.just(("up", "low")), st.floats(0, 10)),
     st.builds(SetOrder, st.permutations(["up", "low"]).map(tuple)),
     st.builds(RenameSite, st.text(min_size=1)),
+    st.builds(SetArea, polygon | st.none()),
+    st.builds(
+        ChangeData,
+        st.text(max_size=4),
+        st.just(("a.csv",)),
+        st.lists(st.text(max_size=9), max_size=2).map(tuple),
+        st.just({"low": FitSettings(), "up": FitSettings(epsilon=0.1)}),
+        st.just({}),
+        st.dictionaries(st.sampled_from(["low", "up"]), st.tuples(rows)),
+        st.dictionaries(st.just("low"), st.builds(Earlier, st.text(max_size=4), provenances)),
+    ),
 )
 
 
@@ -160,6 +174,8 @@ def test_every_command_is_told_in_words_that_can_be_translated():
         ChangeWeight("low", "core", 1, 2, 0.5), SeparateHorizons(("low",), ("up", "low"), 0.5),
         SplitAtFaults("low", {"low (A)": Part("low", "", (provenance,), (1,), "0-9", ())}),
         MoveToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
+        SetArea(None), SetArea(((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))),
+        ChangeData("x", ("a.csv", "b.csv"), (), {"low": FitSettings()}, {}, {}, {}),
     ]  # fmt: skip
     assert {type(command) for command in samples} == set(COMMANDS.values())
     assert not [left for command in samples for left in english_left(command.text)]

@@ -13,10 +13,8 @@ from geofit.data.errors import SettingsError
 from geofit.data.languages import EN, ZH
 from geofit.io.export.section_dxf import write_sheet_dxf
 from geofit.report import section_pages
+from geofit.report.paper import PAPERS, SCALES, SheetTitle
 from geofit.report.section_pages import (
-    PAPERS,
-    SCALES,
-    SheetTitle,
     fitting_scale,
     lithology_style,
     write_sheet_pdf,

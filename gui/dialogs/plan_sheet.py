@@ -1,0 +1,73 @@
+"""The contour plan: which horizon, how many metres between contours, at which scale, and where the files go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QWidget
+
+from geofit.data.site import Site
+from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.dialogs.sheet import SheetDialog, metres
+from geofit.gui.translate import user_language
+from geofit.project.plan_sheet import PlanOrder, write_plan_sheet
+
+__all__ = ["PlanSheetDialog"]
+
+
+class PlanSheetDialog(SheetDialog):
+    """Asks for contour plans and writes them to scale."""
+
+    def __init__(
+        self,
+        site: Site,
+        surfaces: Mapping[str, HorizonFit],
+        chosen: str | None,
+        folder: Path,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(site, "", folder / "plan", parent)
+        self.setWindowTitle(self.tr("Contour plan"))
+        self.title_line.setText(self.tr("Contour plan"))
+        self.drawing = self.tr("Drawing the contours…")
+        # Of a folded surface contours would cross.
+        flat = {name: surface for name, surface in surfaces.items() if surface.frame != "sections"}
+        self._surfaces = {name: surface.with_(model=None) for name, surface in flat.items()}
+        self.which = QComboBox()
+        for name in self._surfaces:
+            self.which.addItem(name, (name,))
+        if len(self._surfaces) > 1:
+            words = self.tr("Every horizon, a page each ({n})").format(n=len(self._surfaces))
+            self.which.addItem(words, tuple(self._surfaces))
+        if chosen in self._surfaces:
+            self.which.setCurrentText(chosen)
+        self.interval: QDoubleSpinBox = metres(0.0, 1000.0, 0.0)
+        self.interval.setSpecialValueText(self.tr("By the relief"))
+        self.interval.setToolTip(self.tr("Metres between contours; 0: 1, 2 or 5 times a power of ten"))
+        self.lay_out(((self.tr("&Horizon"), self.which), (self.tr("C&ontours every"), self.interval)))
+        self.say(self.tr("Heights, holes with names, study area, scale bar, north arrow; every fifth contour heavy."))
+        self.refresh()
+
+    def order(self) -> PlanOrder:
+        """Return what is asked for."""
+        return PlanOrder(
+            self.which.currentData(),
+            self.title_block(),
+            self.path(),
+            self.interval.value() or None,
+            self.wanted(),
+            self.paper.currentText(),
+            self.scale.currentData(),
+            user_language().code,
+        )
+
+    def work(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
+        """Return what writes the plans."""
+        return write_plan_sheet, (self._site, self._surfaces, self.order())
+
+    def refresh(self) -> None:
+        """Enable what can be done."""
+        super().refresh()
+        self.go.setEnabled(self.go.isEnabled() and bool(self._surfaces))

@@ -1,0 +1,165 @@
+"""Drawings to scale: paper, scale, title block and files; a dialog for each kind of drawing adds its own fields."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from collections.abc import Callable, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QDate, Qt, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QDoubleSpinBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLineEdit,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from geofit.data.errors import GeofitError
+from geofit.data.site import Site
+from geofit.gui.dialogs.task_dialog import TaskDialog
+from geofit.gui.translate import failure
+from geofit.project.section_sheet import SheetForm
+from geofit.report.paper import PAPERS, SCALES, SheetTitle
+
+__all__ = ["SheetDialog", "metres"]
+
+#: A field with its label.
+Row = tuple[str, QWidget]
+
+
+class SheetDialog(TaskDialog):
+    """Asks for a drawing and writes it in a process of its own; ``files`` holds what was written last."""
+
+    #: What is said while the drawing is made.
+    drawing = ""
+
+    def __init__(self, site: Site, title: str, target: Path, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._site = site
+        self.files: tuple[Path, ...] = ()
+        self.paper, self.scale = QComboBox(), QComboBox()
+        self.paper.addItems(list(PAPERS))
+        self.paper.setCurrentText("A3")
+        self.scale.addItem(self.tr("The largest that fits"), None)
+        for scale in SCALES:
+            self.scale.addItem(f"1:{scale}", scale)
+        self.title_line, self.project = QLineEdit(title), QLineEdit(site.name)
+        self.number, self.author = QLineEdit(), QLineEdit()
+        self.date = QLineEdit(QDate.currentDate().toString(Qt.DateFormat.ISODate))
+        self.forms: dict[SheetForm, QCheckBox] = {
+            "pdf": QCheckBox("PDF"), "svg": QCheckBox("SVG"), "dxf": QCheckBox("DXF")
+        }  # fmt: skip
+        self.forms["pdf"].setChecked(True)
+        self.target = QLineEdit(str(target))
+        self.go.setText(self.tr("&Write"))
+        self.open_folder = QPushButton(self.tr("Open &folder"))
+
+    @abstractmethod
+    def work(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
+        """Return what writes the drawing, with its arguments; GeofitError where a number does not fit."""
+
+    def title_block(self) -> SheetTitle:
+        """Return what the title block says."""
+        lines = (self.title_line, self.project, self.number, self.author, self.date)
+        return SheetTitle(*(line.text().strip() for line in lines))
+
+    def path(self) -> Path:
+        """Return the files but for their endings."""
+        path = Path(self.target.text().strip()).expanduser()
+        return path.with_suffix("") if path.suffix.lower() in (".pdf", ".svg", ".dxf") else path
+
+    def wanted(self) -> tuple[SheetForm, ...]:
+        """Return which files are wanted."""
+        return tuple(form for form, box in self.forms.items() if box.isChecked())
+
+    def refresh(self) -> None:
+        """Enable what can be done."""
+        super().refresh()
+        idle = not self.running
+        self.go.setEnabled(idle and bool(self.wanted()) and bool(self.target.text().strip()))
+        self.open_folder.setVisible(bool(self.files) and idle)
+
+    def lay_out(self, first: Sequence[Row], after_scale: Sequence[Row] = ()) -> None:
+        """Put the fields of the drawing before those of the paper, and some after its scale."""
+        browse = QPushButton(self.tr("&Browse…"))
+        browse.clicked.connect(self._browse)
+        place, forms = QHBoxLayout(), QHBoxLayout()
+        place.addWidget(self.target, 1)
+        place.addWidget(browse)
+        for box in self.forms.values():
+            forms.addWidget(box)
+        forms.addStretch(1)
+        form = QFormLayout()
+        for words, field in (
+            *first,
+            (self.tr("&Paper"), self.paper),
+            (self.tr("S&cale"), self.scale),
+            *after_scale,
+            (self.tr("T&itle"), self.title_line),
+            (self.tr("P&roject"), self.project),
+            (self.tr("Drawing &number"), self.number),
+            (self.tr("Prepared &by"), self.author),
+            (self.tr("&Date"), self.date),
+        ):
+            form.addRow(words, field)
+        form.addRow(self.tr("Files", "SectionSheetDialog"), forms)
+        form.addRow(self.tr("To"), place)
+        self.target.setMinimumWidth(360)
+        self.fields = (
+            *(field for _, field in (*first, *after_scale)), self.paper, self.scale, self.title_line, self.project,
+            self.number, self.author, self.date, *self.forms.values(), self.target, browse,
+        )  # fmt: skip
+        layout = QVBoxLayout(self)
+        layout.addLayout(form)
+        layout.addLayout(self.message_row)
+        layout.addStretch(1)
+        layout.addLayout(self.foot(self.open_folder))
+        for box in self.forms.values():
+            box.toggled.connect(self.refresh)
+        self.target.textChanged.connect(self.refresh)
+        self.go.clicked.connect(self._write)
+        self.open_folder.clicked.connect(self._open_folder)
+
+    def _browse(self) -> None:
+        path, _ = QFileDialog.getSaveFileName(self, self.windowTitle(), self.target.text())
+        if path:
+            self.target.setText(path)
+
+    def _open_folder(self) -> None:
+        for file in self.files[:1]:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(file.parent)))
+
+    def _write(self) -> None:
+        try:
+            function, arguments = self.work()
+        except GeofitError as error:
+            self.say(failure(error), "failed")
+            return
+        self.files = ()
+        self.say(self.drawing)
+        stopped = partial(self.say, self.tr("Stopped. A file that was not finished is not there."))
+        self.begin(function, *arguments, on_done=self._written, on_stopped=stopped)
+
+    def _written(self, made: tuple[int, tuple[Path, ...]]) -> None:
+        scale, self.files = made
+        names = ", ".join(str(file.resolve()) for file in self.files)
+        self.say(self.tr("Wrote {names} at 1:{scale}.").format(names=names, scale=scale), "passed")
+
+
+def metres(low: float, high: float, value: float) -> QDoubleSpinBox:
+    """Return a field for metres."""
+    spin = QDoubleSpinBox()
+    spin.setRange(low, high)
+    spin.setDecimals(1)
+    spin.setSuffix(" m")
+    spin.setValue(value)
+    return spin

@@ -1,0 +1,195 @@
+"""A site that grows: files that were added or have changed, and what moved when the horizons were fitted again."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Sequence
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from geofit.data.messages import message, plural_message
+from geofit.data.site import Site
+from geofit.gui.activity import Activity, Work
+from geofit.gui.fitting import Fitting
+from geofit.gui.offer_bar import OfferBar
+from geofit.gui.session import Session
+from geofit.gui.translate import translated
+from geofit.gui.workspace import Workspace
+from geofit.project.adding import Added, add_files
+from geofit.project.comparing import made_comparison
+from geofit.project.data_change import DataChange, arrivals, change_of_data, changed_files
+from geofit.project.provenance import Provenance
+from geofit.project.saving import read_again
+from geofit.site.states import Comparison
+
+__all__ = ["Living"]
+
+_LOG = logging.getLogger(__name__)
+#: Time of the last change and size of a file: unless these differ its hash need not be looked at.
+_Stamp = tuple[int, int] | None
+
+
+class Living(QObject):
+    """Adds files, offers to reload those that have changed, and compares the fits before and after.
+
+    ``reported(text)`` says in the status bar what was done.
+    """
+
+    reported = Signal(str)
+
+    def __init__(
+        self, session: Session, activity: Activity, fitting: Fitting, panels: Workspace, bar: OfferBar, window: QWidget
+    ) -> None:
+        super().__init__(window)
+        self._session, self._activity, self._fitting = session, activity, fitting
+        self._panels, self._bar, self._window = panels, bar, window
+        self._document = session.document
+        self._stamps: dict[str, _Stamp] = {}
+        self._last: DataChange | None = None
+        bar.accepted.connect(self.reload)
+        panels.changes.compare_requested.connect(self._compare)
+        self._document.site_changed.connect(self._on_site)
+        self._document.result_changed.connect(self._compare)
+        self._on_site()
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self._document.site_changed.disconnect(self._on_site)
+        self._document.result_changed.disconnect(self._compare)
+
+    def ask_files(self) -> None:
+        """Ask for files, and add them to the site."""
+        folder = self._document.folder
+        names, _ = QFileDialog.getOpenFileNames(
+            self._window, self.tr("Files to add to the site"), "" if folder is None else str(folder)
+        )
+        if names:
+            self.add([Path(name) for name in names])
+
+    def add(self, files: Sequence[Path]) -> None:
+        """Add files to the site."""
+        document = self._document
+        if document.site_file is not None:
+            work = (list(files), document.site_file, document.read, document.state.added)
+            self._activity.do(self.tr("Add data"), add_files, *work, on_done=self._added)
+
+    def reload(self) -> None:
+        """Read the files of the site again."""
+        document = self._document
+        self._bar.hide()
+        if document.site_file is not None:
+            work = (document.site_file, document.state.added)
+            self._activity.do(self.tr("Read the site again"), read_again, *work, on_done=self._read_again)
+
+    def look(self) -> None:
+        """Look whether files of the site have changed on the disk, and offer to reload them."""
+        document = self._document
+        if document.site_file is None or self._activity.busy:
+            return
+        folder, stamps = document.site_file.resolve().parent, self._stamped()
+        if stamps == self._stamps:
+            return
+        self._stamps = stamps
+        found = changed_files(document.read, folder)
+        changed = [name for name, what in found.items() if what == "changed"]
+        if changed:
+            offer = plural_message(
+                "window.files-changed",
+                "{file} has changed since it was read.",
+                "{count} files have changed since they were read, the first {file}.",
+                count=len(changed),
+                file=changed[0],
+            )
+            self._bar.offer(translated(offer), self.tr("Reload"))
+        else:
+            self._bar.hide()
+        for name, what in found.items():
+            if what == "missing":
+                _LOG.warning(message("log.file-missing", "{file} is not there any more.", file=name))
+
+    def _stamped(self) -> dict[str, _Stamp]:
+        document = self._document
+        if document.site_file is None:
+            return {}
+        folder = document.site_file.resolve().parent
+        return {name: _stamp(folder / name) for name in document.read.inputs}
+
+    def _on_site(self) -> None:
+        self._bar.hide()
+        self._stamps = self._stamped()
+        if self._last is not None and self._document.state.data != self._last.command.data:
+            self._last = None
+
+    def _added(self, added: Added) -> None:
+        for issue in added.issues:
+            _LOG.warning(issue.reason)
+        self._take(added.site, added.tables)
+
+    def _read_again(self, site: Site) -> None:
+        self._take(site, self._document.state.added)
+
+    def _take(self, site: Site, tables: tuple[str, ...]) -> None:
+        document = self._document
+        change = change_of_data(document.state, document.read, site, tables)
+        if change.command.data == document.state.data:
+            self.reported.emit(self.tr("The data are the same: nothing has changed."))
+            return
+        document.know(site)
+        self._last = change
+        self._fitting.push(change.command)
+        for text in (*(one.text for one in change.arrivals if one.any), *change.lost):
+            _LOG.info(text)
+        for text in change.lost:
+            _LOG.warning(text)
+        carried = plural_message(
+            "window.exclusions-carried", "{count} exclusion kept.", "{count} exclusions kept.", count=change.carried
+        )
+        words = [translated(one.text) for one in change.arrivals if one.any]
+        if change.carried:
+            words.append(translated(carried))
+        self.reported.emit(" · ".join(words) or self.tr("The files have changed, their points have not."))
+        self._panels.reveal("changes")
+
+    def show(self) -> None:
+        """Show how the chosen horizon moved, or what there is to say before that is known."""
+        document, panel, name = self._document, self._panels.changes, self._document.selection.horizon
+        earlier = None if name is None else document.state.earlier.get(name)
+        before = None if earlier is None else document.data(earlier.data)
+        if name is None or before is None or earlier is None:
+            panel.show_nothing(lost=() if self._last is None else self._last.lost)
+            return
+        whole = document.whole(name)
+        came = arrivals(whole, before.horizons[whole], document.read.horizons[whole])
+        lost = () if self._last is None else self._last.lost
+        panel.show_state(name, came, lost, document.comparison(name), waiting=document.compared_pair(name) is None)
+
+    def _compare(self, name: str) -> None:
+        if self._document.compared_pair(name) is not None and self._document.comparison(name) is None:
+            title = self.tr("Compare {name} with its earlier state").format(name=name)
+            self._activity.prepare(title, lambda: self._work(name), on_done=self._compared, in_process=True)
+
+    def _work(self, name: str) -> Work:
+        document = self._document
+        pair, earlier, after = document.compared_pair(name), document.earlier(name), document.surface(name)
+        if pair is None or earlier is None or after is None or document.comparison(name) is not None:
+            return None
+        _, given, surface = earlier
+        found = document.site.horizons[name]
+        return made_comparison, (pair, given, surface, after.with_(model=None), found)
+
+    def _compared(self, found: tuple[tuple[Provenance, Provenance], Comparison]) -> None:
+        pair, comparison = found
+        self._document.put_comparison(pair, comparison)
+        for text in (comparison.change.text, comparison.test.text):
+            _LOG.info(text)
+        self.reported.emit(translated(comparison.test.text))
+
+
+def _stamp(file: Path) -> _Stamp:
+    try:
+        found = file.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_size
