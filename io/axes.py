@@ -15,6 +15,11 @@ __all__ = ["Region", "check_axes", "place_in", "region_of"]
 
 Floats = NDArray[np.float64]
 
+#: Bins along the longer side of all places; fewer than 20, so that rounding does no harm.
+_BINS = 19
+#: Places that are counted together.
+_CHUNK = 1 << 16
+
 #: West, east, south, north of the place where points are expected, metres.
 Region = tuple[float, float, float, float]
 
@@ -100,13 +105,30 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
 
 
 def _crowd(x: Floats, y: Floats) -> Region | None:
-    if x.size < 4:
+    if x.size < 4 or _spread_out(x, y):
         return None
     cx, cy = float(np.median(x)), float(np.median(y))
     away = x - cx
     np.hypot(away, y - cy, out=away)
     reach = 20.0 * float(np.median(away, overwrite_input=True)) + 1.0
     return (cx - reach, cx + reach, cy - reach, cy + reach)
+
+
+def _spread_out(x: Floats, y: Floats) -> bool:
+    """Return whether places are so evenly spread that none can be far off, whatever their middle.
+
+    Where no band of width 2 w across the longer side L = 20 w holds half of them, the median distance from any place is
+    above w, and nobody is 20 of these from there. Bands are counted on bins of width w, of which each lies in three.
+    """
+    longer = max(x, y, key=np.ptp)
+    low, length = float(longer.min()), float(np.ptp(longer))
+    if not 0 < length < np.inf:
+        return False
+    bins = np.zeros(_BINS + 1, np.intp)
+    for first in range(0, x.size, _CHUNK):
+        part = (longer[first : first + _CHUNK] - low) * (_BINS / length)
+        bins += np.bincount(part.astype(np.intp), minlength=_BINS + 1)
+    return bool(2 * np.convolve(bins, np.ones(3, np.intp)).max() < x.size)
 
 
 def _inside(x: Floats, y: Floats, box: Region) -> NDArray[np.bool_]:

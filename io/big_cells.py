@@ -1,8 +1,4 @@
-"""Many cells of a text at once: plain numbers and repeated words, from the bytes where they are written.
-
-What is not a plain number (exponents, signs of other scripts, words) is left to the reader of single cells, so that
-both read every cell alike.
-"""
+"""Where the cells of many lines are, as bytes of the text."""
 
 from __future__ import annotations
 
@@ -13,8 +9,6 @@ from numpy.typing import NDArray
 
 __all__ = [
     "CellPlaces",
-    "distinct",
-    "plain_numbers",
     "split_at",
     "split_at_blanks",
     "strange_lines",
@@ -24,16 +18,9 @@ __all__ = [
 
 Bytes = NDArray[np.uint8]
 Ints = NDArray[np.int64]
-Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-_NEWLINE, _BLANK, _TAB, _QUOTE, _ZERO = 10, 32, 9, 34, 48
-#: Digits that fit the integers of a double; powers of ten that are doubles themselves. A quotient of both is rounded
-#: once, as the nearest double to what is written (W. D. Clinger, PLDI 1990, 92-101).
-_DIGITS, _EXACT = 18, 2**53
-_POWERS = 10.0 ** np.arange(23)
-#: Longest cell that is looked at in columns.
-_LONGEST = 24
+_NEWLINE, _BLANK, _TAB, _QUOTE = 10, 32, 9, 34
 #: Blanks of Python's str.split that are neither a space, a tab, nor a line's end, and every byte beyond ASCII.
 _STRANGE = np.zeros(256, bool)
 _STRANGE[[11, 12, 13, 28, 29, 30, 31]] = True
@@ -100,51 +87,3 @@ def unquoted(text: Bytes, start: Ints, end: Ints) -> tuple[Ints, Ints]:
         (end - start >= 2) & (text.take(start, mode="clip") == _QUOTE) & (text.take(end - 1, mode="clip") == _QUOTE)
     )
     return start + quoted, end - quoted
-
-
-def plain_numbers(text: Bytes, start: Ints, end: Ints, mark: int) -> tuple[Floats, Bools]:
-    """Return the numbers of cells written as digits with at most one decimal mark, and which cells are such."""
-    sign = text.take(start, mode="clip")
-    negative = sign == ord("-")
-    start = start + (negative | (sign == ord("+")))
-    length = end - start
-    good = (length > 0) & (length <= _LONGEST)
-    longest = int(length[good].max(initial=0))
-    shortest = int(length.min(initial=longest))
-    mantissa, fraction, marks = (np.zeros(len(start), np.int64) for _ in range(3))
-    for k in range(longest):
-        byte = text.take(start + k, mode="clip")
-        value = byte - np.uint8(_ZERO)
-        digit, at_mark = value < 10, byte == mark
-        if k >= shortest:
-            inside = length > k
-            digit, at_mark = digit & inside, at_mark & inside
-            good &= digit | at_mark | ~inside
-        else:
-            good &= digit | at_mark
-        np.multiply(mantissa, 10, out=mantissa, where=digit)
-        np.add(mantissa, value, out=mantissa, where=digit)
-        fraction += digit & (marks > 0)
-        marks += at_mark
-    digits = length - marks
-    good &= (marks <= 1) & (digits >= 1) & (digits <= _DIGITS) & (mantissa <= _EXACT)
-    numbers = mantissa / _POWERS[np.minimum(fraction, 22)]
-    return np.where(negative, -numbers, numbers), good
-
-
-def distinct(text: Bytes, start: Ints, end: Ints) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
-    """Return the first cell of each different one, in order, and for each cell the place of its like among these."""
-    length = np.minimum(end - start, 255)
-    width = max(int(length.max(initial=1)), 1)
-    table = text.take(start[:, None] + np.arange(width), mode="clip")
-    table[np.arange(width) >= length[:, None]] = 0
-    # The length tells cells that end in zero bytes apart.
-    words = np.concatenate([table, length[:, None].astype(np.uint8)], axis=1)
-    changed = np.flatnonzero(np.concatenate([[True], (words[1:] != words[:-1]).any(axis=1)]))
-    keys = np.ascontiguousarray(words[changed]).view(np.dtype((np.void, width + 1))).ravel()
-    _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    place = np.empty_like(order)
-    place[order] = np.arange(len(order))
-    runs = np.diff(np.append(changed, len(start)))
-    return changed[first[order]], np.repeat(place[inverse], runs)

@@ -10,7 +10,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.io.sniff import decode, find_decimal
+from geofit.io.sniff import decode
 
 __all__ = ["BIG", "BigText", "big_text"]
 
@@ -39,9 +39,11 @@ class BigText(Sequence[str]):
         """First byte of each line, and of what would follow the last one."""
         data = np.frombuffer(self.data, np.uint8)
         kind = np.uint32 if len(data) < 2**32 - 1 else np.int64
-        starts: NDArray[np.integer[Any]] = np.zeros(self.data.count(b"\n") + 2, kind)
+        pieces = range(0, len(data), PIECE)
+        count = sum(int(np.count_nonzero(data[k : k + PIECE] == 10)) for k in pieces)
+        starts: NDArray[np.integer[Any]] = np.zeros(count + 2, kind)
         at = 1
-        for k in range(0, len(data), PIECE):
+        for k in pieces:
             ends = np.flatnonzero(data[k : k + PIECE] == 10)
             starts[at : at + len(ends)] = ends + (k + 1)
             at += len(ends)
@@ -69,10 +71,16 @@ class BigText(Sequence[str]):
         if 0 <= index < len(self._head):
             return self._head[index]
         index += len(self) if index < 0 else 0
-        if not 0 <= index < len(self):
+        if index < 0:
             raise IndexError(index)
-        start, end = self.starts[index : index + 2].tolist()
+        start, end = self.starts.item(index), self.starts.item(index + 1)
         return self.data[start : end - 1].decode("utf-8", _ERRORS)
+
+    def some(self, indices: NDArray[np.int64]) -> list[str]:
+        """Return some lines, in order; quick where they follow each other."""
+        if len(indices) and indices[-1] - indices[0] + 1 == len(indices):
+            return self[int(indices[0]) : int(indices[-1]) + 1]
+        return [self[index] for index in indices.tolist()]
 
     def pieces(self) -> Iterator[tuple[int, int]]:
         """Yield runs of whole lines, first and one beyond the last, of about a piece each."""
@@ -94,7 +102,10 @@ class BigText(Sequence[str]):
         """Return the decimal mark that most fractions of the text have (:func:`geofit.io.sniff.find_decimal`)."""
         if sep == "," or b"," not in self.data:
             return "."
-        return find_decimal(self.data.decode("utf-8", _ERRORS), sep)
+        from geofit.io.cell_loops import count_fractions
+
+        commas, points = count_fractions(np.frombuffer(self.data, np.uint8))
+        return "," if commas > points else "."
 
 
 def big_text(data: bytes, name: str, encoding: str | None) -> tuple[BigText, str]:
@@ -111,9 +122,11 @@ def big_text(data: bytes, name: str, encoding: str | None) -> tuple[BigText, str
         text, codec = decode(data, name, encoding)
         data = text.encode("utf-8", _ERRORS)
         del text
-    for old, new in ((b"\r\n", b"\n"), (b"\r", b"\n"), (b"\0", b"")):
-        if old in data:
-            data = data.replace(old, new)
+    # One byte is sought ten times as fast as two.
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+    if b"\0" in data:
+        data = data.replace(b"\0", b"")
     return BigText(data), codec
 
 
@@ -121,6 +134,8 @@ def _plain(data: bytes) -> bool:
     """Whether the bytes are UTF-8 without a mark of byte order, told without a second copy of them."""
     if data.startswith((codecs.BOM_UTF8, codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE, b"PK\x03\x04")) or b"\0" in data:
         return False
+    if data.isascii():
+        return True
     decoder = codecs.getincrementaldecoder("utf-8")()
     try:
         for start in range(0, len(data), PIECE):

@@ -260,10 +260,13 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
     """Warn of an elevation that is one number wherever several horizons share a place."""
     if not {"x", "y", "z", "horizon"} <= set(columns):
         return
-    x, y, z, horizon = (table.columns[columns[role]] for role in ("x", "y", "z", "horizon"))
+    count = min(len(table), 20 * SAMPLE)
+    x, y, z, horizon = (table.columns[columns[role]][:count] for role in ("x", "y", "z", "horizon"))
+    if len(set(horizon)) < 2:
+        return
     first: dict[tuple[str, str], int] = {}
     pairs = equal = 0
-    for i in range(min(len(table), 20 * SAMPLE)):
+    for i in range(count):
         k = first.setdefault((x[i], y[i]), i)
         if k != i and horizon[k] != horizon[i]:
             pairs, equal = pairs + 1, equal + (z[i] == z[k])

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.data.labels import Labels
 from geofit.data.legible import legible
@@ -22,6 +23,8 @@ from geofit.io.mapping import ColumnMapping
 from geofit.io.places import list_places
 from geofit.io.rows import read_rows
 from geofit.io.source import Source
+
+Floats = NDArray[np.float64]
 
 __all__ = ["Picks", "load_picks", "read_points"]
 
@@ -120,9 +123,7 @@ def load_picks(
         required = {"horizon": optional.pop("horizon"), **required}
     rows = read_rows(source, Schema("picks", required, optional), journal)
     tell(progress, "check rows", 0.4)
-    xyz = np.empty((len(rows), 3))
-    xyz[:, 0], xyz[:, 1] = rows.places()
-    xyz[:, 2] = rows.numbers("z", no_data=True)
+    xyz = _joined(*rows.places(), rows.numbers("z", no_data=True))
     if source.measure == "depth":
         np.negative(xyz[:, 2], out=xyz[:, 2])
         journal.add(
@@ -144,12 +145,24 @@ def load_picks(
     kinds = rows.labels("kind", required=False)
     rows.close()
     rows.require_any()
+    hole, section = (rows.labels(role, required=False) for role in ("hole", "section"))
+    rows.release()
     return horizons.split(
         rows,
         names,
         xyz,
         kind=kinds.renamed([cell.casefold() or kind for cell in kinds.table]),
-        hole=rows.labels("hole", required=False),
-        section=rows.labels("section", required=False),
+        hole=hole,
+        section=section,
         accuracy=accuracy,
     )
+
+
+def _joined(*columns: Floats) -> Floats:
+    """Return (n, 3) places; columns that are those of one array, in its order, are not copied."""
+    whole = columns[0].base
+    if isinstance(whole, np.ndarray) and whole.shape == (len(columns[0]), len(columns)):
+        own = [column.ctypes.data for column in whole.T]
+        if own == [column.ctypes.data for column in columns] and all(column.base is whole for column in columns):
+            return whole
+    return np.column_stack(columns)

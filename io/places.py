@@ -14,6 +14,9 @@ __all__ = ["list_places"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+#: Points that are worked on together: they stay in the processor's cache.
+CHUNK = 1 << 15
+
 
 def list_places(horizon: str, points: PointSet, journal: Journal, nearness: float = 0.01) -> None:
     """List points that lie within ``nearness`` (m) of another in plan: repeated, or at two elevations.
@@ -84,14 +87,20 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
 def _repeated(xyz: Floats, nearness: float) -> tuple[Ints, Ints]:
     """Return points by their cells of a grid, those of one cell in their order, and where one follows its like."""
     keys = np.zeros(len(xyz), np.uint64)
-    for column in xyz[:, :2].T:
-        # Equal places have equal keys; the few others that have them too are told apart below.
-        keys *= np.uint64(0x9E3779B97F4A7C15)
-        keys ^= np.floor(column / nearness + 0.5).view(np.uint64) * np.uint64(0xC2B2AE3D27D4EB4F)
-        keys ^= keys >> np.uint64(29)
+    for first in range(0, len(xyz), CHUNK):
+        part = keys[first : first + CHUNK]
+        for column in xyz[first : first + CHUNK, :2].T:
+            # Equal places have equal keys; the few others that have them too are told apart below.
+            part *= np.uint64(0x9E3779B97F4A7C15)
+            part ^= np.floor(column / nearness + 0.5).view(np.uint64) * np.uint64(0xC2B2AE3D27D4EB4F)
+            part ^= part >> np.uint64(29)
     ordered = np.sort(keys)
-    met = ordered[1:][ordered[1:] == ordered[:-1]]
-    some = np.flatnonzero(np.isin(keys, met)) if len(met) else np.empty(0, np.int64)
+    met = np.unique(ordered[1:][ordered[1:] == ordered[:-1]])
+    del ordered
+    some = np.empty(0, np.int64)
+    if len(met):
+        parts = (keys[first : first + CHUNK] for first in range(0, len(keys), CHUNK))
+        some = np.flatnonzero(np.concatenate([np.isin(part, met) for part in parts]))
     cell = np.floor(xyz[some, :2] / nearness + 0.5)
     order = np.lexsort((some, cell[:, 1], cell[:, 0]))
     same = (np.diff(cell[order], axis=0) == 0).all(axis=1)

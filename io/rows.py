@@ -182,6 +182,10 @@ class Rows:
         """Count the rows: those of the file that are not used are listed."""
         self.journal.count(self.file, self.table.read, self.table.read - int(self.ok.sum()))
 
+    def release(self) -> None:
+        """Let go of the cells: the text of a large file need not stay while its points are made."""
+        self.table = replace(self.table, columns=())
+
     def require_any(self) -> None:
         """Refuse the table if none of its rows can be used, with the first row's reason.
 

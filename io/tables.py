@@ -128,7 +128,7 @@ def read_table(source: Source, journal: Journal) -> Table:
         header=header,
         units=units,
         columns=columns,
-        lines=np.array(numbers, dtype=np.int64),
+        lines=np.asarray(numbers, dtype=np.int64),
         read=len(numbers) + malformed,
         named=named,
         encoding=encoding,

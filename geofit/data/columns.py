@@ -63,8 +63,8 @@ def finite_places(given: ArrayLike) -> NDArray[np.float64]:
         If one is; the text names the first.
     """
     xyz = places("xyz", given)
-    bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
-    if bad.size:
+    if not np.isfinite(xyz).all():
+        bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         raise PointsError(
             plural_message(
                 "points.points-not-finite-first",

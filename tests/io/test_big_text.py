@@ -10,7 +10,8 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from geofit.data.errors import InputError
-from geofit.io import big_arrow, big_cells, big_text, tables
+from geofit.io import big_text, tables
+from geofit.io.cell_loops import read_cells
 from geofit.io.journal import Journal
 from geofit.io.picks import read_points
 from geofit.io.source import Source
@@ -20,7 +21,36 @@ NUMBERS = st.one_of(
     st.floats(-1e7, 1e7).map(repr),
     st.decimals(-1000000, 1000000, places=3, allow_nan=False).map(str),
     st.integers(-(10**20), 10**20).map(str),
-    st.sampled_from(["", " ", " 1.5", "2 ", "+3", "-0", "-0.0", ".5", "5.", "1e3", "nan", "inf", "1_000", "−4", "1,5"]),
+    st.floats(-1e7, 1e7).map("{:.18e}".format),
+    st.tuples(st.decimals(0, 10**19, places=19), st.integers(-30, 30)).map("{0[0]}E{0[1]:+d}".format),
+    st.tuples(st.integers(0, 10**18), st.integers(1, 10**9)).map("0.00{0[0]}{0[1]}".format),
+    st.sampled_from(
+        [
+            "",
+            " ",
+            " 1.5",
+            "2 ",
+            "+3",
+            "1e",
+            "1e+",
+            "1e5",
+            "1.e2",
+            "5",
+            "0e99",
+            "1e400",
+            "1,e5",
+            "-0",
+            "-0.0",
+            ".5",
+            "5.",
+            "1e3",
+            "nan",
+            "inf",
+            "1_000",
+            "−4",
+            "1,5",
+        ]
+    ),
     st.sampled_from(
         ["9007199254740993", "0.1234567890123456789", "１２", "1.2.3", "--1", "+-2", ".", "-", "1\x0b", "é"]
     ),
@@ -76,27 +106,25 @@ def test_every_cell_number_and_issue_is_that_of_the_small_reader(monkeypatch, tm
 
 
 @pytest.mark.parametrize("decimal", [".", ","])
-def test_pyarrow_reads_plain_files_alike(tmp_path, monkeypatch, decimal):
-    pytest.importorskip("pyarrow", reason="pyarrow is not installed (extra scale)")
+@pytest.mark.parametrize(("sep", "quote"), [(";", ""), (";", '"'), (" ", "")])
+def test_columns_read_together_are_those_read_alone(tmp_path, monkeypatch, decimal, sep, quote):
     rng = np.random.default_rng(7)
-    rows = [
-        ";".join([*map(repr, rng.normal(0, 10.0 ** rng.integers(-30, 30), 3).tolist()), f"H{i % 5}"])
-        for i in range(500)
-    ]
-    text = "\n".join(["x;y;z;name", *rows]).replace(".", decimal)
+    rows = [[*map(repr, rng.normal(0, 10.0 ** rng.integers(-30, 30), 3).tolist()), f"H{i % 5}"] for i in range(500)]
+    rows += [row.split(";") for row in ("nan;1;2;H1", "+1;2; ;H0", "1_0;2;3;H0", ";2 ;3;H1", "1e999;0;-0;H", "9;8;7;")]
+    if sep == " ":
+        rows = [row for row in rows if all(cell.strip() for cell in row)]
+    lines = [sep.join(quote + cell.replace(".", decimal) + quote for cell in row) for row in rows]
     path = tmp_path / "t.csv"
-    for odd in ("", "nan;1;2;H1", "+1;2;3;H0", "1_0;2;3;H0", "inf;2;3;H1", "1e999;0;-0;H"):
-        path.write_text(f"{text}\n{odd}", encoding="utf-8")
-        monkeypatch.setattr(big_arrow, "ARROW_FROM", 0)
-        monkeypatch.setattr(tables, "BIG", 0)
-        table = read_table(Source(path=path, sep=";", decimal=decimal), Journal())
-        table.columns[0].prepare([0, 1, 2], [3], decimal)
-        for column in table.columns[:3]:
-            values, bad = parse_numbers(column, decimal)
-            expected, wrong = parse_numbers(tuple(column), decimal)
-            assert values.tobytes() == expected.tobytes()
-            assert bad.tolist() == wrong.tolist()
-        assert list(table.columns[3]) == [row.rsplit(";", 1)[1] for row in [*rows, odd] if row]
+    path.write_text("\n".join([sep.join(("x", "y", "z", "name")), *lines]), encoding="utf-8")
+    monkeypatch.setattr(tables, "BIG", 0)
+    table = read_table(Source(path=path, sep=sep, decimal=decimal), Journal())
+    table.columns[0].prepare([0, 2], [3], decimal)
+    assert list(table.columns[3]) == [row[3].strip() for row in rows]
+    for column in (table.columns[2], table.columns[0], table.columns[1]):
+        values, bad = parse_numbers(column, decimal)
+        expected, wrong = parse_numbers(tuple(column), decimal)
+        assert values.tobytes() == expected.tobytes()
+        assert bad.tolist() == wrong.tolist()
 
 
 @pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "gb18030", "cp1252"])
@@ -112,14 +140,15 @@ def test_encodings_and_decimal_commas(monkeypatch, tmp_path, encoding, text):
 @given(st.lists(st.floats(allow_nan=False, allow_infinity=False).map(repr) | NUMBERS, min_size=1, max_size=60))
 def test_plain_numbers_are_those_of_python(cells):
     text = np.frombuffer("\n".join(cells).encode() + b"\n", np.uint8)
-    end = np.flatnonzero(text == 10)
-    start = np.concatenate([[0], end[:-1] + 1])
-    values, good = big_cells.plain_numbers(text, start, end, ord("."))
-    for value, plain, cell in zip(values.tolist(), good.tolist(), cells, strict=True):
-        if plain:
-            assert np.float64(value).tobytes() == np.float64(float(cell)).tobytes()
+    ends = np.flatnonzero(text == 10)
+    values, start, end = np.empty((1, len(cells))), *(np.empty((1, len(cells)), np.int64) for _ in range(2))
+    begins = np.concatenate([[0], ends[:-1] + 1])
+    read_cells(text, begins, np.array([0]), np.array([True]), ord(";"), ord("."), values, start, end)
+    for value, low, cell in zip(values[0].tolist(), start[0].tolist(), cells, strict=True):
+        if low < 0:
+            assert np.float64(value).tobytes() == np.float64(float(cell.strip('" '))).tobytes()
         if re.fullmatch(r"[+-]?\d{1,9}(\.\d{0,6})?", cell, re.ASCII):
-            assert plain
+            assert low < 0
 
 
 def test_points_of_a_large_file_are_those_of_a_small_one(monkeypatch, tmp_path):

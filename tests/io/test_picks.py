@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from geofit.data.errors import InputError
-from geofit.io import read_boundary, read_ground, read_points
+from geofit.io import axes, read_boundary, read_ground, read_points
 
 
 def test_one_horizon_is_named_as_its_file(write):
@@ -119,3 +119,19 @@ def test_longitude_and_latitude_are_projected_to_the_grid_that_is_named(tmp_path
     points = read_points(tmp_path / "p.csv", **columns, crs="EPSG:32650").horizons["p"]
     known = pyproj.Transformer.from_crs(4326, 32650, always_xy=True).transform(117.10, 28.20)
     np.testing.assert_allclose(points.xyz[0], [*known, 100.0], atol=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_places_spread_out_have_none_far_from_their_middle(seed):
+    """The quick answer of check_axes is that of the medians, whatever the places look like."""
+    rng = np.random.default_rng(seed)
+    x, y = rng.normal(0, 10.0 ** rng.uniform(-2, 4), 400) ** rng.integers(1, 4), rng.uniform(0, 100, 400)
+    x[: rng.integers(0, 300)] *= 10.0 ** rng.uniform(-3, 3)
+    if axes._spread_out(x, y):
+        away = np.hypot(x - np.median(x), y - np.median(y))
+        reach = 20 * np.median(away) + 1
+        assert np.abs(x - np.median(x)).max() <= reach
+        assert np.abs(y - np.median(y)).max() <= reach
+    crowded = np.where(np.arange(400) < 300, x / np.abs(x).max(), 1e6 * x)
+    assert axes._spread_out(rng.uniform(0, 1, 400), y)
+    assert not axes._spread_out(crowded, np.zeros(400))
