@@ -150,9 +150,7 @@ class Delivering(QObject):
         excluded, edits = (None, ()) if provenance is None else interventions_of(self._document.site, provenance)
         exported, file = self._exported.get(name, (None, None))
         if file is None or exported is not surface:
-            return HorizonResult(
-                surface, site, prediction=prediction, excluded=excluded, edits=edits, change=change
-            )
+            return HorizonResult(surface, site, prediction=prediction, excluded=excluded, edits=edits, change=change)
         return HorizonResult(
             surface,
             site,

@@ -10,7 +10,8 @@ Coordinates are metres from the low corner of the sample, along the axes of the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+import itertools
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import ClassVar, Literal
 
@@ -21,6 +22,7 @@ from geofit.bodies.implicit_body import ImplicitBody
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.implicit.field import Box, Field
+from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 from geofit.pores.balls import balls_of_distance, maximal_balls
@@ -37,6 +39,8 @@ Construction = Literal["contact", "blend"]
 
 #: Support of a contact, in voxels: two layers of contacts on either side.
 _SUPPORT = 2.5
+#: The volume is measured in at most so many boxes of so many voxels along each axis, and corrected so often.
+BOXES, BOX, ROUNDS = 16, 32, 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -297,7 +301,33 @@ def _contact_field(volume: RockVolume) -> ContactField:
             low = shift
         else:
             high = shift
-    return ContactField(raw.points, raw.normals, volume.pore, volume.edges, volume.unit, 0.5 * (low + high))
+    body = replace(raw, shift=0.5 * (low + high))
+    for _ in range(ROUNDS):
+        body = _of_equal_volume(body, volume)
+    return body
+
+
+def _of_equal_volume(body: ContactField, volume: RockVolume) -> ContactField:
+    """Return the body grown or shrunk so that its triangles have the volume of the voxels, in boxes of the sample.
+
+    Triangles see nothing thinner than a voxel: where spheres touch, they lose rock.
+    """
+    boxes = list(itertools.product(*(range(0, n, BOX) for n in volume.shape)))
+    missing = area = 0.0
+    if len(boxes) > BOXES:
+        chosen = np.random.default_rng(len(boxes)).choice(len(boxes), BOXES, replace=False)
+        boxes = [boxes[k] for k in chosen]
+    for first in boxes:
+        last = np.minimum(np.add(first, BOX), volume.shape)
+        voxels = volume.pore[tuple(slice(a, b) for a, b in zip(first, last, strict=True))]
+        counts = np.rint((last - first) * volume.voxel / volume.unit).astype(int) + 1
+        lattice = Lattice(
+            np.multiply(first, volume.voxel), volume.unit, (int(counts[0]), int(counts[1]), int(counts[2]))
+        )
+        mesh = isosurface(body, lattice, capped=True)
+        missing += np.count_nonzero(voxels) * float(np.prod(volume.voxel)) - mesh.volume
+        area += float(mesh.areas.sum())
+    return replace(body, shift=body.shift + missing / (area * volume.unit)) if area else body
 
 
 def _beside_wall(pore: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -118,14 +118,20 @@ def test_a_helix_is_one_pore_and_has_pappus_volume():
     assert len(network.pores) == 1
 
 
-@pytest.mark.parametrize(
-    ("lattice", "phi", "within"), [("sc", 0.4764, 0.002), ("bcc", 0.3198, 0.01), ("fcc", 0.2595, 0.022)]
-)
-def test_the_contact_surface_keeps_the_porosity_of_packs(lattice, phi, within):
-    """PORES.md, test 21, a = 20 voxels: windows of 3 voxels and less cost more than 0.002 of porosity."""
+@pytest.mark.parametrize(("lattice", "phi", "cell"), [("sc", 0.4764, 40), ("bcc", 0.3198, 46), ("fcc", 0.2595, 57)])
+def test_the_contact_surface_keeps_the_porosity_of_packs(lattice, phi, cell):
+    """PORES.md, test 21: spheres of 20 voxels, as near as a whole number of voxels in a cell comes to it."""
+    volume = RockVolume(pack(lattice, cell, 1), pore=True, voxel=1e-6)
+    body = pore_surface(volume, pore_network(volume))
+    assert body.porosity == pytest.approx(phi, abs=0.002)
+
+
+@pytest.mark.parametrize("lattice", ["sc", "bcc", "fcc"])
+def test_the_contact_surface_has_the_volume_of_coarse_voxels(lattice):
+    """Windows of three voxels and less, where triangles lose rock."""
     volume = RockVolume(pack(lattice, 20, 2), pore=True, voxel=1e-6)
     body = pore_surface(volume, pore_network(volume))
-    assert body.porosity == pytest.approx(phi, abs=within)
+    assert body.porosity == pytest.approx(volume.pore.mean(), abs=0.0015)
 
 
 @pytest.mark.parametrize("name", ["berea_200", "ketton_256"])

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from shapes import pack
 
 from geofit.implicit.field import Field
 from geofit.pores import RockVolume, VolumeError, pore_network, pore_surface
@@ -15,11 +14,6 @@ def berea(request):
     volume = request.getfixturevalue("rock")("berea_110")
     part = RockVolume(volume.pore[:64, :64, :64], pore=True, voxel=volume.voxel)
     return part, pore_network(part)
-
-
-def test_porosity_of_a_pack_is_that_of_the_spheres():
-    volume = RockVolume(pack("sc", 20, 2), pore=True, voxel=1e-5)
-    assert pore_surface(volume).porosity == pytest.approx(1 - np.pi / 6, abs=0.002)
 
 
 @pytest.mark.parametrize(("construction", "within"), [("contact", 0.01), ("blend", 0.1)])
