@@ -168,6 +168,7 @@ class MainWindow(QMainWindow):
             "issues": lambda: self.help.issues(self.session.document.site),
             "add_data": self.living.ask_files,
             "reload": self.living.reload,
+            "build_horizon": self.living.build_horizon,
             "close": files.close,
             "quit": self.close,
             "steps": self._show_steps,
