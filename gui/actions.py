@@ -82,6 +82,8 @@ _PLAIN: dict[str, _Spec] = {
               QT_TRANSLATE_NOOP("Actions", "Say which horizon lies above which"), ""),
     "separate": (QT_TRANSLATE_NOOP("Actions", "&Separate horizons…"), "Ctrl+F7",
                QT_TRANSLATE_NOOP("Actions", "Push horizons apart where they cross; points met exactly stay"), ""),
+    "build_horizon": (QT_TRANSLATE_NOOP("Actions", "&Build from lithology…"), "Ctrl+B",
+                      QT_TRANSLATE_NOOP("Actions", "A horizon from logged codes: group, top or base, thin beds"), ""),
     "worst": (QT_TRANSLATE_NOOP("Actions", "Go to the &worst point"), "F8", "", ""),
     "exclude": (QT_TRANSLATE_NOOP("Actions", "E&xclude or include the chosen row"), "Ctrl+D", "", ""),
     "stop": (QT_TRANSLATE_NOOP("Actions", "&Stop the task"), "Esc", "", "cancel"),

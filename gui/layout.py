@@ -31,6 +31,8 @@ class Layout(QObject):
         self._window, self._docks = window, docks
         self._kept, self.hidden = QByteArray(), False
         self._unfolded = set(BOTTOM)
+        #: Panels that are in the middle of the window: their docks are empty.
+        self.away: set[str] = set()
         #: The panel below the view that was in front last.
         self.last = BOTTOM[0]
         window.setDockOptions(
@@ -89,8 +91,10 @@ class Layout(QObject):
 
     def reveal(self, name: str) -> None:
         """Bring a dock to the front; one below the view comes with those that were folded away with it."""
+        if name in self.away:
+            return
         if name in BOTTOM and self.folded:
-            for other in self._unfolded:
+            for other in self._unfolded - self.away:
                 self._docks[other].show()
             height = round(_BELOW * self._window.height())
             self._window.resizeDocks([self._docks[name]], [height], Qt.Orientation.Vertical)

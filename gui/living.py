@@ -17,9 +17,12 @@ from geofit.gui.offer_bar import OfferBar
 from geofit.gui.session import Session
 from geofit.gui.translate import translated
 from geofit.gui.workspace import Workspace
+from geofit.io.contact_rules import ContactRule
 from geofit.project.adding import Added, add_files
 from geofit.project.comparing import made_comparison
 from geofit.project.data_change import DataChange, arrivals, change_of_data, changed_files
+from geofit.project.horizon_builder import Picks, horizon_table
+from geofit.project.listing import listing
 from geofit.project.provenance import Provenance
 from geofit.project.saving import read_again
 from geofit.site.states import Comparison
@@ -70,10 +73,14 @@ class Living(QObject):
 
     def add(self, files: Sequence[Path]) -> None:
         """Add files to the site."""
-        document = self._document
-        if document.site_file is not None:
-            work = (list(files), document.site_file, document.read, document.state.added)
-            self._activity.do(self.tr("Add data"), add_files, *work, on_done=self._added)
+
+        def work() -> Work:
+            document = self._document
+            if document.site_file is None:
+                return None
+            return add_files, (list(files), document.site_file, document.read, document.state.added)
+
+        self._activity.prepare(self.tr("Add data"), work, on_done=self._added)
 
     def reload(self) -> None:
         """Read the files of the site again."""
@@ -82,6 +89,40 @@ class Living(QObject):
         if document.site_file is not None:
             work = (document.site_file, document.state.added)
             self._activity.do(self.tr("Read the site again"), read_again, *work, on_done=self._read_again)
+
+    def build_horizon(self) -> None:
+        """Ask which codes make a horizon, show the picks, and add it."""
+        from geofit.gui.dialogs.horizon_builder import HorizonBuilder
+
+        document = self._document
+        dialog = HorizonBuilder(document.read, document.horizons, self._window)
+        dialog.previewed.connect(self._preview)
+        dialog.built.connect(self._build)
+        dialog.exec()
+
+    def _preview(self, picks: Picks | None) -> None:
+        """Show picks in the scene, or take them away."""
+        name, view = self.tr("Preview"), self._panels.view
+        if picks is None or not len(picks.points):
+            view.remove_surface(name)
+        else:
+            view.show_listing(name, listing(picks.points, frozenset(), None))
+
+    def _build(self, name: str, rule: ContactRule) -> None:
+        tables: tuple[str, ...] = ()
+
+        def work() -> Work:
+            # Only now: what was built just before is among the tables.
+            nonlocal tables
+            document = self._document
+            if document.site_file is None:
+                return None
+            added = document.state.added
+            tables = (*added, horizon_table(name, rule, document.site_file, document.read, added))
+            return read_again, (document.site_file, tables)
+
+        title = self.tr("Build {name}").format(name=name)
+        self._activity.prepare(title, work, on_done=lambda site: self._take(site, tables))
 
     def look(self) -> None:
         """Look whether files of the site have changed on the disk, and offer to reload them."""

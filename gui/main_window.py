@@ -12,6 +12,7 @@ from geofit.gui.actions import Actions
 from geofit.gui.activity import Activity
 from geofit.gui.activity_bar import ActivityBar
 from geofit.gui.adjusting import Adjusting
+from geofit.gui.context import ContextMenus
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.steps import StepsDialog
 from geofit.gui.exporting import Delivering
@@ -71,6 +72,7 @@ class MainWindow(QMainWindow):
         self.adjusting = Adjusting(document, self.fitting, self.panels.adjust, self)
         self.ordering = Ordering(document, self.activity, self.fitting, self.showing, self.panels, self)
         self.delivering = Delivering(document, self.activity, preferences, self.panels, self.showing, self)
+        self.context = ContextMenus(document, self.panels, self.fitting, self.selecting, self.actions_, self)
         self.help = Help(self)
         self._connect_actions()
         self._connect_panels()
@@ -105,6 +107,7 @@ class MainWindow(QMainWindow):
             self.files.leave(self.leave_without_asking)
             return
         self._ready = False
+        self.panels.centring.back()
         self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)
@@ -165,6 +168,7 @@ class MainWindow(QMainWindow):
             "issues": lambda: self.help.issues(self.session.document.site),
             "add_data": self.living.ask_files,
             "reload": self.living.reload,
+            "build_horizon": self.living.build_horizon,
             "close": files.close,
             "quit": self.close,
             "steps": self._show_steps,
@@ -174,7 +178,7 @@ class MainWindow(QMainWindow):
             "fold": self.panels.bar.toggle,
             "next_panel": lambda: self.panels.reach.step(1),
             "previous_panel": lambda: self.panels.reach.step(-1),
-            "reset_layout": self.panels.layout.arrange,
+            "reset_layout": self.panels.arrange,
             "fit": self._with_horizon(self.fitting.fit),
             "fit_all": self.fitting.fit_all,
             "examine": self._with_horizon(self.fitting.examine),

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QDockWidget, QMainWindow, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtWidgets import QDockWidget, QMainWindow, QSplitter, QStackedWidget, QVBoxLayout, QWidget
 
+from geofit.gui.centring import Centring
 from geofit.gui.layout import Layout
 from geofit.gui.offer_bar import OfferBar
 from geofit.gui.panel_bar import PanelBar
@@ -40,7 +41,13 @@ class Workspace(QObject):
         self.centre.addWidget(self.start)
         self.centre.addWidget(self.view)
         self.offer = OfferBar()
-        window.setCentralWidget(_stacked(self.offer, self.centre))
+        self.middle = QSplitter(Qt.Orientation.Horizontal)
+        beside = _stacked(self.offer, self.centre)
+        # The start page is wide; beside a panel in the middle the view may be narrower.
+        beside.setMinimumWidth(240)
+        self.middle.addWidget(beside)
+        self.middle.setChildrenCollapsible(False)
+        window.setCentralWidget(self.middle)
         self.tree, self.scene = ProjectTree(), SceneList(self.view.layers)
         self.fit, self.verdict, self.adjust = FitPanel(), VerdictBadge(), AdjustPanel()
         self.residuals, self.section, self.histogram = ResidualTable(), SectionPanel(), HistogramPanel()
@@ -65,14 +72,22 @@ class Workspace(QObject):
         self.layout = Layout(window, self.docks)
         self.bar = PanelBar(window, self.docks, self.layout)
         self.reach = Reach(self.docks, self.view, self.layout.reveal)
+        self.centring = Centring(self.middle, self.docks, self.layout)
         self.bar.hide()
 
     def reveal(self, name: str) -> None:
         """Bring a dock to the front."""
         self.reach.reveal(name)
 
+    def arrange(self) -> None:
+        """Put every panel where it is at first."""
+        self.centring.back()
+        self.layout.arrange()
+
     def show_scene(self, shown: bool) -> None:
         """Show the 3D view among its docks, or the start page alone."""
+        if not shown:
+            self.centring.back()
         self.centre.setCurrentWidget(self.view if shown else self.start)
         if shown:
             self.layout.show()

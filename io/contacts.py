@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.logs import LoggedHoles
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.points import PointSet
 from geofit.data.site import ImportIssue
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
+from geofit.io.contact_rules import ContactRule, Limit, simplified
 from geofit.io.hints import nearest
 from geofit.io.journal import Journal
 
-__all__ = ["Contacts", "Limit", "load_contacts", "take_contacts"]
-
-Limit = Literal["top", "base"]
+__all__ = ["Contacts", "Limit", "load_contacts", "load_rule", "take_contacts"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +69,14 @@ def take_contacts(boreholes: Boreholes, *, top: str | None = None, base: str | N
 
 def load_contacts(boreholes: Boreholes, code: str, limit: Limit, journal: Journal) -> PointSet:
     """Take contacts; the journal receives what is found."""
-    carrying = [log for log in boreholes.logs if (log.code == code).any()]
+    return load_rule(boreholes, ContactRule((code,), limit), journal)
+
+
+def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Journal) -> PointSet:
+    """Take the contacts of a rule; the journal receives what is found."""
+    carrying = [log for log in boreholes.logs if np.isin(log.code, rule.codes).any()]
     if not carrying:
+        code = rule.codes[0]
         codes = sorted({str(c) for log in boreholes.logs for c in np.unique(log.code)})
         raise InputError(
             message(
@@ -83,17 +88,40 @@ def load_contacts(boreholes: Boreholes, code: str, limit: Limit, journal: Journa
             nearest(code, codes, message("import.name-one", "Name one of them.")),
             file=", ".join(log.file for log in boreholes.logs) or None,
         )
-    return PointSet.concatenate([_contacts_of(boreholes, log, code, limit, journal) for log in carrying])
+    found = []
+    for log in carrying:
+        plain = simplified(log, rule)
+        thin = sorted(set(log.hole[np.isin(log.code, rule.codes)].tolist()) - set(plain.hole[plain.code == rule.label]))
+        if thin:
+            journal.add(
+                "note",
+                log.file,
+                message(
+                    "import.only-thin-beds",
+                    "{limit} of {code}: every bed is thinner than {thinner:g} m in holes ({count}): {holes}",
+                    limit=rule.limit,
+                    code=rule.label,
+                    thinner=rule.thinner,
+                    count=len(thin),
+                    holes=", ".join(thin),
+                ),
+                value=rule.label,
+            )
+        found.append(_contacts_of(boreholes, plain, rule, journal))
+    return PointSet.concatenate(found)
 
 
-def _contacts_of(boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit, journal: Journal) -> PointSet:
+def _contacts_of(
+    boreholes: Boreholes | LoggedHoles, log: IntervalLog, rule: ContactRule, journal: Journal
+) -> PointSet:
+    code, limit = rule.label, rule.limit
     found: list[tuple[str, float, int]] = []
     unseen: list[str] = []
     for group in np.split(np.arange(len(log.hole)), np.flatnonzero(log.hole[1:] != log.hole[:-1]) + 1):
         if not (log.code[group] == code).any():
             continue
         hole = str(log.hole[group[0]])
-        depth, row = _limit_in_hole(log, group, code, limit, boreholes.ends[hole], journal)
+        depth, row = _limit_in_hole(log, group, rule, boreholes.ends[hole], journal)
         if row:
             found.append((hole, depth, row))
         else:
@@ -132,18 +160,13 @@ def _contacts_of(boreholes: Boreholes, log: IntervalLog, code: str, limit: Limit
 
 
 def _limit_in_hole(
-    log: IntervalLog, group: NDArray[np.int64], code: str, limit: Limit, end: float, journal: Journal
+    log: IntervalLog, group: NDArray[np.int64], rule: ContactRule, end: float, journal: Journal
 ) -> tuple[float, int]:
     """Return depth and row of the contact of one hole; row 0 where the hole does not see it."""
+    code, limit = rule.label, rule.limit
     runs = _runs(log, group, code)
-    depth, row = (
-        (log.top[runs[0][0]], log.row[runs[0][0]])
-        if limit == "top"
-        else (
-            log.base[runs[-1][1]],
-            log.row[runs[-1][1]],
-        )
-    )
+    run = runs[0 if rule.first else -1]
+    depth, row = (log.top[run[0]], log.row[run[0]]) if limit == "top" else (log.base[run[1]], log.row[run[1]])
     hole, row = str(log.hole[group[0]]), int(row)
 
     def warn(reason: Message, remedy: Message) -> None:
@@ -156,7 +179,7 @@ def _limit_in_hole(
             value=code,
         )
 
-    if len(runs) > 1:
+    if len(runs) > 1 and rule.occurrence is None:
         which = (
             message("import.uppermost-top", "uppermost top")
             if limit == "top"

@@ -23,7 +23,8 @@ from geofit.io.adits import load_adit_contacts, load_adits
 from geofit.io.axes import Region, place_in, region_of
 from geofit.io.boreholes import Boreholes, load_boreholes
 from geofit.io.boundary import load_boundary
-from geofit.io.contacts import Limit, load_contacts
+from geofit.io.contact_rules import ContactRule
+from geofit.io.contacts import load_rule
 from geofit.io.crs import is_code
 from geofit.io.desurvey import METHODS
 from geofit.io.grid import load_grid, load_ground
@@ -39,6 +40,7 @@ from geofit.io.places import list_places
 from geofit.io.site_drawings import gather, read_sections
 from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
 from geofit.io.site_relations import read_relations
+from geofit.io.site_rules import read_rule
 from geofit.io.source import Source
 from geofit.io.title_block import read_title_block
 from geofit.io.traces import load_traces
@@ -53,8 +55,7 @@ class _Horizon:
     """One [[horizon]] table."""
 
     name: str
-    top: str | None
-    base: str | None
+    rule: ContactRule | None
     accuracy: Mapping[str, float]
     settings: FitSettings
 
@@ -186,7 +187,7 @@ def build_site(
     points, settings = {}, {}
     stated = {horizon.name: horizon for horizon in horizons}
     for name, sets in gathered.items():
-        horizon = stated.get(name) or _Horizon(name, None, None, {}, FitSettings())
+        horizon = stated.get(name) or _Horizon(name, None, {}, FitSettings())
         settings[name] = horizon.settings
         points[name] = _with_accuracy(reader, PointSet.concatenate(sets), horizon)
         list_places(name, points[name], journal, horizon.settings.coincidence_distance)
@@ -248,13 +249,7 @@ def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
             "name",
         )
     reader.keys(table, HORIZON, where)
-    top, base = (reader.get(table, key, str, where) for key in ("top", "base"))
-    if top is not None and base is not None:
-        raise reader.fail(
-            message("import.top-base", "{where} has both top and base", where=where),
-            message("import.keep-horizon", "Keep the one that is this horizon."),
-            "base",
-        )
+    rule = read_rule(reader, table, where)
     accuracy = reader.get(table, "accuracy", dict, where) or {}
     for kind in accuracy:
         if not reader.get(accuracy, kind, float, message("place.accuracy", "accuracy of {where}", where=where)) > 0:
@@ -271,7 +266,7 @@ def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
             message("import.where-error", "{where}: {error}", where=where, error=error),
             message("import.correct-site-file", "Correct it in the site file."),
         ) from None
-    return _Horizon(name, top, base, {kind: float(value) for kind, value in accuracy.items()}, settings)
+    return _Horizon(name, rule, {kind: float(value) for kind, value in accuracy.items()}, settings)
 
 
 def _site_area(
@@ -383,8 +378,8 @@ def _gather_contacts(
     journal: Journal,
 ) -> None:
     for horizon in horizons:
-        code = horizon.top if horizon.top is not None else horizon.base
-        if code is None:
+        rule = horizon.rule
+        if rule is None:
             continue
         logged = [campaign for campaign in boreholes if campaign.logs]
         if not logged:
@@ -393,18 +388,17 @@ def _gather_contacts(
                     "import.horizon-limit-site-no",
                     "horizon '{name}' is a limit of '{code}', but the site has no intervals",
                     name=horizon.name,
-                    code=code,
+                    code=rule.label,
                 ),
                 message(
                     "import.add-intervals-lithology-csv",
                     'Add intervals = ["lithology.csv"] to [boreholes], or remove top and base.',
                 ),
-                "top" if horizon.top is not None else "base",
+                rule.limit,
             )
-        limit: Limit = "top" if horizon.top is not None else "base"
         # A code need not occur in every campaign; where it occurs in none the first one reports it.
-        carrying = [c for c in logged if any((log.code == code).any() for log in c.logs)] or logged[:1]
-        gathered[horizon.name] += [load_contacts(campaign, code, limit, journal) for campaign in carrying]
+        carrying = [c for c in logged if any(np.isin(log.code, rule.codes).any() for log in c.logs)] or logged[:1]
+        gathered[horizon.name] += [load_rule(campaign, rule, journal) for campaign in carrying]
 
 
 def _adits(

@@ -21,7 +21,7 @@ SETTINGS = tuple(f.name for f in fields(FitSettings))
 
 #: Keys of a table that names a text file.
 TABLE = ("file", "table", "encoding", "sep", "decimal", "columns", "unit", "measure", "crs")
-HORIZON = ("name", "top", "base", "accuracy", *SETTINGS)
+HORIZON = ("name", "top", "base", "occurrence", "thinner", "accuracy", *SETTINGS)
 TOP = (
     "site",
     "report",

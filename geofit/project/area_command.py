@@ -6,21 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-import numpy as np
-
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite
-from geofit.data.site import Site
 from geofit.project.command import Command
 from geofit.project.provenance import Corners, DocumentError
 from geofit.project.state import State
 
-__all__ = ["SetArea", "with_area"]
-
-
-def with_area(site: Site, area: Corners | None) -> Site:
-    """Return a site with a study area that was drawn; with its own where none was."""
-    return site if area is None else replace(site, boundary=np.array(area))
+__all__ = ["SetArea"]
 
 
 @dataclass

@@ -15,6 +15,7 @@ from geofit.data.settings import FitSettings
 from geofit.project.area_command import SetArea
 from geofit.project.command import Command, known
 from geofit.project.data_commands import ChangeData
+from geofit.project.horizon_commands import MergeHorizons, RemoveHorizons, RenameHorizon
 from geofit.project.provenance import (
     DocumentError,
     ManualEdit,
@@ -38,7 +39,10 @@ __all__ = [
     "Command",
     "ExcludeRows",
     "IncludeRows",
+    "MergeHorizons",
     "MoveToPoint",
+    "RemoveHorizons",
+    "RenameHorizon",
     "RenameSite",
     "SeparateHorizons",
     "SetArea",
@@ -337,6 +341,7 @@ COMMANDS: dict[str, type[Command]] = {
     for command in (
         SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, SplitAtFaults, AdjustControlPoint, ChangeWeight,
         MoveToPoint, SeparateHorizons, SetOrder, RenameSite, ChangeData, SetArea,
+        RenameHorizon, RemoveHorizons, MergeHorizons,
     )
 }  # fmt: skip
 

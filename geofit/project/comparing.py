@@ -13,7 +13,6 @@ from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.project.area_command import with_area
 from geofit.project.building import Given, given_of, make
 from geofit.project.fault_blocks import site_with_blocks
 from geofit.project.provenance import Provenance, fingerprint
@@ -78,7 +77,7 @@ def state_surfaces(
             raise InputError(reason, file=str(path))
         return {name: (surface, site.horizons.get(name, surface.points)) for name, surface in fits.surfaces.items()}
     opened = read_project(path)
-    state, site = opened.state, with_area(opened.site, opened.state.area)
+    state, site = opened.state, opened.state.shaped(opened.site)
     points = site_with_blocks(site, state.parts).horizons
     found = {}
     for name in state.order:

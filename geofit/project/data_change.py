@@ -11,7 +11,6 @@ from geofit.data.messages import Message, Untranslated, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
-from geofit.project.area_command import with_area
 from geofit.project.data_commands import ChangeData
 from geofit.project.fault_blocks import site_with_blocks
 from geofit.project.provenance import Earlier, Row, data_digest, fingerprint, turns
@@ -86,8 +85,8 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
     state : State
         The present work.
     before, after : Site
-        The site as it was read, and as it is read now; horizons whole, not in blocks. A study area that was drawn
-        stays.
+        The site as it is worked on (:meth:`~geofit.project.state.State.shaped`), and as it is read now; horizons
+        whole, not in blocks.
     added : iterable of str
         Tables that were read beside the site file's, as TOML; all of them.
 
@@ -97,7 +96,7 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
         Excluded rows follow their points to other lines of their file; those whose points are not there any more, or
         were corrected, are lost, as are manual edits: they belong to the earlier fit.
     """
-    data, before, after = data_digest(after), with_area(before, state.area), with_area(after, state.area)
+    data, after = data_digest(after), state.shaped(after)
     parts = {name: part for name, part in state.parts.items() if part.horizon in after.horizons}
     blocks_before, blocks_after = site_with_blocks(before, state.parts), site_with_blocks(after, parts)
     settings = {name: _settings(name, state, after, parts) for name in blocks_after.horizons}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,11 +12,11 @@ from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.project.area_command import with_area
 from geofit.project.building import Given, given_of
 from geofit.project.fault_blocks import Blocks, site_with_blocks
+from geofit.project.horizon_commands import MergeHorizons
 from geofit.project.listing import Listing, listing
-from geofit.project.provenance import DocumentError, Provenance, Row, data_digest, fingerprint, without_rows
+from geofit.project.provenance import DocumentError, Provenance, Row, data_digest, find_rows, fingerprint, without_rows
 from geofit.project.shelf import Shelf
 from geofit.project.signal import Signal
 from geofit.project.state import State
@@ -144,7 +144,7 @@ class Document:
         """Take another state, and tell what is different. For commands only."""
         former, was_dirty = self._state, self.dirty
         self._state = state
-        if (former.parts, former.data, former.area) != (state.parts, state.data, state.area):
+        if any(getattr(former, name) != getattr(state, name) for name in ("parts", "data", "area", "horizons")):
             self._take_data()
             if self.selection.horizon not in state.order:
                 self.selection = Selection(self._nearest(self.selection.horizon))
@@ -204,6 +204,16 @@ class Document:
             points = self._given(name) if name in self._site.horizons else self._read.horizons.get(name)
             self._fingerprints[name] = "" if points is None else fingerprint(points, self._read)
         return self._fingerprints[name]
+
+    def merging(self, names: Sequence[str], name: str) -> MergeHorizons:
+        """Return the step that makes one horizon of several; rows that are excluded stay so."""
+        whole = PointSet.concatenate([self._given(one) for one in names])
+        rows, start = [], 0
+        for one in names:
+            out = find_rows(self._given(one), self._state.excluded.get(one, frozenset()))
+            rows += [Row.of(whole, start + int(index)) for index in out]
+            start += len(self._given(one))
+        return MergeHorizons(tuple(names), name, tuple(sorted(rows)))
 
     def whole(self, name: str) -> str:
         """Return the horizon that a block is a part of; a horizon that was not is_block is its own whole."""
@@ -281,7 +291,7 @@ class Document:
         site = None if earlier is None else self._data.get(earlier.data)
         if earlier is None or site is None:
             return None
-        site = with_area(site, earlier.area)
+        site = replace(self._state, area=earlier.area).shaped(site)
         return earlier.provenance, given_of(site, earlier.provenance), self.shelf.surface(earlier.provenance)
 
     def comparison(self, name: str) -> Comparison | None:
@@ -392,7 +402,7 @@ class Document:
         return Given(reduced, made)
 
     def _take_data(self) -> None:
-        self._read = with_area(self._data.get(self._state.data, self._read), self._state.area)
+        self._read = self._state.shaped(self._data.get(self._state.data, self._read))
         self._site = self._used = site_with_blocks(self._read, self._state.parts)
         self._points.clear()
         self._fingerprints.clear()

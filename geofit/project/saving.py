@@ -22,6 +22,7 @@ from geofit.io.site_file import read_site
 from geofit.io.snapshot import read_snapshot, write_snapshot
 from geofit.project.building import beside
 from geofit.project.fault_blocks import site_with_blocks
+from geofit.project.horizon_edits import HorizonEdit, shaped
 from geofit.project.provenance import Earlier, Part, Provenance, Row, corners_from, data_digest, without_rows
 from geofit.project.state import State
 
@@ -161,6 +162,10 @@ def checked(surface: HorizonFit, provenance: Provenance, site: Site) -> HorizonF
 
 def state_of(project: Project, site: Site) -> State:
     """Return the work that a project holds, as far as its site still has the horizons."""
+    data = data_digest(site)
+    area = next((corners_from(edit.values["corners"]) for edit in project.edits if edit.kind == "area"), None)
+    horizons = tuple(HorizonEdit.from_data(edit.values) for edit in project.edits if edit.kind == "horizons")
+    site = shaped(site, area, horizons)
     parts = {edit.horizon: Part.from_data(edit.values) for edit in project.edits if edit.kind == "part"}
     parts = {name: part for name, part in parts.items() if part.horizon in site.horizons}
     whole = State.of_site(site).settings
@@ -185,9 +190,8 @@ def state_of(project: Project, site: Site) -> State:
         if edit.kind == "earlier" and edit.horizon in order
     }
     return State(
-        project.name, order, settings, excluded, provenances, parts, data_digest(site), _added(project), earlier,
-        next((corners_from(edit.values["corners"]) for edit in project.edits if edit.kind == "area"), None),
-    )  # fmt: skip
+        project.name, order, settings, excluded, provenances, parts, data, _added(project), earlier, area, horizons
+    )
 
 
 def _added(project: Project) -> tuple[str, ...]:
@@ -229,6 +233,7 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
         for row in sorted(rows)
     ]
     edits += [Edit(kind="add", values={"tables": tables}) for tables in state.added]
+    edits += [Edit(kind="horizons", values=one.to_data()) for one in state.horizons]
     if state.area is not None:
         edits.append(Edit(kind="area", values={"corners": [list(corner) for corner in state.area]}))
     edits += [Edit(kind="earlier", horizon=name, values=one.to_data()) for name, one in state.earlier.items()]

@@ -8,6 +8,7 @@ from typing import Any
 
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
+from geofit.project.horizon_edits import HorizonEdit, shaped
 from geofit.project.provenance import Corners, Earlier, Part, Provenance, Row, corners_from, data_digest, settings_from
 
 __all__ = ["State"]
@@ -21,7 +22,7 @@ class State:
     ``provenances`` of the surfaces by horizon. ``parts`` names the blocks that are in the place of horizons that faults
     cut: each is a horizon like the others. ``data`` names the data of the site, ``added`` holds the tables of files
     that its site file does not name, as TOML; ``earlier`` is from what surfaces were made before the data changed,
-    ``area`` the study area if one was drawn.
+    ``area`` the study area if one was drawn, ``horizons`` which of them were renamed, removed and merged.
     """
 
     name: str = ""
@@ -34,6 +35,11 @@ class State:
     added: tuple[str, ...] = ()
     earlier: Mapping[str, Earlier] = field(default_factory=dict)
     area: Corners | None = None
+    horizons: tuple[HorizonEdit, ...] = ()
+
+    def shaped(self, site: Site) -> Site:
+        """Return a site that was read as it is worked on: with the study area and the horizons of this state."""
+        return shaped(site, self.area, self.horizons)
 
     @classmethod
     def of_site(cls, site: Site) -> State:
@@ -53,6 +59,7 @@ class State:
             "data": self.data,
             "added": list(self.added),
             "area": None if self.area is None else [list(corner) for corner in self.area],
+            "horizons": [one.to_data() for one in self.horizons],
             "earlier": {name: one.to_data() for name, one in self.earlier.items()},
         }
 
@@ -70,4 +77,5 @@ class State:
             tuple(data.get("added", ())),
             {name: Earlier.from_data(one) for name, one in data.get("earlier", {}).items()},
             corners_from(data.get("area")),
+            tuple(HorizonEdit.from_data(one) for one in data.get("horizons", ())),
         )

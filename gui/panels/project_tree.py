@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from pathlib import Path
 
-from PySide6.QtCore import QModelIndex, QSortFilterProxyModel, Qt, Signal
+from PySide6.QtCore import QModelIndex, QPoint, QSortFilterProxyModel, Qt, Signal
 from PySide6.QtGui import QIcon, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QLineEdit, QTreeView, QVBoxLayout, QWidget
 
@@ -33,6 +33,7 @@ class ProjectTree(QWidget):
     hole_chosen = Signal(str)
     section_chosen = Signal(str)
     report_chosen = Signal(str)
+    menu_requested = Signal(str, str, QPoint)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -55,6 +56,8 @@ class ProjectTree(QWidget):
         self.search.textChanged.connect(self._filter)
         self.view.selectionModel().currentChanged.connect(self._tell)
         self.view.activated.connect(self._tell)
+        self.view.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self.view.customContextMenuRequested.connect(self._ask_menu)
         content = QWidget()
         column = QVBoxLayout(content)
         column.setContentsMargins(8, 8, 8, 8)
@@ -240,6 +243,14 @@ class ProjectTree(QWidget):
                         self.view.setCurrentIndex(index)
                         self.view.scrollTo(index)
                         return
+
+    def _ask_menu(self, at: QPoint) -> None:
+        target = self.view.indexAt(at).siblingAtColumn(0).data(_TARGET)
+        if target is not None:
+            kind, name = target
+            if kind == "patch":
+                kind, name = "horizon", name.split("\n", 1)[0]
+            self.menu_requested.emit(kind, name, self.view.viewport().mapToGlobal(at))
 
     def _tell(self, index: QModelIndex) -> None:
         target = index.siblingAtColumn(0).data(_TARGET)

@@ -47,13 +47,15 @@ class Canvas(QtInteractor):
     """A render window whose camera is an :class:`Viewpoint`.
 
     Left drag turns, middle or right drag (or Shift with left) moves sideways, the wheel comes nearer to what is under
-    the pointer. ``clicked`` and ``hovered`` tell the pointer's place in logical pixels. ``handle``, if set, is asked
+    the pointer. ``clicked``, ``asked`` (the right button)
+    and ``hovered`` tell the pointer's place in logical pixels. ``handle``, if set, is asked
     first: ``press(pos) -> bool``, then ``drag(pos)`` and ``release()``.
     """
 
     clicked = Signal(QPointF)
     double_clicked = Signal(QPointF)
     hovered = Signal(QPointF)
+    asked = Signal(QPointF)
     left = Signal()
     viewpoint_changed = Signal()
     detail_changed = Signal(bool)
@@ -253,6 +255,10 @@ class Canvas(QtInteractor):
             self.handle.release()
         elif held == "turn" and (event.position() - self._pressed).manhattanLength() < CLICK:
             self.clicked.emit(event.position())
+        elif event.button() == Qt.MouseButton.RightButton and (
+            (event.position() - self._pressed).manhattanLength() < CLICK
+        ):
+            self.asked.emit(event.position())
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Tell of a double click."""

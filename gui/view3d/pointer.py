@@ -27,6 +27,8 @@ Floats = NDArray[np.float64]
 
 #: The pointer's place is found at most so often, milliseconds.
 OFTEN = 60
+#: What the pointer rests on is named after so long, milliseconds.
+REST = 350
 
 
 def _nothing() -> Ring | None:
@@ -34,7 +36,10 @@ def _nothing() -> Ring | None:
 
 
 class Pointer(QObject):
-    """Listens to the canvas's mouse; ``changed`` signals that the ring or the measure is another one."""
+    """Listens to the canvas's mouse; ``changed`` signals that the ring or the measure is another one.
+
+    ``rested(hit, pos)`` and ``asked(hit, pos)`` carry what the pointer rests on, and what the right button asked of.
+    """
 
     point_picked = Signal(str, object)
     control_picked = Signal(str, str, int, int)
@@ -42,6 +47,8 @@ class Pointer(QObject):
     moved = Signal(float, float, float)
     measured = Signal(str)
     changed = Signal()
+    rested = Signal(object, QPointF)
+    asked = Signal(object, QPointF)
 
     def __init__(self, canvas: Canvas, stage: Stage, contents: Contents, clip: ClipBox, parent: QObject) -> None:
         super().__init__(parent)
@@ -57,11 +64,21 @@ class Pointer(QObject):
         canvas.double_clicked.connect(self._turn_about)
         canvas.hovered.connect(self._hover)
         canvas.left.connect(self._leave)
+        canvas.asked.connect(lambda pos: self.asked.emit(self.under(pos), pos))
+        self.resting = QTimer(self, interval=REST, singleShot=True)
+        self.resting.timeout.connect(lambda: self.rested.emit(self.under(self._at), self._at))
 
     def pick(self, column: float, row: float) -> Hit | None:
         """Return what a click there means: a control point or a point first, then a hole."""
         view, items = self._canvas.projector(), list(self._stage.items())
         return nearest_target(items, view, column, row, self._clip.box) or nearest_way(items, view, column, row)
+
+    def under(self, pos: QPointF) -> Hit | None:
+        """Return what lies at a place of the view: a point or a hole first, then the surface in front."""
+        found = self.pick(pos.x(), pos.y())
+        if found is not None:
+            return found
+        return self._sights.first(self._stage.items(), self._canvas.projector(), pos.x(), pos.y(), self._clip.box)
 
     def place_at(self, column: float, row: float) -> Floats | None:
         """Return the map coordinates of the surface under a pixel; None beside all."""
@@ -167,9 +184,11 @@ class Pointer(QObject):
         self._at = pos
         if not self.timer.isActive():
             self.timer.start()
+        self.resting.start()
 
     def _leave(self) -> None:
         self.timer.stop()
+        self.resting.stop()
         self.moved.emit(math.nan, math.nan, math.nan)
 
     def _tell(self) -> None:

@@ -401,7 +401,7 @@ class SceneView(QWidget):
         """Stop the timers and free OpenGL's memory."""
         if not self._closed:
             self._closed = True
-            for timer in (self.pointer.timer, self._telling, self._changes):
+            for timer in (self.pointer.timer, self.pointer.resting, self._telling, self._changes):
                 timer.stop()
             self._stage.close()
             self.canvas.close()

@@ -23,7 +23,10 @@ from geofit.project.commands import (
     ChangeWeight,
     ExcludeRows,
     IncludeRows,
+    MergeHorizons,
     MoveToPoint,
+    RemoveHorizons,
+    RenameHorizon,
     RenameSite,
     SeparateHorizons,
     SetArea,
@@ -121,6 +124,9 @@ commands = st.one_of(
     st.builds(SetOrder, st.permutations(["up", "low"]).map(tuple)),
     st.builds(RenameSite, st.text(min_size=1)),
     st.builds(SetArea, polygon | st.none()),
+    st.builds(RenameHorizon, st.sampled_from(["low", "up", "new"]), st.sampled_from(["new", "low", " x"])),
+    st.builds(RemoveHorizons, st.sampled_from([("low",), ("up",), ("new",), ("low", "up")])),
+    st.builds(MergeHorizons, st.sampled_from([("up", "low"), ("low", "low"), ("new", "up")]), st.just("one")),
     st.builds(
         ChangeData,
         st.text(max_size=4),
@@ -174,6 +180,7 @@ def test_every_command_is_told_in_words_that_can_be_translated():
         ChangeWeight("low", "core", 1, 2, 0.5), SeparateHorizons(("low",), ("up", "low"), 0.5),
         SplitAtFaults("low", {"low (A)": Part("low", "", (provenance,), (1,), "0-9", ())}),
         MoveToPoint("low", 3, 1.0), SetOrder(("up", "low")), RenameSite("x"),
+        RenameHorizon("low", "deep"), RemoveHorizons(("low",)), MergeHorizons(("up", "low"), "both"),
         SetArea(None), SetArea(((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))),
         ChangeData("x", ("a.csv", "b.csv"), (), {"low": FitSettings()}, {}, {}, {}),
     ]  # fmt: skip
