@@ -10,13 +10,13 @@ from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabBar, QToolBar
 __all__ = ["BOTTOM", "Layout"]
 
 #: Of the layout that is remembered; one more when docks come or go.
-VERSION = 2
+VERSION = 3
 _Area = Qt.DockWidgetArea
 #: What folds away below the view.
-BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "log")
+BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "body_figures", "log")
 _PLACES = (
     (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
-    (_Area.RightDockWidgetArea, ("fit", "adjust"), True),
+    (_Area.RightDockWidgetArea, ("fit", "adjust", "bodies"), True),
     (_Area.BottomDockWidgetArea, BOTTOM, True),
 )
 #: Width of the docks at the left and at the right at first, and height of those below, as shares of the window's.

@@ -12,6 +12,7 @@ from geofit.gui.actions import Actions
 from geofit.gui.activity import Activity
 from geofit.gui.activity_bar import ActivityBar
 from geofit.gui.adjusting import Adjusting
+from geofit.gui.bodies import Bodies
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.steps import StepsDialog
 from geofit.gui.exporting import Delivering
@@ -68,6 +69,7 @@ class MainWindow(QMainWindow):
         self.adjusting = Adjusting(document, self.fitting, self.panels.adjust, self)
         self.ordering = Ordering(document, self.activity, self.fitting, self.showing, self.panels, self)
         self.delivering = Delivering(document, self.activity, preferences, self.panels, self.showing, self)
+        self.bodies = Bodies(session, self.activity, self.fitting, self.showing, self.panels, preferences, self)
         self.help = Help(self)
         self._connect_actions()
         self._connect_panels()
@@ -105,7 +107,7 @@ class MainWindow(QMainWindow):
         self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)
-        for part in (self.showing, self.selecting, self.fitting):
+        for part in (self.showing, self.selecting, self.fitting, self.bodies):
             part.close()
         for end in self._ends:
             end()
@@ -225,10 +227,10 @@ class MainWindow(QMainWindow):
         self.activity.began.connect(lambda _: self._enable())
         self.activity.ended.connect(self._enable)
         self.activity.ended.connect(self.showing.renew)
-        for refusing in (self.fitting, self.delivering, self.ordering):
+        for refusing in (self.fitting, self.delivering, self.ordering, self.bodies):
             refusing.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
-        for part in (self.files, self.delivering, self.ordering, self.fitting):
+        for part in (self.files, self.delivering, self.ordering, self.fitting, self.bodies):
             part.reported.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.reported.connect(self.tell)

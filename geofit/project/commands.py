@@ -12,6 +12,7 @@ from typing import Any
 
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
+from geofit.project.body_commands import DeleteBody, RenameBody, SetBody, StyleBody
 from geofit.project.command import Command, known
 from geofit.project.provenance import (
     DocumentError,
@@ -332,7 +333,7 @@ COMMANDS: dict[str, type[Command]] = {
     command.kind: command
     for command in (
         SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, SplitAtFaults, AdjustControlPoint, ChangeWeight,
-        MoveToPoint, SeparateHorizons, SetOrder, RenameSite,
+        MoveToPoint, SeparateHorizons, SetOrder, RenameSite, SetBody, RenameBody, DeleteBody, StyleBody,
     )
 }  # fmt: skip
 

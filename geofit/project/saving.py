@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +15,12 @@ from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.implicit.mesh import TriangleMesh
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
 from geofit.io.site_file import read_site
+from geofit.project.body_building import BodyResult
+from geofit.project.body_record import BodyProvenance
+from geofit.project.body_saving import SavedBody, bodies_of, read_bodies, records_of
 from geofit.project.building import beside
 from geofit.project.fault_blocks import site_with_blocks
 from geofit.project.provenance import Part, Provenance, Row, without_rows
@@ -29,13 +33,17 @@ _SITE = "site"
 
 @dataclass(frozen=True, eq=False)
 class Opened:
-    """A project that was read: its site, the work on it, and what is "missing" or "changed" since, by path."""
+    """A project that was read: its site, the work on it, and what is "missing" or "changed" since, by path.
+
+    ``bodies`` are those whose triangles the project holds, as they were saved.
+    """
 
     site: Site
     site_file: Path
     state: State
     project: Project
     changed: Mapping[str, str]
+    bodies: Mapping[BodyProvenance, BodyResult] = field(default_factory=dict)
 
 
 def read_project(path: Path, progress: Progress | None = None) -> Opened:
@@ -63,7 +71,10 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
             file=str(site_file),
         )
     site = read_site(site_file, progress)
-    return Opened(site, site_file, state_of(project, site), project, project.changed(path.parent))
+    changed = project.changed(path.parent)
+    return Opened(
+        site, site_file, state_of(project, site), project, changed, read_bodies(project, path.parent, changed)
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,10 +93,14 @@ def save_state(
     path: Path,
     surfaces: Mapping[Provenance, HorizonFit],
     same: bool,
+    bodies: Mapping[str, SavedBody] | None = None,
     *,
     progress: Progress,
 ) -> Written:
-    """Write a state as a project; ``same`` if it replaces the project that was opened, whose surfaces may stay."""
+    """Write a state as a project; ``same`` if it replaces the project that was opened, whose surfaces may stay.
+
+    ``bodies`` are those available, by name.
+    """
     former = None
     if same and path.is_file():
         try:
@@ -93,8 +108,10 @@ def save_state(
         except InputError:
             former = None  # whatever is there is replaced
     project = project_of(state, site, site_file, path, former)
+    project = replace(project, bodies=bodies_of(state, bodies or {}, former, path.parent))
     tell(progress, "write", 0.3)
-    return Written(path, state, write_project(project, path, new_surfaces(project, surfaces)))
+    meshes = {name: body.mesh for name, body in (bodies or {}).items()}
+    return Written(path, state, write_project(project, path, new_surfaces(project, surfaces), meshes))
 
 
 def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Provenance, HorizonFit]:
@@ -143,7 +160,7 @@ def state_of(project: Project, site: Site) -> State:
         for result in project.results
         if result.provenance and result.horizon in order
     }
-    return State(project.name, order, settings, excluded, provenances, parts)
+    return State(project.name, order, settings, excluded, provenances, parts, records_of(project))
 
 
 def project_of(state: State, site: Site, site_file: Path, target: Path, former: Project | None) -> Project:
@@ -174,12 +191,16 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
     )
 
 
-def write_project(project: Project, path: Path, surfaces: Mapping[Provenance, HorizonFit]) -> Project:
-    """Write a project file, and the surfaces that are new to it."""
+def write_project(
+    project: Project,
+    path: Path,
+    surfaces: Mapping[Provenance, HorizonFit],
+    meshes: Mapping[str, TriangleMesh] | None = None,
+) -> Project:
+    """Write a project file, the surfaces that are new to it, and the triangles of bodies."""
     by_horizon = {provenance.horizon: surface for provenance, surface in surfaces.items()}
-    return save_project(
-        project, path, by_horizon, {provenance.horizon: provenance.to_data() for provenance in surfaces}
-    )
+    provenances = {provenance.horizon: provenance.to_data() for provenance in surfaces}
+    return save_project(project, path, by_horizon, provenances, meshes)
 
 
 def new_surfaces(project: Project, surfaces: Mapping[Provenance, HorizonFit]) -> dict[Provenance, HorizonFit]:

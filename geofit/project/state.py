@@ -8,6 +8,7 @@ from typing import Any
 
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
+from geofit.project.body_record import BodyRecord
 from geofit.project.provenance import Part, Provenance, Row, settings_from
 
 __all__ = ["State"]
@@ -19,7 +20,7 @@ class State:
 
     ``name`` of the site; ``order`` of the horizons, the highest first; ``settings``, ``excluded`` rows and the
     ``provenances`` of the surfaces by horizon. ``parts`` names the blocks that are in the place of horizons that faults
-    cut: each is a horizon like the others.
+    cut: each is a horizon like the others. ``bodies`` are closed bodies by their names.
     """
 
     name: str = ""
@@ -28,6 +29,7 @@ class State:
     excluded: Mapping[str, frozenset[Row]] = field(default_factory=dict)
     provenances: Mapping[str, Provenance] = field(default_factory=dict)
     parts: Mapping[str, Part] = field(default_factory=dict)
+    bodies: Mapping[str, BodyRecord] = field(default_factory=dict)
 
     @classmethod
     def of_site(cls, site: Site) -> State:
@@ -37,7 +39,7 @@ class State:
 
     def to_data(self) -> dict[str, Any]:
         """Return numbers, words, lists and mappings only."""
-        return {
+        data: dict[str, Any] = {
             "name": self.name,
             "order": list(self.order),
             "settings": {name: asdict(settings) for name, settings in self.settings.items()},
@@ -45,6 +47,9 @@ class State:
             "provenances": {name: provenance.to_data() for name, provenance in self.provenances.items()},
             "parts": {name: part.to_data() for name, part in self.parts.items()},
         }
+        if self.bodies:
+            data["bodies"] = {name: record.to_data() for name, record in self.bodies.items()}
+        return data
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> State:
@@ -56,4 +61,5 @@ class State:
             {name: frozenset(Row(**row) for row in rows) for name, rows in data["excluded"].items()},
             {name: Provenance.from_data(provenance) for name, provenance in data["provenances"].items()},
             {name: Part.from_data(part) for name, part in data.get("parts", {}).items()},
+            {name: BodyRecord.from_data(record) for name, record in data.get("bodies", {}).items()},
         )

@@ -107,7 +107,7 @@ def test_version_0_opens(tmp_path):
     assert old.sources == (ProjectSource(path="collar.csv", sha256="ab12"),)
     assert old.settings == {"T1": FitSettings(epsilon=0.25)}
     save_project(old, tmp_path / "new.geofit")
-    assert json.loads((tmp_path / "new.geofit").read_text("utf-8"))["version"] == module.VERSION
+    assert json.loads((tmp_path / "new.geofit").read_text("utf-8"))["version"] == module.BARE
     assert open_project(tmp_path / "new.geofit") == old
     assert set(module.MIGRATIONS) == set(range(module.VERSION))
 
