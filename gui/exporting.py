@@ -135,7 +135,8 @@ class Delivering(QObject):
         if surfaces:
             site, provenances = self._document.site_in_use(), dict(self._document.state.provenances)
             results = [self._result(name, surface) for name, surface in surfaces.items()]
-            dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder())
+            bodies = {name: body for name, body in self._document.made_bodies().items() if body.fitted is not None}
+            dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder(), bodies)
             dialog.written.connect(self.list_report)
             dialog.examined.connect(
                 lambda name, prediction: self._document.put_prediction(provenances[name], prediction)

@@ -19,6 +19,7 @@ from geofit.gui.fitting import Fitting
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
 from geofit.gui.translate import translated
+from geofit.project.body_saving import saved_body
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Provenance
 from geofit.project.saving import Opened, Written, earlier_data, read_again, read_project, read_surfaces, save_state
@@ -124,7 +125,8 @@ class Files(QObject):
         # Of the site its label and the hashes of its files are enough.
         site = Site(document.site.name, {}, crs=document.site.crs, inputs=document.site.inputs)
         data = {name: earlier for name in earlier_data(state) if (earlier := document.data(name)) is not None}
-        work = (state, site, document.site_file, path, surfaces, same, data)
+        bodies = {name: saved_body(result) for name, result in document.made_bodies().items()}
+        work = (state, site, document.site_file, path, surfaces, same, data, bodies)
         self._activity.do(title, save_state, *work, on_done=self._saved, in_process=bool(surfaces))
 
     def leave(self, then: Callable[[], object]) -> None:
@@ -211,6 +213,8 @@ class Files(QObject):
         else:
             site = found.site
             self._session.begin(site, found.site_file, found.state, path, found.data)
+            for made_from, body in found.bodies.items():
+                self._document.put_body(made_from, body)
             for file, what in found.changed.items():
                 _LOG.warning(
                     message(

@@ -13,10 +13,12 @@ __all__ = ["BOTTOM", "Layout"]
 VERSION = 3
 _Area = Qt.DockWidgetArea
 #: What folds away below the view.
-BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "changes", "log")
+BOTTOM = (
+    "residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "changes", "body_figures", "log",
+)  # fmt: skip
 _PLACES = (
     (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
-    (_Area.RightDockWidgetArea, ("fit", "adjust"), True),
+    (_Area.RightDockWidgetArea, ("fit", "adjust", "bodies"), True),
     (_Area.BottomDockWidgetArea, BOTTOM, True),
 )
 #: Width of the docks at the left and at the right at first, and height of those below, as shares of the window's.

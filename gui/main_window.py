@@ -12,6 +12,7 @@ from geofit.gui.actions import Actions
 from geofit.gui.activity import Activity
 from geofit.gui.activity_bar import ActivityBar
 from geofit.gui.adjusting import Adjusting
+from geofit.gui.bodies import Bodies
 from geofit.gui.context import ContextMenus
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.steps import StepsDialog
@@ -73,6 +74,7 @@ class MainWindow(QMainWindow):
         self.ordering = Ordering(document, self.activity, self.fitting, self.showing, self.panels, self)
         self.delivering = Delivering(document, self.activity, preferences, self.panels, self.showing, self)
         self.context = ContextMenus(document, self.panels, self.fitting, self.selecting, self.actions_, self)
+        self.bodies = Bodies(session, self.activity, self.fitting, self.showing, self.panels, preferences, self)
         self.help = Help(self)
         self._connect_actions()
         self._connect_panels()
@@ -111,7 +113,7 @@ class MainWindow(QMainWindow):
         self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)
-        for part in (self.showing, self.selecting, self.fitting, self.living):
+        for part in (self.showing, self.selecting, self.fitting, self.living, self.bodies):
             part.close()
         for end in self._ends:
             end()
@@ -243,10 +245,10 @@ class MainWindow(QMainWindow):
         self.activity.began.connect(lambda _: self._enable())
         self.activity.ended.connect(self._enable)
         self.activity.ended.connect(self.showing.renew)
-        for refusing in (self.fitting, self.delivering, self.ordering):
+        for refusing in (self.fitting, self.delivering, self.ordering, self.bodies):
             refusing.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
-        for part in (self.files, self.delivering, self.ordering, self.fitting, self.living):
+        for part in (self.files, self.delivering, self.ordering, self.fitting, self.living, self.bodies):
             part.reported.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.reported.connect(self.tell)

@@ -10,6 +10,8 @@ from geofit.gui.layout import Layout
 from geofit.gui.offer_bar import OfferBar
 from geofit.gui.panel_bar import PanelBar
 from geofit.gui.panels.adjust import AdjustPanel
+from geofit.gui.panels.bodies import BodiesPanel
+from geofit.gui.panels.body_figures import BodyFigures
 from geofit.gui.panels.changes import ChangesPanel
 from geofit.gui.panels.checks import ChecksPanel
 from geofit.gui.panels.fit_panel import FitPanel
@@ -54,11 +56,13 @@ class Workspace(QObject):
         self.log, self.seams, self.checks = LogPanel(), SeamTable(), ChecksPanel()
         self.prediction, self.plan = PredictionPanel(), PlanPanel()
         self.changes = ChangesPanel()
+        self.bodies, self.body_figures = BodiesPanel(), BodyFigures()
         self.docks = {
             "tree": self._dock("tree", self.tr("Project"), self.tree),
             "scene": self._dock("scene", self.tr("Scene"), self.scene),
             "fit": self._dock("fit", self.tr("Fit"), _stacked(_inset(self.verdict), self.fit)),
             "adjust": self._dock("adjust", self.tr("Manual edit"), self.adjust),
+            "bodies": self._dock("bodies", self.tr("Bodies"), self.bodies),
             "residuals": self._dock("residuals", self.tr("Residuals"), self.residuals),
             "section": self._dock("section", self.tr("Section"), self.section),
             "histogram": self._dock("histogram", self.tr("Histogram"), self.histogram),
@@ -67,6 +71,7 @@ class Workspace(QObject):
             "checks": self._dock("checks", self.tr("Checks", "Workspace"), self.checks),
             "prediction": self._dock("prediction", self.tr("Away from the data"), self.prediction),
             "changes": self._dock("changes", self.tr("What moved"), self.changes),
+            "body_figures": self._dock("body_figures", self.tr("Body figures"), self.body_figures),
             "log": self._dock("log", self.tr("Log"), self.log),
         }
         self.layout = Layout(window, self.docks)

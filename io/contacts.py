@@ -111,9 +111,7 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
     return PointSet.concatenate(found)
 
 
-def _contacts_of(
-    boreholes: Boreholes | LoggedHoles, log: IntervalLog, rule: ContactRule, journal: Journal
-) -> PointSet:
+def _contacts_of(boreholes: Boreholes | LoggedHoles, log: IntervalLog, rule: ContactRule, journal: Journal) -> PointSet:
     code, limit = rule.label, rule.limit
     found: list[tuple[str, float, int]] = []
     unseen: list[str] = []

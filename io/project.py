@@ -10,16 +10,17 @@
       "sources": [{"path": "data/collar.csv", "role": "collar", "sha256": "...", "mapping": {...}}],
       "settings": {"T2-T1": {"epsilon": 0.25, ...}},
       "edits": [{"kind": "exclude", "horizon": "T2-T1", "values": {"file": "picks.csv", "row": 17}}],
-      "results": [{"horizon": "T2-T1", "surface": "site_surfaces/T2-T1-1f00c3a2.step", "sha256": "...", ...}]
+      "results": [{"horizon": "T2-T1", "surface": "site_surfaces/T2-T1-1f00c3a2.step", "sha256": "...", ...}],
+      "bodies": [{"name": "ORE", "record": {...}, "mesh": "site_surfaces/ORE-77a01b9c.ply", "sha256": "...", ...}]
     }
 
-A surface's file carries the start of its hash in its name, and the project file is replaced last: whenever a
-save is interrupted, the project file on the disk names files that are there and whole.
+A project without bodies has no such list, and its version is 2: older readers know all of it. The file of a surface or
+a body carries the start of its hash in its name, and the project file is replaced last: whenever a save is
+interrupted, the project file on the disk names files that are there and whole.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
 from collections.abc import Callable, Mapping
@@ -27,24 +28,26 @@ from dataclasses import asdict, dataclass, field, fields, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
-from uuid import uuid4
 
 from geofit import __version__
 from geofit.data.accuracy import plain
 from geofit.data.errors import InputError, SettingsError
-from geofit.data.files import file_stems, replacing
+from geofit.data.files import replacing
 from geofit.data.legible import legible
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.implicit.mesh import TriangleMesh
 from geofit.io.parser_errors import parser_message
+from geofit.io.project_files import BODY_FILE, SURFACE_FILE, file_folder, sha256_of, write_body_file, write_surface_file
 from geofit.io.source import Source
 
 __all__ = [
     "VERSION",
     "Edit",
     "Project",
+    "ProjectBody",
     "ProjectResult",
     "ProjectSource",
     "load_surfaces",
@@ -52,12 +55,11 @@ __all__ = [
     "save_project",
 ]
 
-_Entry = TypeVar("_Entry", "ProjectSource", "Edit", "ProjectResult")
+_Entry = TypeVar("_Entry", "ProjectSource", "Edit", "ProjectResult", "ProjectBody")
 
 FORMAT = "geofit project"
-#: Names of the folder and of the files of surfaces, on every system: no separator, no drive, nothing hidden.
+#: Name of the folder of surfaces and bodies, on every system: no separator, no drive, nothing hidden.
 _SURFACE_FOLDER = re.compile(r"[^/\\:\0]+_surfaces")
-_SURFACE_FILE = re.compile(r"[^./\\:\0][^/\\:\0]*-[0-9a-f]{8}\.step")
 _TYPES: dict[str, tuple[type, ...]] = {
     "str": (str,),
     "int": (int,),
@@ -106,6 +108,25 @@ class ProjectResult:
 
 
 @dataclass(frozen=True, kw_only=True)
+class ProjectBody:
+    """A body: its ``record`` (what it is made from, how it is drawn), and its triangles and figures as last made.
+
+    ``mesh`` and ``sha256`` are empty where the body was not available when the project was saved; lengths in metres,
+    ``volumes`` are P10, P50, P90 and that of the body, m3, or empty.
+    """
+
+    name: str
+    record: Mapping[str, Any]
+    mesh: str = ""
+    sha256: str = ""
+    n: int = 0
+    sigma: float | None = None
+    passed: bool | None = None
+    volumes: Mapping[str, Any] = field(default_factory=dict)
+    geofit: str = ""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Project:
     """The work on one site. Paths are relative to the project file, with forward slashes, or absolute."""
 
@@ -115,6 +136,7 @@ class Project:
     settings: Mapping[str, FitSettings] = field(default_factory=dict)
     edits: tuple[Edit, ...] = ()
     results: tuple[ProjectResult, ...] = ()
+    bodies: tuple[ProjectBody, ...] = ()
 
     def changed(self, folder: str | PathLike[str]) -> dict[str, str]:
         """Return sources and surfaces that are "missing" or "changed" since the project was saved, by path."""
@@ -122,11 +144,12 @@ class Project:
         for path, expected in (
             *((source.path, source.sha256) for source in self.sources),
             *((result.surface, result.sha256) for result in self.results),
+            *((body.mesh, body.sha256) for body in self.bodies if body.mesh),
         ):
             file = Path(folder) / path
             if not file.is_file():
                 found[path] = "missing"
-            elif expected and _sha256(file) != expected:
+            elif expected and sha256_of(file) != expected:
                 found[path] = "changed"
         return found
 
@@ -136,6 +159,7 @@ def save_project(
     path: str | PathLike[str],
     surfaces: Mapping[str, HorizonFit] | None = None,
     provenances: Mapping[str, Mapping[str, Any]] | None = None,
+    meshes: Mapping[str, TriangleMesh] | None = None,
 ) -> Project:
     """Write a project file, and the surfaces that are given, as STEP, into ``NAME_surfaces`` beside it.
 
@@ -149,6 +173,8 @@ def save_project(
         Surfaces by horizon; each takes the place of its horizon's former result.
     provenances : mapping of str to mapping, optional
         From what each surface was made, by horizon, as JSON holds it.
+    meshes : mapping of str to TriangleMesh, optional
+        Triangles of bodies in map coordinates, by name; each takes the place of its body's former file.
 
     Returns
     -------
@@ -167,12 +193,18 @@ def save_project(
     Layout of the file: ``docs/formats_out.md``, "The project file".
     """
     target = Path(path)
-    former = {result.surface for result in (*project.results, *_written(target))}
+    before = _written(target)
+    former = {result.surface for result in (*project.results, *before.results)}
+    former |= {body.mesh for body in (*project.bodies, *before.bodies)}
     results = {result.horizon: result for result in project.results}
     for name, surface in (surfaces or {}).items():
         results[name] = replace(
             _write_surface(name, surface, target), provenance=plain((provenances or {}).get(name, {}))
         )
+    drawn = meshes or {}
+    bodies = tuple(
+        _with_mesh(body, drawn[body.name], target) if body.name in drawn else body for body in project.bodies
+    )
     sources = tuple(_hashed(source, target.parent) for source in project.sources)
     saved = Project(
         name=project.name,
@@ -181,9 +213,12 @@ def save_project(
         settings=dict(project.settings),
         edits=project.edits,
         results=tuple(results.values()),
+        bodies=bodies,
     )
-    head = {"format": FORMAT, "version": VERSION}
-    text = json.dumps(head | plain(asdict(saved)), ensure_ascii=False, indent=1, allow_nan=False)
+    data = {"format": FORMAT, "version": VERSION} | plain(asdict(saved))
+    if not bodies:
+        del data["bodies"]
+    text = json.dumps(data, ensure_ascii=False, indent=1, allow_nan=False)
     try:
         with replacing(target) as part:
             part.write_text(text + "\n", encoding="utf-8", newline="\n")
@@ -197,11 +232,11 @@ def save_project(
             message("project.folder-name", "Make the folder, or name another."),
             file=str(target),
         ) from None
-    for surface_file in former - {result.surface for result in saved.results}:
+    for old_file in former - {result.surface for result in saved.results} - {body.mesh for body in bodies}:
         # Only what this project wrote itself, never a file from elsewhere.
-        folder, _, name = surface_file.partition("/")
-        if folder == _folder(target).name and _SURFACE_FILE.fullmatch(name):
-            (_folder(target) / name).unlink(missing_ok=True)
+        folder, _, name = old_file.partition("/")
+        if folder == file_folder(target).name and (SURFACE_FILE.fullmatch(name) or BODY_FILE.fullmatch(name)):
+            (file_folder(target) / name).unlink(missing_ok=True)
     return saved
 
 
@@ -306,6 +341,7 @@ def _project(data: Mapping[str, Any]) -> Project:
         settings={name: _settings(values) for name, values in data.get("settings", {}).items()},
         edits=tuple(_entry(Edit, entry) for entry in data.get("edits", [])),
         results=tuple(_entry(ProjectResult, entry) for entry in data.get("results", [])),
+        bodies=tuple(_entry(ProjectBody, entry) for entry in data.get("bodies", [])),
     )
 
 
@@ -324,8 +360,12 @@ def _entry(kind: type[_Entry], values: Mapping[str, Any]) -> _Entry:
     if isinstance(entry, ProjectResult):
         # Another name could lead anywhere on the disk, from where a surface is read and where an old one is removed.
         folder, _, name = entry.surface.partition("/")
-        if not (_SURFACE_FOLDER.fullmatch(folder) and _SURFACE_FILE.fullmatch(name)):
+        if not (_SURFACE_FOLDER.fullmatch(folder) and SURFACE_FILE.fullmatch(name)):
             raise ValueError(f"the surface file is {entry.surface!r:.60}")
+    if isinstance(entry, ProjectBody) and entry.mesh:
+        folder, _, name = entry.mesh.partition("/")
+        if not (_SURFACE_FOLDER.fullmatch(folder) and BODY_FILE.fullmatch(name)):
+            raise ValueError(f"the file of a body is {entry.mesh!r:.60}")
     return entry
 
 
@@ -368,7 +408,9 @@ def _from_1(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _from_2(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Version 2 had no files beside those of the site file, and no earlier data."""
+    """Version 2 had no bodies, no files beside those of the site file, and no earlier data."""
+    if "bodies" in data:
+        raise ValueError("unknown key 'bodies'")
     return {**data, "version": 3}
 
 
@@ -376,48 +418,22 @@ def _from_2(data: Mapping[str, Any]) -> dict[str, Any]:
 MIGRATIONS: dict[int, Callable[[Mapping[str, Any]], dict[str, Any]]] = {0: _from_0, 1: _from_1, 2: _from_2}
 
 
-def _written(target: Path) -> tuple[ProjectResult, ...]:
-    """Return the results of the project that stands where another is to be written."""
+def _written(target: Path) -> Project:
+    """Return the project that is where another is to be written; an empty one if there is none."""
     if not target.is_file():
-        return ()
+        return Project(name="")
     try:
-        return open_project(target).results
+        return open_project(target)
     except InputError:
-        return ()  # no project, or a broken one: nothing in it can be trusted
-
-
-def _folder(target: Path) -> Path:
-    return target.with_name(f"{target.stem}_surfaces")
+        return Project(name="")  # no project, or a broken one: nothing in it can be trusted
 
 
 def _write_surface(name: str, surface: HorizonFit, target: Path) -> ProjectResult:
-    from geofit.cad.step import store_step
-
-    folder = _folder(target)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            message("run.folder-cannot", "The folder cannot be made: {error}", error=error.strerror or str(error)),
-            message("project.save-elsewhere", "Save elsewhere."),
-            file=str(folder),
-        ) from None
-    stem = file_stems([name])[name]
-    # Its own name: another window may save the same project.
-    draft = folder / f".{stem}.{uuid4().hex[:8]}.draft.step"
-    try:
-        store_step({name: surface}, draft)
-        digest = _sha256(draft)
-        final = folder / f"{stem}-{digest[:8]}.step"
-        draft.replace(final)
-    except InputError as error:
-        raise InputError(error.reason, error.remedy, file=str(target)) from None
-    finally:
-        draft.unlink(missing_ok=True)
+    file, digest = write_surface_file(name, surface, target)
     accuracy = surface.accuracy
     return ProjectResult(
         horizon=name,
-        surface=f"{folder.name}/{final.name}",
+        surface=file,
         sha256=digest,
         n=len(surface.points),
         sigma=None if accuracy is None else accuracy.sigma,
@@ -426,13 +442,13 @@ def _write_surface(name: str, surface: HorizonFit, target: Path) -> ProjectResul
     )
 
 
+def _with_mesh(body: ProjectBody, mesh: TriangleMesh, target: Path) -> ProjectBody:
+    file, digest = write_body_file(body.name, mesh, target)
+    return replace(body, mesh=file, sha256=digest)
+
+
 def _hashed(source: ProjectSource, folder: Path) -> ProjectSource:
     file = folder / source.path
     if source.sha256 or not file.is_file():
         return source
-    return ProjectSource(path=source.path, role=source.role, sha256=_sha256(file), mapping=dict(source.mapping))
-
-
-def _sha256(file: Path) -> str:
-    with file.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
+    return ProjectSource(path=source.path, role=source.role, sha256=sha256_of(file), mapping=dict(source.mapping))

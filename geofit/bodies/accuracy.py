@@ -15,7 +15,7 @@ from geofit.data.messages import Message, message
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["BodyAccuracy", "examine"]
+__all__ = ["BodyAccuracy", "crossed_pairs", "examine"]
 
 Floats = NDArray[np.float64]
 WORST = 20
@@ -185,18 +185,34 @@ def examine(body: BodyFit) -> BodyAccuracy:
     )
 
 
-def _between(body: BodyFit, xyz: Floats, hole: NDArray[np.str_], length: Floats, *, inside: bool) -> tuple[int, float]:
-    """Return crossings between neighbouring samples of one hole and side, and the length they take (metres)."""
+def crossed_pairs(
+    body: BodyFit, xyz: Floats, hole: NDArray[np.str_], length: Floats, *, inside: bool
+) -> tuple[Floats, Floats, NDArray[np.intp]]:
+    """Return where the surface crosses between neighbouring samples of one hole and side.
+
+    Returns
+    -------
+    tuple
+        The middles (k, 3) of such pairs, map coordinates, their distances (k,), metres, and the first of each pair.
+    """
     if len(xyz) < 2:
-        return 0, 0.0
+        return np.zeros((0, 3)), np.zeros(0), np.zeros(0, np.intp)
     gap = np.linalg.norm(np.diff(xyz, axis=0), axis=1)
     # Samples of one stretch lie one sample's length apart; a longer way leads to the next stretch.
-    pair = (hole[1:] == hole[:-1]) & (hole[1:] != "") & (gap < 1.01 * np.maximum(length[1:], length[:-1]))
+    pair = np.flatnonzero(
+        (hole[1:] == hole[:-1]) & (hole[1:] != "") & (gap < 1.01 * np.maximum(length[1:], length[:-1]))
+    )
     middle = (xyz[1:] + xyz[:-1])[pair] / 2
     value = body.value(middle)
     crossed = value >= 0 if inside else value <= 0
+    return middle[crossed], gap[pair][crossed], pair[crossed]
+
+
+def _between(body: BodyFit, xyz: Floats, hole: NDArray[np.str_], length: Floats, *, inside: bool) -> tuple[int, float]:
+    """Return crossings between neighbouring samples of one hole and side, and the length they take (metres)."""
+    gap = crossed_pairs(body, xyz, hole, length, inside=inside)[1]
     # Half the way between the two samples is off, by linear interpolation with both of them on their side.
-    return 2 * int(crossed.sum()), float(gap[pair][crossed].sum() / 2)
+    return 2 * len(gap), float(gap.sum() / 2)
 
 
 def _far_share(body: BodyFit, distance: float) -> float:

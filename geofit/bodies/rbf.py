@@ -108,8 +108,8 @@ class Saddle:
             matrix[size + 4 :, size + 4 :] = -np.diag(1.0 / VARIANCE)
         if not len(matrix):
             return
-        routines: Any = get_lapack_funcs(("sytrf", "sytrs", "sytrf_lwork"), (matrix,))
-        sytrf, self._sytrs, work = routines
+        routines: Any = get_lapack_funcs(("sytrf", "sytrf_lwork"), (matrix,))
+        sytrf, work = routines
         length = int(work(len(matrix), lower=1)[0])
         self._factor, self._pivots, info = sytrf(matrix, lower=1, lwork=length, overwrite_a=1)
         if info:
@@ -179,8 +179,11 @@ class Saddle:
         return self._solved(np.asfortranarray(rows.T))
 
     def _solved(self, right: Floats) -> Floats:
+        # Not kept: a routine of LAPACK cannot be sent to another process.
+        from scipy.linalg.lapack import dsytrs
+
         # LAPACK takes no empty system.
-        return np.asarray(self._sytrs(self._factor, self._pivots, right, lower=1)[0]) if right.size else right
+        return np.asarray(dsytrs(self._factor, self._pivots, right, lower=1)[0]) if right.size else right
 
 
 def _trend(points: Floats, oriented: Floats) -> Floats:

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import SettingsError
-from geofit.data.messages import message
+from geofit.data.messages import Message, Untranslated, message
 from geofit.data.numbers import is_finite, shown
+from geofit.data.setting_texts import BODY_SETTINGS
 
 __all__ = ["BodySettings"]
 
@@ -77,16 +78,16 @@ class BodySettings:
     seed: int = 0
 
     def __post_init__(self) -> None:
-        for name in ("epsilon", "coincidence_distance", "step", "reach"):
+        for name, text in BODY_SETTINGS.items():
             value = getattr(self, name)
-            if value is None and name in ("step", "reach"):
+            if text.number != "real" or (value is None and None in text.choices):
                 continue
             if not is_finite(value) or value <= 0:
                 raise SettingsError(
                     message(
                         "bodies.is-a-finite",
                         "{setting} is {value}; a finite number of metres above 0 is needed.",
-                        setting=name,
+                        setting=_named(name),
                         value=shown(value),
                     )
                 )
@@ -96,20 +97,22 @@ class BodySettings:
                     message(
                         "bodies.angle-degrees",
                         "{setting} is {value}; a finite angle in degrees is needed.",
-                        setting=name,
+                        setting=_named(name),
                         value=shown(getattr(self, name)),
                     )
                 )
-        for name, least in (("dense", 50), ("realizations", 10), ("seed", 0)):
+        for name, text in BODY_SETTINGS.items():
             value = getattr(self, name)
-            if not isinstance(value, int) or not is_finite(value) or value < least:
+            if text.number != "whole":
+                continue
+            if not isinstance(value, int) or not is_finite(value) or value < text.least:
                 raise SettingsError(
                     message(
                         "bodies.whole",
                         "{setting} is {value}; a whole number of at least {least} is needed.",
-                        setting=name,
+                        setting=_named(name),
                         value=shown(value),
-                        least=least,
+                        least=text.least,
                     )
                 )
         if not isinstance(self.closed, bool):
@@ -117,7 +120,7 @@ class BodySettings:
                 message(
                     "settings.true-false-needed",
                     "{setting} is {value}; true or false is needed.",
-                    setting="closed",
+                    setting=_named("closed"),
                     value=shown(self.closed),
                 )
             )
@@ -126,7 +129,8 @@ class BodySettings:
             raise SettingsError(
                 message(
                     "bodies.ranges-three",
-                    "ranges is {value}; three finite numbers above 0 are needed.",
+                    "{setting} is {value}; three finite numbers above 0 are needed.",
+                    setting=_named("ranges"),
                     value=shown(self.ranges),
                 )
             )
@@ -137,11 +141,18 @@ class BodySettings:
                 raise SettingsError(
                     message(
                         "bodies.box-lower-upper",
-                        "box is {value}; a lower and an upper corner in map coordinates are needed.",
+                        "{setting} is {value}; a lower and an upper corner in map coordinates are needed.",
+                        setting=_named("box"),
                         value=shown(self.box),
                     )
                 )
             object.__setattr__(self, "box", tuple(tuple(corner) for corner in box.tolist()))
+
+
+def _named(name: str) -> Message:
+    """Return what a setting is called, with its keyword."""
+    label = BODY_SETTINGS[name].label
+    return message("settings.label-keyword", "{label} ({name})", label=label, name=Untranslated(name))
 
 
 def _numbers(value: Any) -> NDArray[np.float64]:

@@ -1,7 +1,8 @@
 """What each setting of a fit is called, what it does, its unit and its choices: described once, read everywhere.
 
-The fit panel, the command line, the report, ``docs/settings.md`` and the errors of
-:class:`~geofit.data.settings.FitSettings` take their words and ranges from here.
+The panels, the command line, the report, ``docs/settings.md`` and the errors of
+:class:`~geofit.data.settings.FitSettings` and :class:`~geofit.bodies.settings.BodySettings` take their words and ranges
+from here.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import Literal
 
 from geofit.data.messages import Message, message
 
-__all__ = ["SETTINGS", "SettingText"]
+__all__ = ["BODY_SETTINGS", "SETTINGS", "SettingText"]
 
 
 @dataclass(frozen=True)
@@ -192,5 +193,119 @@ SETTINGS: Mapping[str, SettingText] = {
         ),
         "m",
         number="real",
+    ),
+}
+
+#: Every field of :class:`~geofit.bodies.settings.BodySettings`, in the order of the panel of bodies.
+BODY_SETTINGS: Mapping[str, SettingText] = {
+    "epsilon": SettingText(
+        message("settings.epsilon", "Control error ε"),
+        message(
+            "settings.body-epsilon-about",
+            "The body passes when σ, the standard deviation of its contacts from the surface, is below this.",
+        ),
+        "m",
+        number="real",
+    ),
+    "step": SettingText(
+        message("settings.step", "Sample spacing"),
+        message(
+            "settings.step-about",
+            "Distance between samples along logged intervals. Automatic: a quarter of the median interval in the body.",
+        ),
+        "m",
+        {None: _AUTO},
+        number="real",
+    ),
+    "closed": SettingText(
+        message("settings.closed", "Far from data"),
+        message(
+            "settings.closed-about",
+            "Outside: ground beyond the reach of all contacts and inside samples is not in the body, so that it "
+            "closes. Unknown: the body may continue there.",
+        ),
+        choices={
+            True: message("settings.closed-true", "Outside"),
+            False: message("settings.closed-false", "Unknown"),
+        },
+    ),
+    "reach": SettingText(
+        message("settings.reach", "Reach"),
+        message(
+            "settings.reach-about",
+            "How far from contacts and inside samples the body may extend. Automatic: 1.5 times the distance between "
+            "holes.",
+        ),
+        "m",
+        {None: _AUTO},
+        number="real",
+    ),
+    "ranges": SettingText(
+        message("settings.ranges", "Ranges"),
+        message(
+            "settings.ranges-about",
+            "How far data act along the major, the middle and the minor axis, relative to each other: 3 3 1 for a "
+            "flat lens.",
+        ),
+    ),
+    "azimuth": SettingText(
+        message("settings.azimuth", "Dip direction"),
+        message(
+            "settings.azimuth-about",
+            "Direction towards which the plane of the major and middle axes dips, clockwise from grid north.",
+        ),
+        "°",
+    ),
+    "dip": SettingText(
+        message("settings.dip", "Dip"),
+        message("settings.dip-about", "Dip of the plane of the major and middle axes."),
+        "°",
+    ),
+    "rake": SettingText(
+        message("settings.rake", "Rake"),
+        message(
+            "settings.rake-about",
+            "Angle in that plane from the line of steepest descent to the major axis, clockwise seen from above.",
+        ),
+        "°",
+    ),
+    "box": SettingText(
+        message("settings.box", "Box"),
+        message(
+            "settings.box-about",
+            "Lower and upper corner at which the body is cut, six map coordinates in metres. Empty: the box of the "
+            "data, enlarged by 1.5 times the reach.",
+        ),
+        choices={None: _AUTO},
+    ),
+    "coincidence_distance": SettingText(
+        message("settings.coincidence-distance", "Coincidence distance"),
+        message("settings.body-coincidence-about", "Contacts and samples closer than this to each other are one."),
+        "m",
+        number="real",
+    ),
+    "dense": SettingText(
+        message("settings.dense", "Conditions at once"),
+        message(
+            "settings.dense-about",
+            "Largest number of conditions that are solved at once; more are solved in overlapping parts.",
+        ),
+        number="whole",
+        least=50,
+    ),
+    "realizations": SettingText(
+        message("settings.realizations", "Simulations"),
+        message(
+            "settings.realizations-about", "Number of conditional simulations behind the volumes P10, P50 and P90."
+        ),
+        number="whole",
+        least=10,
+    ),
+    "seed": SettingText(
+        message("settings.seed", "Seed"),
+        message(
+            "settings.seed-about", "Start of the random numbers of the simulations: the same seed, the same volumes."
+        ),
+        number="whole",
     ),
 }

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
+from geofit.project.body_record import BodyRecord, BodyStyle
 from geofit.project.provenance import DocumentError, Part, Provenance, Row
 from geofit.project.state import State
 
@@ -76,12 +77,12 @@ def known(state: State, horizon: str) -> None:
 
 
 def _plain(value: Any) -> Any:
-    if isinstance(value, (Provenance, Part)):
+    if isinstance(value, (Provenance, Part, BodyRecord)):
         return value.to_data()
     if isinstance(value, dict):
         return {name: _plain(one) for name, one in value.items()}
     if isinstance(value, tuple) and value and isinstance(value[0], Row):
         return [asdict(row) for row in value]
-    if isinstance(value, (FitSettings, Row)):
+    if isinstance(value, (FitSettings, Row, BodyStyle)):
         return asdict(value)
     return value

@@ -13,6 +13,7 @@ from typing import Any
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
 from geofit.project.area_command import SetArea
+from geofit.project.body_commands import DeleteBody, RenameBody, SetBody, StyleBody
 from geofit.project.command import Command, known
 from geofit.project.data_commands import ChangeData
 from geofit.project.horizon_commands import MergeHorizons, RemoveHorizons, RenameHorizon
@@ -341,7 +342,7 @@ COMMANDS: dict[str, type[Command]] = {
     for command in (
         SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, SplitAtFaults, AdjustControlPoint, ChangeWeight,
         MoveToPoint, SeparateHorizons, SetOrder, RenameSite, ChangeData, SetArea,
-        RenameHorizon, RemoveHorizons, MergeHorizons,
+        RenameHorizon, RemoveHorizons, MergeHorizons, SetBody, RenameBody, DeleteBody, StyleBody,
     )
 }  # fmt: skip
 

@@ -12,6 +12,9 @@ from geofit.data.prediction import PredictionResult
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.project.body_building import BodyResult
+from geofit.project.body_record import BodyProvenance
+from geofit.project.body_shelf import BodyShelf
 from geofit.project.building import Given, given_of
 from geofit.project.fault_blocks import Blocks, site_with_blocks
 from geofit.project.horizon_commands import MergeHorizons
@@ -49,6 +52,8 @@ class Document:
         Settings; rows that take part; the surface, its check or what is known away from the data.
     order_changed(), name_changed()
         The order of the horizons; the site's title.
+    bodies_changed()
+        A body came, went, has another name or style, or became available.
     selection_changed(selection)
         Another horizon or row was chosen.
     saved_changed()
@@ -60,7 +65,7 @@ class Document:
         self.site_file: Path | None = None
         self.project_file: Path | None = None
         self.selection = Selection()
-        self.shelf = Shelf()
+        self.shelf, self.bodies = Shelf(), BodyShelf()
         self._state = self._saved = State()
         self._points: dict[tuple[str, frozenset[Row]], PointSet] = {}
         self._fingerprints: dict[str, str] = {}
@@ -75,6 +80,7 @@ class Document:
         self.result_changed: Signal[[str]] = Signal()
         self.order_changed: Signal[[]] = Signal()
         self.name_changed: Signal[[]] = Signal()
+        self.bodies_changed: Signal[[]] = Signal()
         self.selection_changed: Signal[[Selection]] = Signal()
         self.saved_changed: Signal[[]] = Signal()
 
@@ -89,6 +95,7 @@ class Document:
         """Begin with a site, and with the work that a project or a journal holds; ``data`` are its earlier data."""
         self.site_file, self.project_file = site_file, project_file
         self.shelf.clear()
+        self.bodies.clear()
         self._judged.clear()
         self._listings.clear()
         self._comparisons.clear()
@@ -156,6 +163,8 @@ class Document:
                 self.points_changed.emit(name)
             if former.provenances.get(name) != state.provenances.get(name):
                 self.result_changed.emit(name)
+        if former.bodies != state.bodies or list(former.bodies) != list(state.bodies):
+            self.bodies_changed.emit()
         if former.order != state.order:
             self.order_changed.emit()
         if former.name != state.name:
@@ -311,6 +320,23 @@ class Document:
         name = pair[1].horizon
         self._comparisons[name] = (pair, found)
         self._tell_of(pair[1])
+
+    def body(self, name: str) -> BodyResult | None:
+        """Return a body of the state; None if it is wanted but not made yet."""
+        record = self._state.bodies.get(name)
+        return None if record is None else self.bodies.get(record.provenance)
+
+    def made_bodies(self) -> Mapping[str, BodyResult]:
+        """Return the bodies available, by name."""
+        found = {name: self.body(name) for name in self._state.bodies}
+        return {name: result for name, result in found.items() if result is not None}
+
+    def put_body(self, provenance: BodyProvenance, result: BodyResult) -> None:
+        """Lay a body on the shelf; it is shown as soon as the state has its provenance."""
+        wanted = {record.provenance for record in self._state.bodies.values()}
+        self.bodies.put(provenance, result, wanted)
+        if provenance in wanted:
+            self.bodies_changed.emit()
 
     def stale(self, name: str) -> bool:
         """Whether the surface was made from other settings, rows or files than the horizon has now."""

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from geofit.data.languages import language
-from geofit.data.messages import Message
+from geofit.data.messages import Message, message
 from geofit.data.prediction import PredictionResult
 from geofit.data.progress import Progress, tell
+from geofit.project.body_building import BodyResult
 from geofit.project.fault_blocks import Blocks, site_fit
 from geofit.project.run import Form, write_reports
+from geofit.project.single_reports import BodyPart, body_part
 from geofit.report.result import HorizonResult
 
 __all__ = ["ReportFiles", "write_report_files"]
@@ -39,21 +41,45 @@ def write_report_files(
     forms: Sequence[Form],
     examined: bool,
     date: str,
+    bodies: Mapping[str, BodyResult] | None = None,
     *,
     progress: Progress,
 ) -> ReportFiles:
     """Write the accuracy report of surfaces; errors as :func:`geofit.project.run.write_reports`.
 
-    ``code`` is the language's ("en", "zh"): its catalogue need not travel to another process.
+    ``code`` is the language's ("en", "zh"): its catalogue need not travel to another process. ``bodies`` that were
+    fitted get a chapter each.
     """
     tell(progress, "order", 0.0)
     fits = site_fit({result.name: result.surface for result in results}, blocks, progress)
+    parts, failed = _parts(bodies or {}, results, code, progress)
     made = write_reports(
-        results, folder, progress, language=language(code), forms=forms, examined=examined, date=date, fits=fits
-    )
+        results, folder, progress, language=language(code), forms=forms, examined=examined, date=date, fits=fits,
+        bodies=parts,
+    )  # fmt: skip
     new = {
         after.name: after.prediction
         for before, after in zip(results, made.results, strict=True)
         if before.prediction is None and after.prediction is not None and before.surface.model is not None
     }
-    return ReportFiles(made.files, made.warnings, new)
+    return ReportFiles(made.files, (*made.warnings, *failed), new)
+
+
+def _parts(
+    bodies: Mapping[str, BodyResult], results: Sequence[HorizonResult], code: str, progress: Progress
+) -> tuple[list[BodyPart], list[Message]]:
+    """Return the chapters of bodies, and why there is none of others."""
+    horizons = {result.name: result.surface for result in results}
+    parts: list[BodyPart] = []
+    failed: list[Message] = []
+    for name, result in bodies.items():
+        body, volumes = result.fitted, result.volumes
+        if body is None or volumes is None:
+            continue
+        tell(progress, message("run.stage-of", "{name}: {stage}", name=name, stage="body"), 0.0)
+        part = body_part(replace(body, name=name), volumes, None, horizons, language(code))
+        if isinstance(part, Message):
+            failed.append(message("run.body-unreported", "Body {name}: {reason}", name=name, reason=part))
+        else:
+            parts.append(part)
+    return parts, failed

@@ -262,6 +262,7 @@ def write_reports(
     examined: bool = False,
     date: str = "",
     fits: SiteFit | None = None,
+    bodies: Sequence[BodyPart] = (),
 ) -> Reports:
     """Write the accuracy report of surfaces that are there already; nothing else is written.
 
@@ -285,6 +286,8 @@ def write_reports(
         ISO 8601; empty: SOURCE_DATE_EPOCH, else today.
     fits : SiteFit, optional
         Where some of the surfaces are blocks of faulted horizons: of which, and what the faults displace.
+    bodies : sequence of BodyPart
+        Chapters of bodies, in their order.
 
     Raises
     ------
@@ -307,7 +310,7 @@ def write_reports(
 
         pdf_fonts(chinese=True)
     _make(out)
-    images: dict[str, bytes] = {}
+    images: dict[str, bytes] = {name: picture for part in bodies for name, picture in part.images.items()}
     made: list[HorizonResult] = []
     warnings: list[Message] = []
     sections = report_sections(results[0].site, [result.surface.points for result in results])
@@ -339,7 +342,7 @@ def write_reports(
         images |= draw_sections(made, sections, language)
     whole, font = draw_site(made, language) if pictured else Pictures({}, None, None), _font_warning(made)
     tell(progress, "report", 0.95)
-    _write_report(report, whole, images, out, language, font, forms)
+    _write_report(report, whole, images, out, language, font, forms, [part.chapter for part in bodies])
     files = {form: out / f"report.{form}" for form in forms}
     return Reports(files, tuple(text for text in (font, *warnings, unordered, whole.missing) if text), tuple(made))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,9 +17,13 @@ from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.implicit.mesh import TriangleMesh
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
 from geofit.io.site_file import read_site
 from geofit.io.snapshot import read_snapshot, write_snapshot
+from geofit.project.body_building import BodyResult
+from geofit.project.body_record import BodyProvenance
+from geofit.project.body_saving import SavedBody, bodies_of, read_bodies, records_of
 from geofit.project.building import beside
 from geofit.project.fault_blocks import site_with_blocks
 from geofit.project.horizon_edits import HorizonEdit, shaped
@@ -46,7 +50,8 @@ _SITE = "site"
 class Opened:
     """A project that was read: its site, the work on it, and what is "missing" or "changed" since, by path.
 
-    ``data`` are the earlier data of the site that the work names.
+    ``data`` are the earlier data of the site that the work names, ``bodies`` those whose triangles the project holds,
+    as they were saved.
     """
 
     site: Site
@@ -55,6 +60,7 @@ class Opened:
     project: Project
     changed: Mapping[str, str]
     data: tuple[Site, ...] = ()
+    bodies: Mapping[BodyProvenance, BodyResult] = field(default_factory=dict)
 
 
 def read_project(path: Path, progress: Progress | None = None) -> Opened:
@@ -88,7 +94,8 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
         if digest not in data:
             file = _data_file(path, digest)
             changed[_relative(file, path.parent)] = "changed" if file.is_file() else "missing"
-    return Opened(site, site_file, state, project, changed, tuple(data.values()))
+    bodies = read_bodies(project, path.parent, changed)
+    return Opened(site, site_file, state, project, changed, tuple(data.values()), bodies)
 
 
 def read_again(site_file: Path, added: tuple[str, ...], *, progress: Progress | None = None) -> Site:
@@ -113,12 +120,13 @@ def save_state(
     surfaces: Mapping[Provenance, HorizonFit],
     same: bool,
     data: Mapping[str, Site] | None = None,
+    bodies: Mapping[str, SavedBody] | None = None,
     *,
     progress: Progress,
 ) -> Written:
     """Write a state as a project; ``same`` if it replaces the project that was opened, whose surfaces may stay.
 
-    ``data`` are the earlier data that the state names, by their names.
+    ``data`` are the earlier data that the state names, by their names; ``bodies`` are those available, by name.
     """
     former = None
     if same and path.is_file():
@@ -127,11 +135,13 @@ def save_state(
         except InputError:
             former = None  # whatever is there is replaced
     project = project_of(state, site, site_file, path, former)
+    project = replace(project, bodies=bodies_of(state, bodies or {}, former, path.parent))
     tell(progress, "write", 0.3)
     for digest, earlier in (data or {}).items():
         if not _data_file(path, digest).is_file():
             write_snapshot(earlier, _data_file(path, digest))
-    return Written(path, state, write_project(project, path, new_surfaces(project, surfaces)))
+    meshes = {name: body.mesh for name, body in (bodies or {}).items()}
+    return Written(path, state, write_project(project, path, new_surfaces(project, surfaces), meshes))
 
 
 def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Provenance, HorizonFit]:
@@ -190,8 +200,9 @@ def state_of(project: Project, site: Site) -> State:
         if edit.kind == "earlier" and edit.horizon in order
     }
     return State(
-        project.name, order, settings, excluded, provenances, parts, data, _added(project), earlier, area, horizons
-    )
+        project.name, order, settings, excluded, provenances, parts, data, _added(project), earlier, area, horizons,
+        records_of(project),
+    )  # fmt: skip
 
 
 def _added(project: Project) -> tuple[str, ...]:
@@ -251,12 +262,16 @@ def project_of(state: State, site: Site, site_file: Path, target: Path, former: 
     )
 
 
-def write_project(project: Project, path: Path, surfaces: Mapping[Provenance, HorizonFit]) -> Project:
-    """Write a project file, and the surfaces that are new to it."""
+def write_project(
+    project: Project,
+    path: Path,
+    surfaces: Mapping[Provenance, HorizonFit],
+    meshes: Mapping[str, TriangleMesh] | None = None,
+) -> Project:
+    """Write a project file, the surfaces that are new to it, and the triangles of bodies."""
     by_horizon = {provenance.horizon: surface for provenance, surface in surfaces.items()}
-    return save_project(
-        project, path, by_horizon, {provenance.horizon: provenance.to_data() for provenance in surfaces}
-    )
+    provenances = {provenance.horizon: provenance.to_data() for provenance in surfaces}
+    return save_project(project, path, by_horizon, provenances, meshes)
 
 
 def new_surfaces(project: Project, surfaces: Mapping[Provenance, HorizonFit]) -> dict[Provenance, HorizonFit]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -17,14 +17,24 @@ from geofit.data.title_block import TitleBlock
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
     from geofit.bodies.drilling import SuggestedHole
+    from geofit.bodies.simulate import BodyVolumes
     from geofit.bodies.strata import StratumVolume
+    from geofit.cad.solid import SolidReadBack
     from geofit.data.site import Site
     from geofit.project.body_run import BodyRun
     from geofit.project.pores_run import PoresRun
     from geofit.report.body_chapter import BodyFindings
     from geofit.report.document import Chapter, Document
 
-__all__ = ["BodyPart", "body_findings", "write_body_part", "write_body_report", "write_pores_report"]
+__all__ = [
+    "BodyPart",
+    "body_findings",
+    "body_part",
+    "reaching",
+    "write_body_part",
+    "write_body_report",
+    "write_pores_report",
+]
 
 T = TypeVar("T")
 
@@ -55,13 +65,23 @@ def body_findings(
     dict of str to bytes
         Pictures as PNG by their names in the report.
     """
+    return _findings(run.body, run.volumes, run.read_back, horizons, t, progress)
+
+
+def _findings(
+    body: BodyFit,
+    volumes: BodyVolumes,
+    read_back: SolidReadBack | None,
+    horizons: Mapping[str, Any] | None,
+    t: Language,
+    progress: Progress | None = None,
+) -> tuple[BodyFindings, dict[str, bytes]]:
     from geofit.bodies.crossval import leave_one_hole_out
     from geofit.bodies.drilling import suggest_holes
     from geofit.bodies.strata import strata_table
     from geofit.report.body_chapter import BodyFindings
     from geofit.report.body_pictures import draw_body
 
-    body = run.body
     missing: list[Message] = []
 
     def tried(work: Callable[[], T], instead: T, what: Message) -> T:
@@ -76,10 +96,10 @@ def body_findings(
     strata: tuple[StratumVolume, ...] = ()
     none: tuple[SuggestedHole, ...] = ()
     if horizons:
-        reaching = dict(_over(body, horizons))
-        if reaching:
+        over = reaching(body, horizons)
+        if over:
             strata = tried(
-                lambda: strata_table(body, reaching), strata, message("run.what-strata", "the volume in each stratum")
+                lambda: strata_table(body, over), strata, message("run.what-strata", "the volume in each stratum")
             )
     tell(progress, "holes left out", 0.2)
     left_out = tried(
@@ -94,7 +114,7 @@ def body_findings(
     if no_space:
         missing.append(no_space)
     pictures = tuple(what for what in ("view", "section") if f"body/{what}/{body.name}" in images)
-    found = BodyFindings(body, run.volumes, run.read_back, strata, left_out, suggested, pictures, tuple(missing))
+    found = BodyFindings(body, volumes, read_back, strata, left_out, suggested, pictures, tuple(missing))
     return found, images
 
 
@@ -106,6 +126,26 @@ class BodyPart:
     chapter: Chapter
     images: Mapping[str, bytes]
     passed: bool
+
+
+def body_part(
+    body: BodyFit,
+    volumes: BodyVolumes,
+    read_back: SolidReadBack | None,
+    horizons: Mapping[str, Any],
+    t: Language,
+    progress: Progress | None = None,
+) -> BodyPart | Message:
+    """Lay out the chapter of a body that was fitted already; or return why that failed."""
+    from geofit.report.body_chapter import body_chapter
+
+    def part() -> BodyPart:
+        found, images = _findings(body, volumes, read_back, horizons, t, progress)
+        return BodyPart(body.name, body_chapter(found, t), images, found.accuracy.passed)
+
+    failed: list[Message] = []
+    made = guarded(part, None, failed.append)
+    return failed[0] if made is None else made
 
 
 def write_body_part(
@@ -129,16 +169,16 @@ def _body_part(site: Site, code: str, horizons: Mapping[str, Any], out: Path, la
     return BodyPart(name, body_chapter(found, t), images, run.accuracy.passed)
 
 
-def _over(body: BodyFit, horizons: Mapping[str, Any]) -> Sequence[tuple[str, Any]]:
+def reaching(body: BodyFit, horizons: Mapping[str, Any]) -> dict[str, Any]:
     """Return the horizons that reach all over a body: only those can divide its volume."""
     import numpy as np
 
     xyz = body.overview.vertices + body.origin
-    return [
-        (name, surface)
+    return {
+        name: surface
         for name, surface in horizons.items()
         if surface.frame == "map" and np.isfinite(surface.elevation(xyz[:, 0], xyz[:, 1])).all()
-    ]
+    }
 
 
 def write_body_report(

@@ -8,6 +8,7 @@ from typing import Any
 
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
+from geofit.project.body_record import BodyRecord
 from geofit.project.horizon_edits import HorizonEdit, shaped
 from geofit.project.provenance import Corners, Earlier, Part, Provenance, Row, corners_from, data_digest, settings_from
 
@@ -22,7 +23,8 @@ class State:
     ``provenances`` of the surfaces by horizon. ``parts`` names the blocks that are in the place of horizons that faults
     cut: each is a horizon like the others. ``data`` names the data of the site, ``added`` holds the tables of files
     that its site file does not name, as TOML; ``earlier`` is from what surfaces were made before the data changed,
-    ``area`` the study area if one was drawn, ``horizons`` which of them were renamed, removed and merged.
+    ``area`` the study area if one was drawn, ``horizons`` which of them were renamed, removed and merged. ``bodies``
+    are closed bodies by their names.
     """
 
     name: str = ""
@@ -36,6 +38,7 @@ class State:
     earlier: Mapping[str, Earlier] = field(default_factory=dict)
     area: Corners | None = None
     horizons: tuple[HorizonEdit, ...] = ()
+    bodies: Mapping[str, BodyRecord] = field(default_factory=dict)
 
     def shaped(self, site: Site) -> Site:
         """Return a site that was read as it is worked on: with the study area and the horizons of this state."""
@@ -49,7 +52,7 @@ class State:
 
     def to_data(self) -> dict[str, Any]:
         """Return numbers, words, lists and mappings only."""
-        return {
+        data: dict[str, Any] = {
             "name": self.name,
             "order": list(self.order),
             "settings": {name: asdict(settings) for name, settings in self.settings.items()},
@@ -62,6 +65,9 @@ class State:
             "horizons": [one.to_data() for one in self.horizons],
             "earlier": {name: one.to_data() for name, one in self.earlier.items()},
         }
+        if self.bodies:
+            data["bodies"] = {name: record.to_data() for name, record in self.bodies.items()}
+        return data
 
     @classmethod
     def from_data(cls, data: Mapping[str, Any]) -> State:
@@ -78,4 +84,5 @@ class State:
             {name: Earlier.from_data(one) for name, one in data.get("earlier", {}).items()},
             corners_from(data.get("area")),
             tuple(HorizonEdit.from_data(one) for one in data.get("horizons", ())),
+            {name: BodyRecord.from_data(record) for name, record in data.get("bodies", {}).items()},
         )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -27,6 +27,7 @@ from geofit.data.site import Site
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.preferences import Preferences
 from geofit.gui.translate import translated
+from geofit.project.body_building import BodyResult
 from geofit.project.building import Given
 from geofit.project.fault_blocks import Blocks
 from geofit.project.reporting import ReportFiles, write_report_files
@@ -56,8 +57,10 @@ class ReportDialog(TaskDialog):
         parent: QWidget | None = None,
         blocks: Blocks | None = None,
         folder: Path | None = None,
+        bodies: Mapping[str, BodyResult] | None = None,
     ) -> None:
         super().__init__(parent)
+        self._bodies = dict(bodies or {})
         self._blocks = blocks or Blocks({}, Given(site))
         self.setWindowTitle(self.tr("Accuracy report"))
         self._results = list(results)
@@ -87,8 +90,10 @@ class ReportDialog(TaskDialog):
         self._lay_out(site)
         self.go.clicked.connect(self._write)
         self.view.clicked.connect(self.open_result)
-        names = ", ".join(result.name for result in self._results)
-        self.say(self.tr("Horizons: {names}").format(names=names), "report")
+        words = self.tr("Horizons: {names}").format(names=", ".join(result.name for result in self._results))
+        if self._bodies:
+            words += " · " + self.tr("Bodies: {names}").format(names=", ".join(self._bodies))
+        self.say(words, "report")
         self.refresh()
 
     def open_result(self) -> None:
@@ -150,7 +155,16 @@ class ReportDialog(TaskDialog):
         ]
         date = self.date.date().toString(Qt.DateFormat.ISODate)
         folder = Path(self.folder.text().strip()).expanduser()
-        work = (results, self._blocks, folder, self.language.currentData(), self._chosen(), examined, date)
+        work = (
+            results,
+            self._blocks,
+            folder,
+            self.language.currentData(),
+            self._chosen(),
+            examined,
+            date,
+            self._bodies,
+        )
         self._path = None
         self.say(self.tr("Writing the report…"), "report")
         self.begin(

@@ -7,7 +7,7 @@ from typing import Any
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QLineEdit, QSizePolicy, QWidget
 
-__all__ = ["AutoField", "ChoiceField", "CoreField", "Field", "NumberField"]
+__all__ = ["AutoField", "ChoiceField", "CoreField", "Field", "NumberField", "NumbersField"]
 
 
 class NumberField(QWidget):
@@ -116,6 +116,49 @@ class AutoField(QWidget):
         self.changed.emit()
 
 
+class NumbersField(QWidget):
+    """So many numbers in one line, apart by spaces; nothing where ``empty`` is what the settings hold then.
+
+    What cannot be read as these numbers is handed on as text, for the settings to refuse. ``rows`` numbers make one
+    tuple each.
+    """
+
+    changed = Signal()
+
+    def __init__(self, count: int, *, rows: int = 0, empty: Any = "", hint: str = "") -> None:
+        super().__init__()
+        self._count, self._rows, self._empty = count, rows, empty
+        self.edit = QLineEdit()
+        self.edit.setAlignment(Qt.AlignmentFlag.AlignRight)
+        self.edit.setMinimumWidth(54)
+        self.edit.setPlaceholderText(hint)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(self.edit)
+        self.edit.textEdited.connect(lambda _: self.changed.emit())
+        self.setFocusProxy(self.edit)
+
+    def value(self) -> Any:
+        """Return the numbers as a tuple, or of tuples; the text if they are not these."""
+        text = self.edit.text().strip()
+        if not text:
+            return self._empty
+        try:
+            numbers = tuple(float(word) for word in text.replace(";", " ").split())
+        except ValueError:
+            return text
+        if len(numbers) != self._count:
+            return text
+        step = self._rows
+        return tuple(numbers[k : k + step] for k in range(0, self._count, step)) if step else numbers
+
+    def put(self, value: Any) -> None:
+        """Show numbers without emitting."""
+        if self.value() != value:
+            flat = [] if value == self._empty else [x for one in value for x in (one if self._rows else (one,))]
+            self.edit.setText(" ".join(f"{x:.10g}" for x in flat))
+
+
 class CoreField(ChoiceField):
     """Automatic, all, none, or the polygon that was drawn in the plan."""
 
@@ -146,4 +189,4 @@ class CoreField(ChoiceField):
 
 
 #: What the panel works with: each takes and gives one value, and ``changed`` reports each keystroke or choice.
-Field = NumberField | ChoiceField | AutoField
+Field = NumberField | ChoiceField | AutoField | NumbersField

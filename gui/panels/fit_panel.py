@@ -2,34 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import fields
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QPalette
-from PySide6.QtWidgets import (
-    QFrame,
-    QGridLayout,
-    QHBoxLayout,
-    QLabel,
-    QPushButton,
-    QScrollArea,
-    QSizePolicy,
-    QStyle,
-    QToolButton,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QLabel, QPushButton, QStyle, QVBoxLayout, QWidget
 
-from geofit.data.errors import SettingsError
 from geofit.data.setting_texts import SETTINGS
 from geofit.data.settings import FitSettings
-from geofit.gui.panels.fit_fields import AutoField, ChoiceField, CoreField, Field, NumberField
-from geofit.gui.panels.marks import icon, readable
+from geofit.gui.panels.fit_fields import AutoField, ChoiceField, CoreField, NumberField
+from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.translate import translated
-from geofit.report.style import FAIL
+from geofit.gui.panels.settings_form import SettingsForm, scrolling
 
-__all__ = ["FIRST", "FitPanel"]
+__all__ = ["FIRST", "Banner", "FitPanel"]
 
 #: Fields that are always shown; the others unfold.
 FIRST = ("epsilon", "interior_tolerance", "core", "smoothing")
@@ -48,45 +33,17 @@ class FitPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._name, self._settings, self._stale, self._locked = "", FitSettings(), False, False
-        self.fields: dict[str, Field] = {}
-        self.errors: dict[str, QLabel] = {}
-        self._labels: dict[str, QLabel] = {}
         self.title = QLabel()
         font = self.title.font()
         font.setBold(True)
         self.title.setFont(font)
         self.title.setWordWrap(True)
-        self.banner = _Banner()
-        self._form, self._rest = QVBoxLayout(), QVBoxLayout()
-        for form in (self._form, self._rest):
-            form.setSpacing(2)
-            form.setContentsMargins(0, 0, 0, 0)
-        self.more = QToolButton()
-        self.more.setText(self.tr("More settings"))
-        self.more.setCheckable(True)
-        self.more.setAutoRaise(True)
-        self.more.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        others = QWidget()
-        others.setLayout(self._rest)
+        self.banner = Banner()
+        self.form = SettingsForm(SETTINGS, FitSettings, FIRST)
+        self.fields, self.errors, self.more = self.form.fields, self.form.errors, self.form.more
         self._make_fields()
-        page = QWidget()
-        column = QVBoxLayout(page)
-        column.setContentsMargins(8, 8, 8, 8)
-        column.setSpacing(6)
-        column.addLayout(self._form)
-        column.addWidget(self.more)
-        column.addWidget(others)
-        column.addStretch(1)
-        self.more.toggled.connect(others.setVisible)
-        self.more.toggled.connect(self._turn_arrow)
-        others.hide()
-        self._turn_arrow(False)
-        scroll = QScrollArea()
-        scroll.setWidget(page)
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.form.changed.connect(self._check)
+        scroll = scrolling(self.form)
         self.apply_button = QPushButton(self.tr("Apply"))
         self.reset_button = QPushButton(self.tr("Reset"))
         self.fit_button = QPushButton(self.tr("Fit"))
@@ -144,85 +101,32 @@ class FitPanel(QWidget):
 
     def edited(self) -> FitSettings | None:
         """Return the settings as written in the form; None while one is out of its range."""
-        try:
-            return FitSettings(**{name: field.value() for name, field in self.fields.items()})
-        except SettingsError:
-            return None
+        found: FitSettings | None = self.form.edited()
+        return found
 
     def _make_fields(self) -> None:
         unit = self.tr("m")
         automatic = {True: self.tr("Automatic"), False: self.tr("Fixed")}
         at_most = {True: self.tr("Automatic"), False: self.tr("At most")}
-        self._add("epsilon", NumberField(unit))
-        self._add("interior_tolerance", NumberField(unit))
-        self._add("core", CoreField(_choices("core"), self.tr("Drawn, {n} corners")))
-        self._add("smoothing", AutoField("auto", automatic))
-        self._head(self.tr("Shape"))
-        self._add("boundary_tolerance", NumberField(unit))
+        add, head, choices = self.form.add, self.form.head, self.form.choices
+        add("epsilon", NumberField(unit))
+        add("interior_tolerance", NumberField(unit))
+        add("core", CoreField(choices("core"), self.tr("Drawn, {n} corners")))
+        add("smoothing", AutoField("auto", automatic))
+        head(self.tr("Shape"))
+        add("boundary_tolerance", NumberField(unit))
         for name in ("across", "seam", "frame"):
-            self._add(name, ChoiceField(_choices(name)))
-        self._head(self.tr("Fit"))
+            add(name, ChoiceField(choices(name)))
+        head(self.tr("Fit"))
         for name in ("robust", "strict"):
-            self._add(name, ChoiceField(_choices(name)))
-        self._add("max_iterations", NumberField(whole=True))
-        self._add("max_control_points", AutoField(None, at_most, whole=True, start=2000))
-        self._add("coincidence_distance", NumberField(unit))
+            add(name, ChoiceField(choices(name)))
+        add("max_iterations", NumberField(whole=True))
+        add("max_control_points", AutoField(None, at_most, whole=True, start=2000))
+        add("coincidence_distance", NumberField(unit))
         assert set(self.fields) == {field.name for field in fields(FitSettings)}
 
-    def _turn_arrow(self, unfolded: bool) -> None:
-        self.more.setArrowType(Qt.ArrowType.DownArrow if unfolded else Qt.ArrowType.RightArrow)
-
-    def _head(self, words: str) -> None:
-        label = QLabel(words)
-        font = label.font()
-        font.setBold(True)
-        label.setFont(font)
-        self._rest.addSpacing(4)
-        self._rest.addWidget(label)
-
-    def _add(self, name: str, field: Field) -> None:
-        words, about = translated(SETTINGS[name].label), translated(SETTINGS[name].about)
-        label, error = QLabel(words), QLabel()
-        label.setBuddy(field)
-        label.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        label.setMinimumWidth(40)
-        error.setWordWrap(True)
-        error.hide()
-        for widget in (label, field):
-            widget.setToolTip(about)
-        target = field.focusProxy() or field
-        target.setAccessibleName(words)
-        target.setAccessibleDescription(about)
-        row = QHBoxLayout()
-        row.setSpacing(6)
-        row.addWidget(label, 5)
-        row.addWidget(field, 5)
-        form = self._form if name in FIRST else self._rest
-        form.addLayout(row)
-        form.addWidget(error)
-        field.changed.connect(self._check)
-        self.fields[name], self.errors[name], self._labels[name] = field, error, label
-
     def _check(self) -> None:
-        """Validate each field for itself, so that every error is next to its own field."""
-        sound = True
-        for name, field in self.fields.items():
-            value, text = field.value(), ""
-            try:
-                replace(self._settings, **{name: value})
-            except SettingsError as error:
-                text = translated(str(error))
-                if isinstance(value, str) and "," in value:
-                    text = self.tr("Write the decimal mark as a point: 0.5, not 0,5.")
-            colours = self.errors[name].palette()
-            colours.setColor(QPalette.ColorRole.WindowText, readable(FAIL, self.palette()))
-            self.errors[name].setPalette(colours)
-            self.errors[name].setText(text)
-            self.errors[name].setVisible(bool(text))
-            if text and name not in FIRST:
-                self.more.setChecked(True)
-            sound = sound and not text
-        new = self.edited() if sound else None
+        new = self.form.check(self._settings)
         changed = new != self._settings
         self.apply_button.setEnabled(new is not None and changed)
         self.reset_button.setEnabled(changed)
@@ -239,8 +143,7 @@ class FitPanel(QWidget):
         )
 
     def _reset(self) -> None:
-        for name, field in self.fields.items():
-            field.put(getattr(self._settings, name))
+        self.form.put(self._settings)
         self._check()
 
     def _apply(self) -> bool:
@@ -258,12 +161,7 @@ class FitPanel(QWidget):
             self.fit_requested.emit(self._name)
 
 
-def _choices(name: str) -> dict[object, str]:
-    """Return the words of a setting's choices in the user's language."""
-    return {value: translated(text) for value, text in SETTINGS[name].choices.items()}
-
-
-class _Banner(QFrame):
+class Banner(QFrame):
     """A line with a warning mark."""
 
     def __init__(self) -> None:

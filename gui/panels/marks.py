@@ -129,6 +129,8 @@ def _things(painter: QPainter, box: QRectF, name: str, at: Callable[[float, floa
         painter.setBrush(QBrush(QColor(colour)))
         shift = 0.0 if kind == "horizon" else 0.12
         painter.drawPolygon(QPolygonF([at(0.0, 0.6), at(0.45, 0.2 + shift), at(1.0, 0.4), at(0.55, 0.85 - shift)]))
+    elif name.startswith("body:"):
+        _body(painter, box, name)
     elif name == "report":
         painter.setPen(QPen(QColor(QUIET), side / 12))
         painter.setBrush(Qt.BrushStyle.NoBrush)
@@ -139,6 +141,25 @@ def _things(painter: QPainter, box: QRectF, name: str, at: Callable[[float, floa
         _band(painter, name, at)
     else:
         raise ValueError(f"there is no mark named '{name}'")
+
+
+def _body(painter: QPainter, box: QRectF, name: str) -> None:
+    """Paint a lump in a body's colour with the mark of its verdict in a corner: "body:#aabbcc:passed"."""
+    _, colour, *mark = name.split(":")
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(colour))
+    side = box.width()
+    lump = QPainterPath(box.topLeft() + QPointF(0.04 * side, 0.5 * side))
+    for (x1, y1), (x2, y2), (x, y) in (
+        ((0.0, 0.1), (0.4, 0.0), (0.6, 0.1)), ((0.95, 0.2), (1.05, 0.55), (0.85, 0.75)),
+        ((0.6, 1.0), (0.1, 0.95), (0.04, 0.5)),
+    ):  # fmt: skip
+        first, second, end = (box.topLeft() + QPointF(a * side, b * side) for a, b in ((x1, y1), (x2, y2), (x, y)))
+        lump.cubicTo(first, second, end)
+    painter.drawPath(lump)
+    if mark and mark[0]:
+        corner = QRectF(box.left() + 0.45 * side, box.top() + 0.45 * side, 0.58 * side, 0.58 * side)
+        paint(painter, corner, mark[0])
 
 
 def _band(painter: QPainter, name: str, at: Callable[[float, float], QPointF]) -> None:

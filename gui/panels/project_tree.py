@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Container, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtCore import QModelIndex, QPoint, QSortFilterProxyModel, Qt, Signal
@@ -19,10 +20,21 @@ from geofit.gui.translate import translated
 from geofit.report.digits import metres
 from geofit.report.style import horizon_colours
 
-__all__ = ["ProjectTree"]
+__all__ = ["ProjectTree", "TreeBody"]
 
 _Given = tuple[Site | None, Mapping[str, HorizonFit], Container[str], Mapping[str, Verdict]]
 _TARGET = Qt.ItemDataRole.UserRole
+
+
+@dataclass(frozen=True)
+class TreeBody:
+    """A body as the tree shows it: ``mark`` of its colour and verdict, whether it is drawn, how many contacts."""
+
+    name: str
+    mark: str
+    visible: bool
+    count: int | None = None
+    words: str = ""
 
 
 class ProjectTree(QWidget):
@@ -34,6 +46,8 @@ class ProjectTree(QWidget):
     section_chosen = Signal(str)
     report_chosen = Signal(str)
     menu_requested = Signal(str, str, QPoint)
+    body_chosen = Signal(str)
+    body_checked = Signal(str, bool)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -67,6 +81,8 @@ class ProjectTree(QWidget):
         self.pages = Placeholder(content)
         self.setLayout(self.pages)
         self._reports: tuple[str, ...] = ()
+        self._bodies: tuple[TreeBody, ...] = ()
+        self.items.itemChanged.connect(self._checked)
         self._silent = False
         self._given: _Given = (None, {}, (), {})
         self.show_site(None, {}, ())
@@ -98,6 +114,7 @@ class ProjectTree(QWidget):
             self.tr("Horizons"),
             [self._horizon(name, site, surfaces, stale, verdicts.get(name)) for name in site.horizons],
         )
+        self._group("bodies", self.tr("Bodies"), [self._body(body) for body in self._bodies])
         for kind, title in (("borehole", self.tr("Boreholes")), ("adit", self.tr("Adits"))):
             holes = sorted((hole for hole in site.holes if hole.kind == kind), key=lambda hole: natural(hole.name))
             counts = _counts(site, "hole")
@@ -122,6 +139,23 @@ class ProjectTree(QWidget):
         """List the reports that were written."""
         self._reports = tuple(str(path) for path in paths)
         self.show_site(*self._given)
+
+    def show_bodies(self, bodies: Sequence[TreeBody]) -> None:
+        """List bodies below the horizons."""
+        if tuple(bodies) != self._bodies:
+            self._bodies = tuple(bodies)
+            self.show_site(*self._given)
+
+    def body_at(self, at: QPoint) -> str | None:
+        """Return the body whose row lies under a place of the tree's view."""
+        target = self.view.indexAt(at).siblingAtColumn(0).data(_TARGET)
+        return target[1] if target is not None and target[0] == "body" else None
+
+    def choose_body(self, name: str) -> None:
+        """Go to a body; nothing is emitted."""
+        self._silent = True
+        self._go(("body", name))
+        self._silent = False
 
     def choose_horizon(self, name: str) -> None:
         """Go to a horizon; nothing is emitted."""
@@ -187,6 +221,17 @@ class ProjectTree(QWidget):
             )
         return row
 
+    def _body(self, body: TreeBody) -> list[QStandardItem]:
+        row = _row(body.name, body.count, icon(body.mark), ("body", body.name), body.words)
+        row[0].setCheckable(True)
+        row[0].setCheckState(Qt.CheckState.Checked if body.visible else Qt.CheckState.Unchecked)
+        return row
+
+    def _checked(self, item: QStandardItem) -> None:
+        target = item.data(_TARGET)
+        if not self._silent and target is not None and target[0] == "body":
+            self.body_checked.emit(target[1], item.checkState() == Qt.CheckState.Checked)
+
     def _group(self, key: str, title: str, rows: Sequence[list[QStandardItem]]) -> None:
         if not rows:
             return
@@ -216,7 +261,7 @@ class ProjectTree(QWidget):
             item = self.items.item(i)
             key = item.data(_TARGET)
             # A first look shows the horizons, and the rest only where it is short.
-            small = key[1] == "horizons" or item.rowCount() <= 6
+            small = key[1] in ("horizons", "bodies") or item.rowCount() <= 6
             opened = small if folded is None else key not in folded
             self.view.setExpanded(self.shown.mapFromSource(item.index()), opened)
 
@@ -265,6 +310,8 @@ class ProjectTree(QWidget):
             self.hole_chosen.emit(name)
         elif kind == "section":
             self.section_chosen.emit(name)
+        elif kind == "body":
+            self.body_chosen.emit(name)
         elif kind == "report":
             self.report_chosen.emit(name)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from geofit.gui.panels.canvas import Canvas, PlotColours, place
 from geofit.gui.panels.curtain import Curtain, Meshes, Traces, extent, trace
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.panels.section_bodies import SectionBody, draw_bodies
 from geofit.gui.panels.section_painter import (
     SectionData,
     draw_section,
@@ -94,6 +95,7 @@ class SectionPanel(QWidget):
         self._data: SectionData | None = None
         self._surfaces: Mapping[str, HorizonFit] = {}
         self._meshes: Meshes = {}
+        self._bodies: tuple[SectionBody, ...] = ()
         self._task: Task | None = None
         self._again = self._due = False
         self._grasped: tuple[float, float] | None = None
@@ -143,6 +145,12 @@ class SectionPanel(QWidget):
         self._show_inputs(curtain, thickness, box)
         self.pages.reveal()
         self._cut()
+
+    def show_bodies(self, bodies: Sequence[SectionBody]) -> None:
+        """Cut other bodies, too."""
+        self._bodies = tuple(bodies)
+        if self._data is not None:
+            self.canvas.repaint_figure()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Cut what changed while nobody saw it."""
@@ -267,7 +275,9 @@ class SectionPanel(QWidget):
             "band": self.tr("90 % band"),
             "elevation": self.tr("Elevation, m"),
         }
-        draw_section(self.canvas.axes(1)[0], self._data, colours, words)
+        axes = self.canvas.axes(1)[0]
+        draw_section(axes, self._data, colours, words)
+        draw_bodies(axes, self._bodies, self._data.curtain, self._data.thickness, colours)
 
     def _arrange(self, colours: PlotColours) -> None:
         """Put the drawing beside or above its legend, with all of the section in it unless somebody moved it."""

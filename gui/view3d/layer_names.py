@@ -22,6 +22,8 @@ _WORDS: dict[str, Any] = {
     "upper": QT_TRANSLATE_NOOP("Scene", "Upper 90 % bound"),
     "lower": QT_TRANSLATE_NOOP("Scene", "Lower 90 % bound"),
     "suggestions": QT_TRANSLATE_NOOP("Scene", "Next holes"),
+    "body": QT_TRANSLATE_NOOP("Scene", "Body"),
+    "body data": QT_TRANSLATE_NOOP("Scene", "Contacts and intervals"),
     "plain": QT_TRANSLATE_NOOP("Scene", "One colour"),
     "kind": QT_TRANSLATE_NOOP("Scene", "Kind of source"),
     "deviation": QT_TRANSLATE_NOOP("Scene", "Deviation"),

@@ -18,7 +18,7 @@ from geofit.geometry.mesh import Mesh
 from geofit.report.view import trimmed
 from geofit.splines.patch import Patch
 
-__all__ = ["Shape", "across", "next_below", "sd_at", "seam_lines", "shape_of", "split"]
+__all__ = ["Shape", "across", "next_below", "sd_at", "seam_lines", "shape_of", "split", "thinned"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -57,10 +57,10 @@ class Shape:
 def shape_of(surface: HorizonFit) -> Shape:
     """Return the triangles of a surface, fine and coarse."""
     fine = _shape(surface, surface.triangulate(FINE * _width(surface)))
-    return Shape(fine.xyz, fine.triangles, fine.normals, _thinned(fine))
+    return Shape(fine.xyz, fine.triangles, fine.normals, thinned(fine))
 
 
-def _thinned(shape: Shape) -> Shape:
+def thinned(shape: Shape) -> Shape:
     """Return about FEW triangles whose corners are among the shape's (Schroeder et al. 1992)."""
     if len(shape.triangles) <= FEW:
         return shape

@@ -10,11 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from geofit.bodies.settings import BodySettings
 from geofit.data.errors import GeofitError
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.data.site import Ground, Orientations, Site
 from geofit.project import shelf as shelf_module
+from geofit.project.body_commands import DeleteBody, RenameBody, SetBody, StyleBody
+from geofit.project.body_record import BodyProvenance, BodyRecord, BodyStyle, ClosedMesh, Frame, Intervals
 from geofit.project.building import make
 from geofit.project.commands import (
     COMMANDS,
@@ -106,6 +109,36 @@ block = st.builds(
     st.lists(st.integers(0, 40), unique=True).map(lambda numbers: runs(np.sort(np.array(numbers, int)))),
     polygon,
 )
+names = st.sampled_from(["ORE", "VOID", "矿体"])
+styles = st.builds(BodyStyle, st.sampled_from(["#112233", "#445566"]), st.floats(0, 1), st.booleans())
+body_settings = st.builds(
+    BodySettings,
+    epsilon=st.floats(0.01, 10),
+    ranges=st.tuples(*[st.floats(0.1, 10)] * 3),
+    box=st.none() | st.just(((0.0, 0.0, -10.0), (5.0, 6.0, 7.0))),
+    step=st.none() | st.floats(0.1, 5),
+)
+given_data = st.text("0123456789abcdef", min_size=16, max_size=16)
+fitted_bodies = st.builds(
+    BodyProvenance,
+    st.builds(Intervals, st.lists(st.text(min_size=1), min_size=1).map(tuple), st.text(max_size=5))
+    | st.builds(ClosedMesh, st.text(max_size=5)),
+    body_settings,
+    given_data,
+)
+frames = st.builds(
+    Frame, st.tuples(fitted_bodies, fitted_bodies), st.just(("A", "B")), st.sampled_from(["arrival", "blend"]),
+    st.just("progress"), st.sampled_from([(), ("2024-01-01", "2025-01-01")]), st.just(96), st.floats(0, 1),
+)  # fmt: skip
+records = st.builds(BodyRecord, fitted_bodies | st.builds(BodyProvenance, frames, body_settings, given_data), styles)
+BODY = BodyRecord(BodyProvenance(Intervals(("ORE",)), BodySettings(), "0" * 16), BodyStyle("#112233"))
+FRAME = replace(
+    BODY,
+    provenance=replace(
+        BODY.provenance,
+        source=Frame((BODY.provenance, BODY.provenance), ("A", "B"), "arrival", "progress", (), 96, 0.5),
+    ),
+)
 commands = st.one_of(
     st.builds(
         SplitAtFaults, st.just("low"), st.dictionaries(st.sampled_from(["low (A)", "low (B)"]), block, min_size=1)
@@ -137,6 +170,10 @@ commands = st.one_of(
         st.dictionaries(st.sampled_from(["low", "up"]), st.tuples(rows)),
         st.dictionaries(st.just("low"), st.builds(Earlier, st.text(max_size=4), provenances)),
     ),
+    st.builds(SetBody, names, records),
+    st.builds(RenameBody, names, names),
+    st.builds(DeleteBody, names),
+    st.builds(StyleBody, names, styles),
 )
 
 
@@ -183,6 +220,7 @@ def test_every_command_is_told_in_words_that_can_be_translated():
         RenameHorizon("low", "deep"), RemoveHorizons(("low",)), MergeHorizons(("up", "low"), "both"),
         SetArea(None), SetArea(((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))),
         ChangeData("x", ("a.csv", "b.csv"), (), {"low": FitSettings()}, {}, {}, {}),
+        SetBody("a", BODY), SetBody("a", FRAME), RenameBody("a", "b"), DeleteBody("a"), StyleBody("a", BODY.style),
     ]  # fmt: skip
     assert {type(command) for command in samples} == set(COMMANDS.values())
     assert not [left for command in samples for left in english_left(command.text)]
@@ -192,6 +230,34 @@ def test_every_command_is_told_in_words_that_can_be_translated():
 def test_numbers_come_back_from_their_runs(numbers):
     ascending = np.sort(np.array(numbers, int))
     assert np.array_equal(indices(runs(ascending)), ascending)
+
+
+def test_a_state_without_bodies_writes_no_word_of_them():
+    assert "bodies" not in document().state.to_data()
+
+
+def test_bodies_come_go_and_change_in_their_place():
+    opened = document()
+    heard = []
+    opened.bodies_changed.connect(lambda: heard.append(tuple(opened.state.bodies)))
+    SetBody("ORE", BODY).redo(opened)
+    SetBody("VOID", BODY).redo(opened)
+    rename = RenameBody("ORE", "矿体")
+    rename.redo(opened)
+    assert list(opened.state.bodies) == ["矿体", "VOID"]
+    style = StyleBody("矿体", BodyStyle("#445566", 0.3, False))
+    style.redo(opened)
+    assert opened.state.bodies["矿体"].style.opacity == 0.3
+    with pytest.raises(DocumentError, match="already"):
+        RenameBody("矿体", "VOID").redo(opened)
+    with pytest.raises(DocumentError, match=r"no body 'ORE'.*VOID"):
+        DeleteBody("ORE").redo(opened)
+    with pytest.raises(DocumentError, match="no name"):
+        SetBody("  ", BODY).redo(opened)
+    style.undo(opened)
+    rename.undo(opened)
+    assert list(opened.state.bodies) == ["ORE", "VOID"]
+    assert heard == [("ORE",), ("ORE", "VOID"), ("矿体", "VOID"), ("矿体", "VOID"), ("矿体", "VOID"), ("ORE", "VOID")]
 
 
 def test_a_row_names_one_point():

@@ -1,0 +1,112 @@
+"""A body to a file: STEP solid with its read-back, triangles, block model, field. Without Qt; it runs in a process."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from geofit.data.errors import InputError
+from geofit.data.messages import message
+from geofit.data.progress import Progress, tell
+from geofit.project.body_building import BodyResult, MeshBody
+
+if TYPE_CHECKING:
+    from geofit.cad.solid import SolidReadBack
+    from geofit.morphing.body import MorphBody
+
+__all__ = ["BLOCK_ENDINGS", "TRIANGLE_ENDINGS", "BodyExport", "export_body"]
+
+#: Endings of triangle formats; of those that hold blocks or the field, which only a fitted body has.
+TRIANGLE_ENDINGS = (".stl", ".obj", ".ply", ".glb", ".vtp", ".ts")
+BLOCK_ENDINGS = (".csv", ".omf", ".geoh5", ".vti")
+
+#: Cells along the longest side of a body of a file, for its distances.
+CELLS = 96
+
+
+@dataclass(frozen=True, eq=False)
+class BodyExport:
+    """What was written, and what the reader found in a STEP file."""
+
+    path: Path
+    read_back: SolidReadBack | None = None
+
+
+def export_body(result: BodyResult, name: str, target: Path, *, progress: Progress) -> BodyExport:
+    """Write a body in the format of the file's ending.
+
+    Parameters
+    ----------
+    result : BodyResult
+        The body.
+    name : str
+        What the file calls it.
+    target : Path
+        ``.step``: a solid of NURBS patches within epsilon, or of triangles where they cannot follow the body or
+        nothing was fitted; ``.stl``, ``.obj``, ``.ply``, ``.glb``, ``.vtp``, ``.ts``: triangles; ``.csv``, ``.omf``,
+        ``.geoh5``: block model; ``.vti``: field.
+
+    Raises
+    ------
+    InputError
+        If the ending is none of these, or the body has no field for blocks.
+    """
+    ending, fitted = target.suffix.casefold(), result.fitted
+    tell(progress, "write", 0.1)
+    if ending in (".step", ".stp"):
+        made = result.body
+        body = _with_field(made, name) if isinstance(made, MeshBody) else replace(made, name=name)
+        return BodyExport(target, body.write_step(target))
+    if ending in TRIANGLE_ENDINGS:
+        _triangles(result, name, target)
+    elif ending in BLOCK_ENDINGS and fitted is not None:
+        from geofit.io.export.block_model import write_block_model
+        from geofit.io.export.vti import write_vti
+
+        (write_vti if ending == ".vti" else write_block_model)(replace(fitted, name=name), target)
+    else:
+        needs_field = ending in BLOCK_ENDINGS
+        raise InputError(
+            message("export.body-blocks", "Body '{name}' was not fitted: it has no block model", name=name)
+            if needs_field
+            else message("export.body-ending", "A body cannot be written as '{ending}'", ending=ending),
+            message(
+                "export.body-endings",
+                "Name the file {names}.",
+                names=", ".join((".step", *TRIANGLE_ENDINGS, *(BLOCK_ENDINGS if fitted is not None else ()))),
+            ),
+            file=str(target),
+        )
+    return BodyExport(target)
+
+
+def _with_field(body: MeshBody, name: str) -> MorphBody:
+    """Return triangles of a file as a body with a field: the distance on a lattice, which the read-back needs."""
+    from geofit.implicit.grid import spline_grid
+    from geofit.implicit.lattice import Lattice
+    from geofit.morphing.body import MorphBody
+    from geofit.morphing.distance import distances, samples_of
+
+    lower, upper = body.extent
+    room = 4 * float((upper - lower).max()) / CELLS
+    lattice = Lattice.around(lower - room, upper + room, cells=CELLS)
+    samples = samples_of(body.overview, lattice)
+    field = spline_grid(distances(samples, samples.inside), lattice)
+    mesh = body.overview
+    return MorphBody(name, 0.0, 0.0, None, field, body.origin, lattice, mesh, mesh)
+
+
+def _triangles(result: BodyResult, name: str, target: Path) -> None:
+    from geofit.geometry.mesh import Mesh
+    from geofit.io.export.write import FORMATS
+
+    made, count = result.mesh, len(result.mesh.triangles)
+    patch, uv = np.zeros(count, np.int64), np.zeros((count, 3, 2))
+    mesh = Mesh(made.vertices, made.triangles, patch, uv, np.asarray(result.body.origin, float), (name,))
+    chosen = FORMATS[{".ts": "tsurf"}.get(target.suffix.casefold(), target.suffix.casefold()[1:])]
+    write = getattr(import_module(f"geofit.{chosen.module}"), chosen.function)
+    write(mesh if chosen.takes == "vtp" else {name: mesh}, target)

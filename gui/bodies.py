@@ -1,0 +1,313 @@
+"""Bodies: fitted, made again, exported. What is long runs in a process of its own; results go to the document."""
+
+from __future__ import annotations
+
+import logging
+import os
+from dataclasses import replace
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from geofit.bodies.settings import BodySettings
+from geofit.data.files import file_stems
+from geofit.data.messages import message
+from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.activity import Activity, Work
+from geofit.gui.body_showing import BodyShowing
+from geofit.gui.body_styles import BodyStyles
+from geofit.gui.fitting import Fitting
+from geofit.gui.panels.body_source import MESH
+from geofit.gui.preferences import Preferences
+from geofit.gui.session import Session
+from geofit.gui.showing import Showing
+from geofit.gui.translate import shown_error, translated
+from geofit.gui.workspace import Workspace
+from geofit.project.body_building import BodyResult, made_body, measured_strata, site_codes
+from geofit.project.body_commands import SetBody
+from geofit.project.body_export import BLOCK_ENDINGS, TRIANGLE_ENDINGS, BodyExport, export_body
+from geofit.project.body_record import (
+    BodyProvenance,
+    BodyRecord,
+    BodySource,
+    BodyStyle,
+    ClosedMesh,
+    Intervals,
+    next_colour,
+)
+from geofit.project.body_saving import difference
+from geofit.project.provenance import Provenance
+
+__all__ = ["Bodies"]
+
+_LOG = logging.getLogger(__name__)
+
+
+class Bodies(QObject):
+    """What makes bodies. ``reported(text)`` says in the status bar what was done, ``refused(exception)`` why not."""
+
+    reported = Signal(str)
+    refused = Signal(object)
+
+    def __init__(
+        self, session: Session, activity: Activity, fitting: Fitting, showing: Showing, workspace: Workspace,
+        preferences: Preferences, window: QWidget,
+    ) -> None:  # fmt: skip
+        super().__init__(window)
+        self._session, self._activity, self._fitting = session, activity, fitting
+        self._document, self._panels, self._preferences, self._window = session.document, workspace, preferences, window
+        self.showing = BodyShowing(session.document, workspace, showing, self)
+        self.styles = BodyStyles(session.document, fitting, workspace, window)
+        #: Provenances that are being made again, and those that were given up until another site is opened.
+        self._pending: set[BodyProvenance] = set()
+        self._given_up: set[BodyProvenance] = set()
+        self._running = False
+        #: From what the horizons are made that the task under way divides a body by.
+        self._using: dict[str, Provenance] = {}
+        panel = workspace.bodies
+        panel.fit_requested.connect(self.fit)
+        panel.stop_requested.connect(activity.cancel)
+        panel.export_requested.connect(self.ask_export)
+        panel.file_wanted.connect(self._ask_file)
+        self.styles.export_requested.connect(self.ask_export)
+        workspace.body_figures.strata_requested.connect(self._divide)
+        activity.progressed.connect(self._progress)
+        activity.ended.connect(self._rest)
+        self.showing.shown.connect(self._make_missing)
+        self._document.site_changed.connect(self._on_site)
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self.showing.close()
+        self.styles.close()
+        self._document.site_changed.disconnect(self._on_site)
+
+    def fit(self, name: str, source: BodySource, settings: BodySettings) -> None:
+        """Fit a body, or read it from its file; without a name it is called after its codes or its file."""
+        if not name:
+            name = " + ".join(source.codes) if isinstance(source, Intervals) else Path(getattr(source, "file", "")).stem
+            name = _free(name, self._document.state.bodies)
+        self.showing.chosen = name
+        title = self.tr("Fit body {name}").format(name=name)
+        self._activity.prepare(
+            title,
+            lambda: self._work(name, source, settings),
+            on_done=lambda done: self._fitted(name, *done),
+            in_process=True,
+        )
+
+    def ask_export(self, name: str) -> None:
+        """Ask for a file; its ending is the format."""
+        result = self._document.body(name)
+        if result is None:
+            return
+        blocks = BLOCK_ENDINGS if result.fitted is not None else ()
+        words = {".step": "STEP", ".csv": self.tr("Block model"), ".omf": self.tr("Block model"),
+                 ".geoh5": self.tr("Block model"), ".vti": self.tr("Field, VTK")}  # fmt: skip
+        endings = (".step", *TRIANGLE_ENDINGS, *blocks)
+        filters = {f"{words.get(end, self.tr('Triangles'))} (*{end})": end for end in endings}
+        folder = self._document.folder or Path(self._preferences.folder)
+        start = folder / file_stems([name])[name]
+        path, chosen = QFileDialog.getSaveFileName(
+            self._window, self.tr("Export body {name}").format(name=name), str(start), ";;".join(filters)
+        )
+        if path:
+            target = Path(path)
+            self.export(name, target if target.suffix else target.with_suffix(filters[chosen]))
+
+    def export(self, name: str, target: Path) -> None:
+        """Write a body in the format of a file's ending."""
+        result = self._document.body(name)
+        if result is not None:
+            title = self.tr("Export {name}").format(name=target.name)
+            self._activity.do(title, export_body, result, name, target, on_done=self._exported, in_process=True)
+
+    def read_codes(self, file: Path) -> None:
+        """Offer the codes of another site file."""
+        title = self.tr("Read {name}").format(name=file.name)
+        relative = self._relative(file)
+        show = self._panels.bodies.source.show_other
+        self._activity.do(title, site_codes, file, on_done=lambda codes: show(relative, codes))
+
+    def _work(self, name: str, source: BodySource, settings: BodySettings) -> Work:
+        self._running = True
+        self._panels.bodies.set_running(True)
+        return made_body, self._inputs(name, source, settings)
+
+    def _inputs(self, name: str, source: BodySource, settings: BodySettings) -> tuple[object, ...]:
+        document, horizons = self._document, self._horizons()
+        file = document.site_file
+        folder = Path.cwd() if file is None else file.resolve().parent
+        return source, settings, name, document.site.boreholes, folder, horizons
+
+    def _horizons(self) -> dict[str, HorizonFit]:
+        self._using = self.showing.horizons()
+        return {name: surface.with_(model=None) for name, surface in self._document.surfaces().items()}
+
+    def _put(self, provenance: BodyProvenance, result: BodyResult) -> None:
+        self.showing.divided[provenance] = self._using
+        self._document.put_body(provenance, result)
+
+    def _fitted(self, name: str, provenance: BodyProvenance, result: BodyResult) -> None:
+        document = self._document
+        known = document.state.bodies.get(name)
+        self._put(provenance, result)
+        style = BodyStyle(next_colour(document.state.bodies)) if known is None else known.style
+        record = BodyRecord(provenance, style)
+        if record != known:
+            self._fitting.push(SetBody(name, record))
+        self.showing.chosen = name
+        self.showing.renew()
+        a = result.accuracy
+        text = message("log.body", "{name}: {volume:.6g} m³", name=name, volume=result.mesh.volume)
+        if a is not None:
+            text = message(
+                "log.body-fitted",
+                "{name}: {verdict}, σ {sigma:.3g} m, {volume:.6g} m³, violations: {count}",
+                name=name,
+                verdict=a.verdict,
+                sigma=a.sigma,
+                volume=result.mesh.volume,
+                count=len(result.violations),
+            )
+        _LOG.info(text)
+        self.reported.emit(translated(text))
+
+    def _make_missing(self) -> None:
+        """Make the bodies again that the document wants and has not, or only as its file holds them."""
+        for name, record in self._document.state.bodies.items():
+            provenance, result = record.provenance, self._document.body(name)
+            wanted = result is None or result.origin == "read back"
+            if wanted and provenance not in self._pending | self._given_up:
+                self._pending.add(provenance)
+                self._make_again(name, provenance)
+
+    def _make_again(self, name: str, provenance: BodyProvenance) -> None:
+        title = self.tr("Make body {name} again").format(name=name)
+
+        def work() -> Work:
+            held = {record.provenance for record in self._document.state.bodies.values()}
+            result = self._document.bodies.get(provenance)
+            if provenance not in held or (result is not None and result.origin != "read back"):
+                self._pending.discard(provenance)
+                return None
+            return made_body, self._inputs(name, provenance.source, provenance.settings)
+
+        self._activity.prepare(
+            title,
+            work,
+            on_done=lambda done: self._made_again(name, provenance, *done),
+            on_failed=lambda error: self._lost(name, provenance, error),
+            in_process=True,
+        )
+
+    def _made_again(self, name: str, wanted: BodyProvenance, made: BodyProvenance, result: BodyResult) -> None:
+        self._pending.discard(wanted)
+        if made != wanted:
+            self._lost(name, wanted, None)
+            return
+        former = self._document.bodies.get(wanted)
+        apart = float("nan") if former is None else difference(former, result)
+        self._put(wanted, replace(result, origin="again", difference=apart))
+
+    def _lost(self, name: str, provenance: BodyProvenance, error: Exception | None) -> None:
+        """Keep what the project holds of a body whose data have changed, or cannot be read."""
+        self._pending.discard(provenance)
+        self._given_up.add(provenance)
+        self.showing.changed.add(provenance)
+        if error is None:
+            text = message(
+                "log.body-data-changed",
+                "The data of body {name} have changed since: it cannot be made again as it was. Fit it.",
+                name=name,
+            )
+        else:
+            text = message(
+                "log.body-not-again", "Body {name} cannot be made again: {error}", name=name, error=shown_error(error)
+            )
+        _LOG.warning(text)
+        self.showing.renew()
+
+    def _divide(self) -> None:
+        """Work out the volumes of the shown body between the horizons as they are now."""
+        name = self.showing.chosen
+        record, result = self._document.state.bodies.get(name), self._document.body(name)
+        if record is None or result is None:
+            return
+        title = self.tr("Divide body {name} by the horizons").format(name=name)
+        provenance = record.provenance
+
+        def done(found: BodyResult) -> None:
+            left = [one for one in self._using if one not in found.divided_by]
+            if left:
+                text = message(
+                    "log.body-not-over", "Not all over body {name}: {names}", name=name, names=", ".join(left)
+                )
+                self.reported.emit(translated(text))
+                _LOG.info(text)
+            self._put(provenance, found)
+
+        self._activity.prepare(
+            title, lambda: (measured_strata, (result, self._horizons())), on_done=done, in_process=True
+        )
+
+    def _exported(self, written: BodyExport) -> None:
+        path = str(written.path.resolve())
+        _LOG.info(message("log.wrote", "Wrote {file}", file=path))
+        text = self.tr("Wrote {names}.").format(names=path)
+        back = written.read_back
+        if back is not None:
+            checks = "; ".join(translated(check.text) for check in back.checks if check.passed is False)
+            text += " " + (checks or self.tr("Read back: {n} faces, all checks pass.").format(n=back.faces))
+        self.reported.emit(text)
+
+    def _ask_file(self, kind: str) -> None:
+        folder = str(self._document.folder or self._preferences.folder)
+        if kind == MESH:
+            words, kinds = self.tr("Open a closed body"), self.tr("Bodies (*.stl *.obj *.ply *.ts *.step *.stp)")
+        else:
+            words, kinds = self.tr("Open another site file"), self.tr("Site files (*.toml)")
+        path, _ = QFileDialog.getOpenFileName(self._window, words, folder, kinds)
+        if not path:
+            return
+        if kind == MESH:
+            self._panels.bodies.source.show_mesh(self._relative(Path(path)))
+        else:
+            self.read_codes(Path(path))
+
+    def take_mesh(self, file: Path, name: str = "") -> None:
+        """Take a closed body from a file."""
+        self.fit(name, ClosedMesh(self._relative(file)), BodySettings())
+
+    def _relative(self, file: Path) -> str:
+        """Return the path from the site's folder, with forward slashes; absolute on another drive of Windows."""
+        site = self._document.site_file
+        try:
+            return Path(os.path.relpath(file, site.resolve().parent)).as_posix() if site else file.as_posix()
+        except ValueError:
+            return file.as_posix()
+
+    def _progress(self, stage: object, fraction: float) -> None:
+        if self._running:
+            self._panels.bodies.set_running(True, translated(stage), fraction)  # type: ignore[arg-type]
+
+    def _rest(self) -> None:
+        """Everything that ran has ended or was stopped."""
+        self._given_up |= self._pending
+        self._pending.clear()
+        self._running = False
+        self._panels.bodies.set_running(False)
+        self.showing.renew()
+
+    def _on_site(self) -> None:
+        self._pending.clear()
+        self._given_up.clear()
+
+
+def _free(name: str, taken: object) -> str:
+    """Return the name, with a number behind it where a body has it already."""
+    free, turn = name or "body", 2
+    while free in taken:  # type: ignore[operator]
+        free, turn = f"{name} {turn}", turn + 1
+    return free

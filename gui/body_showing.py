@@ -1,0 +1,206 @@
+"""From the document to the panels: bodies in the tree, their panel, the scene, the section and the table of figures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from geofit.bodies.violations import Violation
+from geofit.data.verdict import verdict_of
+from geofit.gui.panels.bodies import BodyShown
+from geofit.gui.panels.marks import level_mark
+from geofit.gui.panels.project_tree import TreeBody
+from geofit.gui.panels.section_bodies import SectionBody
+from geofit.gui.showing import Showing
+from geofit.gui.translate import translated
+from geofit.gui.workspace import Workspace
+from geofit.implicit.mesh import TriangleMesh
+from geofit.project.body_building import BodyResult, codes_of, given_of_logs, origin_text
+from geofit.project.body_record import BodyProvenance, BodyRecord, Intervals
+from geofit.project.document import Document
+from geofit.project.provenance import Provenance
+
+__all__ = ["BodyShowing"]
+
+
+class BodyShowing(QObject):
+    """Keeps the panels as the bodies of the document are; several changes in one event are shown once.
+
+    ``chosen`` is the body of the panel, "" for a new one. ``shown()`` reports that everything is shown.
+    """
+
+    shown = Signal()
+
+    def __init__(self, document: Document, workspace: Workspace, showing: Showing, parent: QObject) -> None:
+        super().__init__(parent)
+        self._document, self._panels, self._showing = document, workspace, showing
+        self.chosen = ""
+        #: Provenances whose data are known to have changed.
+        self.changed: set[BodyProvenance] = set()
+        #: From what the horizons were made between which each body was divided.
+        self.divided: dict[BodyProvenance, Mapping[str, Provenance]] = {}
+        self._meshes: dict[int, tuple[TriangleMesh, TriangleMesh]] = {}
+        self._logs: tuple[object, str] = (None, "")
+        self._site = True
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(self.now)
+        self._ends: list[Callable[[], None]] = []
+        for signal, listener in (
+            (document.site_changed, self._on_site),
+            (document.bodies_changed, self.renew),
+            (document.result_changed, self._on_result),
+        ):
+            signal.connect(listener)  # type: ignore[arg-type]
+            self._ends.append(lambda signal=signal, listener=listener: signal.disconnect(listener))  # type: ignore[misc]
+        panels = workspace
+        panels.bodies.chosen.connect(self.choose)
+        panels.tree.body_chosen.connect(self._chosen_in_tree)
+        panels.body_figures.violation_chosen.connect(self._go_to)
+        panels.view.hole_picked.connect(self._hole_picked)
+        self.renew()
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self._later.stop()
+        for end in self._ends:
+            end()
+        self._ends.clear()
+
+    def renew(self, *_: object) -> None:
+        """Show everything anew, once the event is over."""
+        self._later.start()
+
+    def choose(self, name: str) -> None:
+        """Show a body in the panel; "" for the form of a new one."""
+        self.chosen = name
+        self.renew()
+
+    def now(self) -> None:
+        """Show what has changed."""
+        self._later.stop()
+        document, panel = self._document, self._panels.bodies
+        if not document.site.horizons and not document.state.bodies:
+            panel.close_site()
+            self._panels.body_figures.show_body("", None)
+            self._panels.section.show_bodies(())
+            return
+        if self._site:
+            self._site = False
+            panel.source.show_own(codes_of(document.site.boreholes))
+        if self.chosen not in document.state.bodies:
+            self.chosen = next(iter(document.state.bodies), "") if self.chosen else ""
+        self._show_tree()
+        self._show_scene()
+        record = document.state.bodies.get(self.chosen)
+        panel.show_bodies([(name, self._mark(name, one)) for name, one in document.state.bodies.items()])
+        panel.show_body(self.chosen, None if record is None else self._shown(self.chosen, record))
+        divide = record is not None and self.divided.get(record.provenance, {}) != self.horizons()
+        self._panels.body_figures.show_body(self.chosen, document.body(self.chosen), divide)
+        self.shown.emit()
+
+    def horizons(self) -> dict[str, Provenance]:
+        """Return from what the surfaces are made that are available."""
+        known = self._document.state.provenances
+        return {name: known[name] for name in self._document.surfaces() if name in known}
+
+    def mesh(self, result: BodyResult) -> TriangleMesh:
+        """Return the triangles of a body in map coordinates, made once."""
+        known = self._meshes.get(id(result.mesh))
+        if known is None or known[0] is not result.mesh:
+            made = TriangleMesh(result.mesh.vertices + result.body.origin, result.mesh.triangles)
+            known = self._meshes[id(result.mesh)] = (result.mesh, made)
+        return known[1]
+
+    def stale(self, record: BodyRecord) -> bool:
+        """Whether the data of a body are known to be others than those it was made from."""
+        source = record.provenance.source
+        if record.provenance in self.changed:
+            return True
+        if isinstance(source, Intervals) and not source.file:
+            logs = self._document.site.boreholes
+            if self._logs[0] is not logs:
+                self._logs = (logs, given_of_logs(logs))
+            return self._logs[1] != record.provenance.given
+        return False
+
+    def _shown(self, name: str, record: BodyRecord) -> BodyShown:
+        result = self._document.body(name)
+        accuracy = None if result is None else result.accuracy
+        verdict = None if accuracy is None else verdict_of(accuracy)
+        waiting = result is None or (result.origin == "read back" and isinstance(record.provenance.source, Intervals))
+        stale = self.stale(record)
+        origin = "" if result is None or result.origin == "fitted" else translated(origin_text(result))
+        return BodyShown(
+            record.provenance, accuracy, verdict, waiting=waiting and not stale, stale=stale, origin=origin
+        )
+
+    def _mark(self, name: str, record: BodyRecord) -> str:
+        result = self._document.body(name)
+        accuracy = None if result is None else result.accuracy
+        sign = "stale" if self.stale(record) else "" if accuracy is None else level_mark(verdict_of(accuracy).level)
+        return f"body:{record.style.colour}:{sign}"
+
+    def _show_tree(self) -> None:
+        rows = []
+        for name, record in self._document.state.bodies.items():
+            result = self._document.body(name)
+            accuracy = None if result is None else result.accuracy
+            words = name
+            if result is not None:
+                words = f"{name}: {result.mesh.volume:.6g} m³"
+            if accuracy is not None:
+                words += "\n" + translated(verdict_of(accuracy).text)
+            if self.stale(record):
+                words += "\n" + self.tr("The data have changed since this body was made: press Fit.")
+            count = None if accuracy is None else accuracy.n
+            rows.append(TreeBody(name, self._mark(name, record), record.style.visible, count, words))
+        self._panels.tree.show_bodies(rows)
+
+    def _show_scene(self) -> None:
+        scene, bodies = self._panels.view.bodies, []
+        for gone in set(scene.names) - set(self._document.state.bodies):
+            scene.remove(gone)
+        for name, record in self._document.state.bodies.items():
+            result, style = self._document.body(name), record.style
+            if result is None:
+                scene.remove(name)
+                continue
+            data = None if result.fitted is None else result.fitted.data
+            scene.show(name, self.mesh(result), style.colour, style.opacity, style.visible)
+            scene.show_data(name, data, style.colour, style.visible)
+            if style.visible:
+                bodies.append(SectionBody(name, self.mesh(result), style.colour, style.opacity, data))
+        used = {id(result.mesh) for result in self._document.made_bodies().values()}
+        self._meshes = {key: made for key, made in self._meshes.items() if key in used}
+        self._panels.section.show_bodies(bodies)
+
+    def _chosen_in_tree(self, name: str) -> None:
+        self.choose(name)
+        self._panels.reveal("bodies")
+
+    def _go_to(self, found: Violation) -> None:
+        """Look at a place of disagreement, with a ring about it, and find its hole in the tree."""
+        view = self._panels.view
+        view.pointer.surround(np.array(found.place), f"{found.hole} · {translated(found.text)}".lstrip(" ·"))
+        view.focus_place(*found.place)
+        if found.hole:
+            self._panels.tree.choose_hole(found.hole)
+
+    def _hole_picked(self, name: str) -> None:
+        if self._panels.body_figures.choose_hole(name):
+            self._panels.reveal("body_figures")
+
+    def _on_site(self) -> None:
+        self._site, self.chosen = True, ""
+        self.changed.clear()
+        self.divided.clear()
+        self._meshes.clear()
+        # A project opens with its first body in the panel.
+        self.chosen = next(iter(self._document.state.bodies), "")
+        self.renew()
+
+    def _on_result(self, _: str) -> None:
+        if self._document.state.bodies:
+            self.renew()

@@ -1,0 +1,155 @@
+"""The figures of a body: volumes with their spread, whole and by stratum, and where body and data disagree."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout, QWidget
+
+from geofit.bodies.simulate import BodyVolumes
+from geofit.bodies.violations import Violation
+from geofit.gui.panels.marks import icon
+from geofit.gui.panels.placeholder import Placeholder
+from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.translate import translated
+from geofit.project.body_building import BodyResult
+
+__all__ = ["BodyFigures"]
+
+
+class BodyFigures(QWidget):
+    """Two tables side by side.
+
+    ``violation_chosen`` carries the Violation of the row that was chosen; ``strata_requested()`` asks for the volumes
+    between the horizons as they are now.
+    """
+
+    violation_chosen = Signal(object)
+    strata_requested = Signal()
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.volumes, self.violations = DataTable(), DataTable()
+        self.volumes.setAccessibleName(self.tr("Volumes of the body"))
+        self.violations.setAccessibleName(self.tr("Violations of the body"))
+        self.head, self.count, self.strata = QLabel(), QLabel(), QPushButton(self.tr("Divide by horizons"))
+        self.strata.setToolTip(self.tr("Cut the body by the horizons as they are now, and work out each part."))
+        self.count.setWordWrap(True)
+        self._found: tuple[Violation, ...] = ()
+        parts = QSplitter(Qt.Orientation.Horizontal)
+        parts.setChildrenCollapsible(False)
+        for heads, table in (((self.head, self.strata), self.volumes), ((self.count,), self.violations)):
+            side = QWidget()
+            column = QVBoxLayout(side)
+            column.setContentsMargins(0, 0, 0, 0)
+            column.setSpacing(6)
+            line = QHBoxLayout()
+            for widget in heads:
+                line.addWidget(widget, 0 if len(heads) > 1 else 1)
+            if len(heads) > 1:
+                line.addStretch(1)
+            column.addLayout(line)
+            column.addWidget(table, 1)
+            parts.addWidget(side)
+        parts.setStretchFactor(0, 3)
+        parts.setStretchFactor(1, 2)
+        parts.setSizes([600, 400])
+        content = QWidget()
+        column = QVBoxLayout(content)
+        column.setContentsMargins(8, 8, 8, 8)
+        column.addWidget(parts)
+        self.pages = Placeholder(content)
+        self.setLayout(self.pages)
+        self.violations.chosen.connect(lambda i: self.violation_chosen.emit(self._found[i]))
+        self.strata.clicked.connect(self.strata_requested)
+        self.show_body("", None)
+
+    def show_body(self, name: str, result: BodyResult | None, divide: bool = False) -> None:
+        """Show the figures of a body; ``divide`` where its strata are not those of the horizons as they are now."""
+        if result is None:
+            self._found = ()
+            self.pages.say(self.tr("No body yet: fit one in the panel Bodies to see its volumes and violations."))
+            return
+        self._show_volumes(name, result, divide)
+        self._show_violations(result)
+        self.pages.reveal()
+
+    def choose_hole(self, hole: str) -> bool:
+        """Go to the first violation of a hole, as picked elsewhere; return whether there is one."""
+        rows = [i for i, one in enumerate(self._found) if one.hole == hole]
+        if rows:
+            self.violations.choose(rows[0])
+            self.violations.select(rows)
+        return bool(rows)
+
+    def _show_volumes(self, name: str, result: BodyResult, divide: bool) -> None:
+        self.head.setText(self.tr("Volumes of {name}").format(name=name))
+        self.strata.setVisible(result.fitted is not None and divide)
+        rows: list[tuple[str, int, BodyVolumes | float]] = []
+        whole: BodyVolumes | float = result.mesh.volume if result.volumes is None else result.volumes
+        rows.append((self.tr("whole body"), result.mesh.components, whole))
+        rows += [(translated(part.name), part.pieces, part.volumes) for part in result.strata]
+        figures = np.array([_figures(volumes) for _, _, volumes in rows])
+        spread = self.tr("Over conditional simulations that honour every contact and sample.")
+        titles = (
+            (self.tr("Fitted, m³"), ""),
+            ("P10, m³", spread),
+            ("P50, m³", spread),
+            ("P90, m³", spread),
+            (self.tr("Standard deviation, m³"), spread),
+        )
+        self.volumes.show_columns(
+            [
+                Column(self.tr("Part", "BodyFigures"), np.array([part for part, _, _ in rows])),
+                Column(self.tr("Pieces"), np.array([pieces for _, pieces, _ in rows]), 0),
+                *(Column(title, figures[:, k], 0, about) for k, (title, about) in enumerate(titles)),
+            ]
+        )
+
+    def _show_violations(self, result: BodyResult) -> None:
+        self._found = result.violations
+        a = result.accuracy
+        if a is None:
+            self.count.setText(self.tr("Nothing was fitted: there are no data to disagree with."))
+        elif not self._found:
+            text = self.tr("No violations: {n} contacts within ε, {metres:.1f} m logged on their side.")
+            self.count.setText(text.format(n=a.n, metres=a.logged_length))
+        else:
+            text = self.tr("Violations: {n}; samples on the wrong side: {wrong}; {metres:.2f} m of {logged:.1f} m")
+            wrong = a.missed_length + a.excess_length
+            self.count.setText(
+                text.format(n=len(self._found), wrong=a.wrong_side, metres=wrong, logged=a.logged_length)
+            )
+        kinds = {
+            "contact": self.tr("Contact", "BodyFigures"),
+            "sample": self.tr("Sample", "BodyFigures"),
+            "length": self.tr("Interval", "BodyFigures"),
+            "data": self.tr("Not used", "BodyFigures"),
+        }
+        found, places = self._found, np.array([one.place for one in self._found]).reshape(-1, 3)
+        self.violations.setVisible(bool(found))
+        self.violations.show_columns(
+            [
+                Column(
+                    self.tr("Kind"), np.array([kinds[one.kind] for one in found], str), icons=lambda _: icon("failed")
+                ),
+                Column(self.tr("Hole"), np.array([one.hole for one in found], str)),
+                Column(
+                    self.tr("Distance, m"),
+                    np.array([one.distance for one in found], float),
+                    3,
+                    self.tr("Signed distance from the surface: positive outside."),
+                ),
+                Column(self.tr("Length, m"), np.array([one.length for one in found], float), 2),
+                Column(self.tr("In words"), np.array([translated(one.text) for one in found], str)),
+                Column(self.tr("Easting, m"), places[:, 0], 2),
+                Column(self.tr("Northing, m"), places[:, 1], 2),
+                Column(self.tr("Elevation, m"), places[:, 2], 2),
+            ]
+        )
+
+
+def _figures(volumes: BodyVolumes | float) -> tuple[float, ...]:
+    if isinstance(volumes, BodyVolumes):
+        return volumes.best, volumes.p10, volumes.p50, volumes.p90, volumes.sd
+    return (volumes, *(float("nan"),) * 4)
