@@ -34,8 +34,10 @@ __all__ = ["ImplicitBody"]
 
 Floats = NDArray[np.float64]
 
-#: Cells of the overview mesh along the longest side of the body, and the most that a mesh may have.
-OVERVIEW = 48
+#: Cells of the overview mesh along the longest side of the body, at least and at most, and between two holes: a deposit
+#: of many holes has parts that 48 cells do not show. And the most cells that a mesh may have.
+OVERVIEW = (48, 160)
+BETWEEN_HOLES = 3
 MOST = 1024
 
 
@@ -117,7 +119,8 @@ class ImplicitBody:
         Parameters
         ----------
         spacing : float, optional
-            Edge of the cells in metres; by default 1/48 of the longest side of the body.
+            Edge of the cells in metres; by default a third of the distance between holes, and between 1/48 and 1/160 of
+            the longest side of the body.
 
         Raises
         ------
@@ -155,7 +158,8 @@ class ImplicitBody:
     def overview(self) -> TriangleMesh:
         """A mesh of moderate size about the local origin, made once."""
         lower, upper = self.extent
-        return self.local_mesh(float((upper - lower).max()) / OVERVIEW)
+        longest = float((upper - lower).max())
+        return self.local_mesh(longest / np.clip(BETWEEN_HOLES * longest / self.region.spacing, *OVERVIEW))
 
     def volumes(self) -> BodyVolumes:
         """Return P10, P50 and P90 of the volume by conditional simulation."""

@@ -13,6 +13,8 @@ from geofit.bodies.body import ImplicitBody
 from geofit.bodies.dual import dual_quads
 from geofit.bodies.fit import fit_body
 from geofit.bodies.quads import patched_surface
+from geofit.cad.faces import explore
+from geofit.cad.solid import patch_solid
 from geofit.implicit.mesh import TriangleMesh
 from geofit.io.boreholes import read_boreholes
 
@@ -74,6 +76,34 @@ def test_planted_bodies_become_nurbs_solids(name: str, tmp_path: Path) -> None:
     assert found.edge_tolerance <= 1e-6
     (volume,) = (check for check in found.checks if check.name == "volume")
     assert found.volume == pytest.approx(volume.limit, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", ["ring", "two"])
+def test_distances_from_the_solid_are_those_of_opencascade(name: str, request: pytest.FixtureRequest) -> None:
+    """Places at planted offsets: sigma by the body's foot points, by OpenCASCADE from the solid, and as planted."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+    from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+    from OCP.gp import gp_Pnt
+    from OCP.TopAbs import TopAbs_SHELL
+
+    body: ImplicitBody = request.getfixturevalue(name)
+    solid = patch_solid(patched_surface(body, tolerance=5e-5).components)
+    shells = list(explore(solid, TopAbs_SHELL))
+    rng = np.random.default_rng(3)
+    foot = body.overview.vertices[rng.choice(len(body.overview.vertices), 40, replace=False)]
+    normal = body.field.gradient(foot)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    planted = rng.uniform(-1.0, 1.0, len(foot))
+    places = foot + planted[:, None] * normal
+    measured = body.distance(places + body.origin)
+    found = np.empty(len(places))
+    for k, place in enumerate(places.tolist()):
+        vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*place)).Vertex()
+        found[k] = min(BRepExtrema_DistShapeShape(vertex, shell).Value() for shell in shells)
+    np.testing.assert_allclose(found, np.abs(measured), atol=1e-4)
+    np.testing.assert_allclose(measured, planted, atol=1e-4)
+    sigmas = [np.sqrt((d**2).sum() / (len(d) - 1)) for d in (found, measured, planted)]
+    assert max(sigmas) - min(sigmas) < 1e-4
 
 
 def test_quadrilaterals_of_noise_are_closed() -> None:
