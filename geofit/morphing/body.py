@@ -196,16 +196,10 @@ class MorphBody:
             NURBS patches within half a spacing of the surface; otherwise, and where patches cannot follow the body, a
             tessellated solid.
         """
-        from geofit.bodies.quads import patched_surface
+        from geofit.bodies.creased import write_solid
         from geofit.cad.solid import write_body
 
-        if not nurbs or self.given_mesh is not None:
-            return write_body(self, path)
-        try:
-            patches = patched_surface(self).components
-        except FitError as error:
-            return write_body(self, path, reason=str(error))
-        return write_body(self, path, patches)
+        return write_solid(self, path) if nurbs and self.given_mesh is None else write_body(self, path)
 
     def _local(self, xyz: ArrayLike) -> Floats:
         return np.asarray(np.atleast_2d(np.asarray(xyz, float)).reshape(-1, 3) - self.origin)

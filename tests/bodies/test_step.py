@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import geofit
+import geofit.implicit as implicit
 from bodies.planted import drilled
 from bodies.shapes import KINDS, horn
 from geofit.bodies.body import ImplicitBody
@@ -15,6 +17,8 @@ from geofit.bodies.fit import fit_body
 from geofit.bodies.quads import patched_surface
 from geofit.cad.faces import explore
 from geofit.cad.solid import patch_solid
+from geofit.cad.solid_mesh import solid_triangles
+from geofit.cad.step import read_shapes
 from geofit.implicit.mesh import TriangleMesh
 from geofit.io.boreholes import read_boreholes
 
@@ -120,3 +124,33 @@ def test_quadrilaterals_of_noise_are_closed() -> None:
     assert mesh.volume > 0
     value[5, 5, 0] = -1.0
     assert dual_quads(value) is None
+
+
+BALL, LENS = implicit.Sphere([0, 0, 0], 1.0), implicit.ellipsoid([0.9, 0.2, 0.1], [0.8, 0.6, 0.7])
+CREASED = {
+    "union": implicit.union(BALL, LENS),
+    "difference": implicit.difference(BALL, LENS),
+    "intersection": implicit.intersection(BALL, LENS),
+    "flat top": implicit.intersection(implicit.union(BALL, LENS), implicit.Plane([0, 0, 0.3], [0.1, 0, 1])),
+    "hollow with a flat floor": implicit.difference(
+        BALL, implicit.intersection(LENS, implicit.Plane([0, 0, -0.1], [0, 0, -1]))
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CREASED)
+def test_sharp_bodies_keep_their_creases(name: str, tmp_path: Path) -> None:
+    body = geofit.morph(CREASED[name], implicit.Sphere([0, 0, 0], 1.2), cells=64)(0)
+    found = body.write_step(tmp_path / "body.step")
+    assert found.passed, [check.text for check in found.checks if check.passed is False]
+    assert (found.grade, found.solids, found.free_edges, found.brep_valid) == ("nurbs", 1, 0, True)
+    assert found.deviation <= body.epsilon / 2
+    assert found.edge_tolerance <= 1e-3
+    lower, upper = body.extent
+    fine, coarse = (
+        implicit.isosurface(body.field, implicit.Lattice.around(lower, upper, cells=n)).volume for n in (96, 48)
+    )
+    assert found.volume == pytest.approx((4 * fine - coarse) / 3, rel=2e-3)
+    # The two bodies of a crease meet at its true angle there: its places are on both, and triangles cut it off.
+    mesh = solid_triangles(read_shapes(tmp_path / "body.step")[0].shape)
+    assert np.abs(body.field.value(mesh.vertices)).max() <= body.epsilon / 2
