@@ -1,5 +1,6 @@
-"""Fit bodies to the logs of Copper Creek and write docs/real_bodies.md; with ``--planted N``, score planted bodies.
+"""Fit bodies to the logs of Copper Creek and write docs/real_bodies.md.
 
+With ``--planted N``, measure planted bodies, N of each family for the volumes, and write docs/bodies.md.
 The data are looked for in GEOFIT_DATA, else in ../shared/data next to the repository.
 """
 
@@ -10,6 +11,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
@@ -64,50 +66,62 @@ def write_page(data: Path) -> None:
     PAGE.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def planted(count: int, first: int = 0) -> None:
-    """Print how well volumes, their P10 to P90 and the probability of planted bodies of ten kinds hold."""
-    sys.path.insert(0, str(ROOT / "tests"))
+@dataclass(frozen=True)
+class Score:
+    """How well volumes, their P10 to P90 and the chance of lying inside held on planted bodies, as lines of a page."""
+
+    kinds: list[str]
+    classes: list[str]
+
+
+def planted(count: int, others: bool = False) -> Score:
+    """Fit planted bodies of ten kinds, or of the five others, and score them."""
     from bodies.planted import ORIGIN, SIZE
-    from bodies.shapes import KINDS, case
+    from bodies.shapes import KINDS, OTHERS, case, other_case
 
     from geofit.bodies.posterior import Posterior
 
-    held: dict[str, list[bool]] = {kind: [] for kind in KINDS}
-    errors: dict[str, list[float]] = {kind: [] for kind in KINDS}
-    chance, truth, wrong = [], [], 0
-    for seed in range(first, first + count):
-        one = case(seed)
+    kinds, make = (OTHERS, other_case) if others else (KINDS, case)
+    held: dict[str, list[bool]] = {kind: [] for kind in kinds}
+    errors: dict[str, list[float]] = {kind: [] for kind in kinds}
+    chance, truth = [], []
+    for seed in range(count):
+        one = make(seed)
         if len(one.data.contacts) < 6:
-            print(f"{seed} ({one.kind}): {len(one.data.contacts)} contacts only, not fitted")
             continue
         body, volume = fit_body(one.data), one.volume()
+        assert body.accuracy is not None
+        assert body.accuracy.wrong_side == 0
         volumes = body.volumes()
         held[one.kind].append(volumes.p10 < volume < volumes.p90)
         errors[one.kind].append(volumes.best / volume - 1)
-        assert body.accuracy is not None
-        wrong += body.accuracy.wrong_side
         places = np.random.default_rng(seed).uniform(-0.9, 0.9, (3000, 3))
         chance.append(Posterior(body).probability(places * SIZE + ORIGIN))
         truth.append(one.truth(places) < 0)
-    for kind, found in errors.items():
-        if found:
-            middle, worst = np.median(np.abs(found)), np.abs(found).max()
-            print(
-                f"{kind:<20}{len(found):>4}: volume median {middle:.1%}, mean {np.mean(found):+.1%}, "
-                f"worst {worst:.1%}; P10-P90 holds {np.mean(held[kind]):.0%}"
-            )
-    every, hold = np.concatenate(list(errors.values())), np.concatenate(list(held.values()))
-    print(f"all {len(every)}: median {np.median(np.abs(every)):.1%}, mean {every.mean():+.1%}, holds {hold.mean():.1%}")
-    print(f"samples on the wrong side: {wrong}")
-    p, inside = np.concatenate(chance), np.concatenate(truth)
+    every = {**errors, "all": [e for found in errors.values() for e in found]}
+    inside = {**held, "all": [h for found in held.values() for h in found]}
+    rows = [
+        f"| {kind} | {len(found)} | {np.median(np.abs(found)):.1%} | {np.mean(found):+.1%} | "
+        f"{np.abs(found).max():.1%} | {np.mean(inside[kind]):.1%} |"
+        for kind, found in every.items()
+        if found
+    ]
+    p, true = np.concatenate(chance), np.concatenate(truth)
+    classes = []
     for low, high in pairwise(LIMITS):
         own = (p > low) & (p <= high)
-        print(f"P {low:.2f}-{high:.2f}: {own.sum():>6} places, mean {p[own].mean():.3f}, true {inside[own].mean():.3f}")
+        classes.append(f"| {low:.2f}-{high:.2f} | {own.sum()} | {p[own].mean():.3f} | {true[own].mean():.3f} |")
+    print("\n".join([*rows, *classes]), flush=True)
+    return Score(rows, classes)
 
 
 def main() -> int:
+    sys.path.insert(0, str(ROOT / "tests"))
     if "--planted" in sys.argv:
-        planted(int(sys.argv[sys.argv.index("--planted") + 1]))
+        from body_page import write_figures
+
+        count = int(sys.argv[sys.argv.index("--planted") + 1])
+        write_figures(planted(count), planted(count, others=True))
         return 0
     data = Path(os.environ.get("GEOFIT_DATA", ROOT / ".." / "shared" / "data")) / "copper_creek"
     if not data.is_dir():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ from geofit.bodies.fitted import Fitted
 from geofit.bodies.implicit_body import ImplicitBody
 from geofit.bodies.region import Region
 from geofit.bodies.settings import BodySettings
+from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
     from geofit.bodies.simulate import BodyVolumes
@@ -22,6 +24,11 @@ if TYPE_CHECKING:
 __all__ = ["BodyFit"]
 
 Floats = NDArray[np.float64]
+
+#: Cells of the overview mesh along the longest side of the body, at least and at most, and between two holes: a deposit
+#: of many holes has parts that 48 cells do not show.
+OVERVIEW = (48, 160)
+BETWEEN_HOLES = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +110,13 @@ class BodyFit(ImplicitBody):
     def extent(self) -> tuple[Floats, Floats]:
         """Corners (3,) of a box around the body about the local origin, somewhat larger than it."""
         return self.fitted.survey.lower, self.fitted.survey.upper
+
+    @cached_property
+    def overview(self) -> TriangleMesh:
+        """Closed triangles about the local origin, made once: cells of a third of the distance between holes."""
+        lower, upper = self.extent
+        longest = float((upper - lower).max())
+        return self.local_mesh(longest / np.clip(BETWEEN_HOLES * longest / self.region.spacing, *OVERVIEW))
 
     def volumes(self) -> BodyVolumes:
         """Return P10, P50 and P90 of the volume by conditional simulation."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import measurable_places
-from geofit.data.errors import FitError, SettingsError
+from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite
 from geofit.implicit.isosurface import isosurface
@@ -152,16 +152,10 @@ class ImplicitBody:
             NURBS patches within :attr:`epsilon` of the surface; otherwise, and where patches cannot follow the body, a
             tessellated solid.
         """
-        from geofit.bodies.quads import patched_surface
+        from geofit.bodies.creased import write_solid
         from geofit.cad.solid import write_body
 
-        if not nurbs:
-            return write_body(self, path)
-        try:
-            patches = patched_surface(self).components
-        except FitError as error:
-            return write_body(self, path, reason=str(error))
-        return write_body(self, path, patches)
+        return write_solid(self, path) if nurbs else write_body(self, path)
 
     def _lattice(self, spacing: float) -> Lattice:
         """Return the nodes of a mesh: the body's box, and two cells around it."""

@@ -33,10 +33,10 @@ class BodySettings:
         Whether ground farther than ``reach`` from the nearest contact or inside sample counts as outside. Without it
         the body may continue through ground without data.
     reach : float or None
-        That distance in metres; None: 1.5 times the typical distance between holes, as the samples show it.
+        That distance in metres; None: twice the typical distance between holes, as the samples show it.
     box : pair of corners or None
         Lower and upper corner (map coordinates) at which the body is cut; None: the box of contacts and inside samples,
-        enlarged by 1.5 times the reach.
+        enlarged by 1.1 times the reach.
     ranges : (float, float, float)
         Anisotropy: how far data act along the major, the middle and the minor axis, relative to each other.
     azimuth, dip, rake : float

@@ -71,7 +71,11 @@ class SolidReadBack:
 
 
 def write_body(
-    body: ImplicitBody, path: str | PathLike[str], patches: Sequence[Sequence[Patch]] = (), reason: str = ""
+    body: ImplicitBody,
+    path: str | PathLike[str],
+    patches: Sequence[Sequence[Patch]] = (),
+    reason: str = "",
+    shape: Any = None,
 ) -> SolidReadBack:
     """Write a body as a STEP AP242 solid, read it back and check it.
 
@@ -86,6 +90,8 @@ def write_body(
         overview's triangles are written.
     reason : str
         Why patches could not be written although requested; the check "grade" reports it.
+    shape : TopoDS_Shape, optional
+        The solid itself, about the body's local origin, in place of patches: its faces may be trimmed.
 
     Raises
     ------
@@ -99,7 +105,7 @@ def write_body(
             message("bodies.look-at-data", "Check its data."),
             file=str(target),
         )
-    shape = None
+    trimmed = shape is not None
     if patches:
         try:
             shape = patch_solid(patches)
@@ -107,7 +113,7 @@ def write_body(
             reason = str(error)
     smooth = shape is not None
     _write(shape if smooth else triangle_solid(body.overview), body.name, body.origin, target, nurbs=smooth)
-    found = _read_back(body, target, nurbs=smooth)
+    found = _read_back(body, target, nurbs=smooth, trimmed=trimmed)
     if not reason:
         return found
     text = message(
@@ -332,12 +338,13 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
         Path(temporary).unlink(missing_ok=True)
 
 
-def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBack:
+def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) -> SolidReadBack:
     from OCP.BRep import BRep_Tool
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
     from OCP.TopAbs import TopAbs_EDGE, TopAbs_SOLID
 
+    from geofit.cad.solid_mesh import solid_triangles
     from geofit.cad.step import read_shapes
     from geofit.geometry.projection import project
 
@@ -345,7 +352,13 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool) -> SolidReadBac
     shape = read_shapes(target)[0].shape
     faces = faces_of(shape)
     solids = list(explore(shape, TopAbs_SOLID))
-    if nurbs:
+    if trimmed:
+        # Places of the faces themselves: beyond its trims a surface is none of the body's.
+        places = solid_triangles(shape).vertices
+        measured, residuals = False, np.full(1, np.nan)
+        volume = sum(_volume(solid) for solid in solids)
+        free = len(free_edges(shape))
+    elif nurbs:
         patches = tuple(from_geom(str(k), BRep_Tool.Surface_s(face)) for k, face in enumerate(faces, 1))
         t = np.linspace(0.0, 1.0, 17)
         places = np.concatenate(

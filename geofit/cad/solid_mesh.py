@@ -17,7 +17,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["read_solids", "solid_meshes"]
+__all__ = ["read_solids", "solid_meshes", "solid_triangles"]
 
 Floats = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ def solid_meshes(path: str | PathLike[str]) -> dict[str, TriangleMesh]:
     found = {}
     for shape in read_shapes(path):
         if any(True for _ in explore(shape.shape, TopAbs_SOLID)):
-            found[shape.name] = _triangles(shape.shape.Located(shape.location))
+            found[shape.name] = solid_triangles(shape.shape.Located(shape.location))
     if not found:
         raise InputError(
             message("cad.no-solid", "The file holds no solid"),
@@ -57,7 +57,8 @@ def solid_meshes(path: str | PathLike[str]) -> dict[str, TriangleMesh]:
     return found
 
 
-def _triangles(shape: Any) -> TriangleMesh:
+def solid_triangles(shape: Any) -> TriangleMesh:
+    """Return the triangles of an OpenCASCADE shape's faces, joined along their edges."""
     from OCP.Bnd import Bnd_Box
     from OCP.BRep import BRep_Tool
     from OCP.BRepBndLib import BRepBndLib

@@ -233,7 +233,7 @@ BODY_SETTINGS: Mapping[str, SettingText] = {
         message("settings.reach", "Reach"),
         message(
             "settings.reach-about",
-            "How far from contacts and inside samples the body may extend. Automatic: 1.5 times the distance between "
+            "How far from contacts and inside samples the body may extend. Automatic: twice the distance between "
             "holes.",
         ),
         "m",
@@ -274,7 +274,7 @@ BODY_SETTINGS: Mapping[str, SettingText] = {
         message(
             "settings.box-about",
             "Lower and upper corner at which the body is cut, six map coordinates in metres. Empty: the box of the "
-            "data, enlarged by 1.5 times the reach.",
+            "data, enlarged by 1.1 times the reach.",
         ),
         choices={None: _AUTO},
     ),

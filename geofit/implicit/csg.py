@@ -22,6 +22,7 @@ __all__ = [
     "intersection",
     "r_intersection",
     "r_union",
+    "sharp_union",
     "smooth_difference",
     "smooth_intersection",
     "smooth_union",
@@ -220,6 +221,20 @@ def intersection(*fields: Field) -> Field:
 def difference(field: Field, *others: Field) -> Field:
     """Return what is in the first body and in no other: max(f, -g, ...)."""
     return intersection(field, *map(complement, others))
+
+
+def sharp_union(field: Field) -> tuple[tuple[Field, ...], bool] | None:
+    """Return the bodies whose sharp union a field is, and whether it is what lies outside them; None of other fields.
+
+    An intersection is what lies outside the union of complements.
+    """
+    base, outside = field, False
+    while isinstance(base, _Within | _Complement):
+        outside ^= isinstance(base, _Complement)
+        base = base.field
+    if isinstance(base, _Union):
+        return base.fields, outside
+    return ((base,), True) if isinstance(field, _Complement) else None
 
 
 def smooth_union(first: Field, second: Field, radius: float) -> Field:

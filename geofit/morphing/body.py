@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import date
 from functools import cached_property
+from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,6 +20,8 @@ from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
+    from geofit.cad.solid import SolidReadBack
+
     pass
 
 __all__ = ["GEOMETRY_ONLY", "MorphBody"]
@@ -138,3 +141,7 @@ class MorphBody(ImplicitBody):
             return self.mesh
         mesh = self.local_mesh(spacing)
         return TriangleMesh(mesh.vertices + self.origin, mesh.triangles)
+
+    def write_step(self, path: str | PathLike[str], nurbs: bool = True) -> SolidReadBack:
+        """Write the body as a STEP AP242 solid; an end that was given as triangles stays triangles."""
+        return super().write_step(path, nurbs=nurbs and self.given_mesh is None)

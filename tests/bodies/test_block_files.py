@@ -50,7 +50,9 @@ def test_block_model(ring: BodyFit, tmp_path: Path) -> None:
     np.testing.assert_allclose(table["field"], ring.value(centres), rtol=1e-5, atol=1e-5)
     expected = table["probability"].sum() * 125
     assert expected == pytest.approx(ring.triangulate().volume, rel=0.05)
-    assert ((table["probability"] > 0.5) == (table["field"] < 0)).mean() > 0.999
+    # Places on the surface itself have a chance somewhat below one half.
+    assert ((table["probability"] > 0.5) == (table["field"] < 0)).mean() > 0.99
+    assert (table["field"][table["probability"] > 0.5] < 0).all()
 
 
 def test_probability_is_calibrated() -> None:

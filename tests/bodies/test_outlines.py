@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from bodies.planted import ORIGIN
+from bodies.sectioned import left_out
 from geofit.bodies.fit import fit_body
 from geofit.bodies.outlines import Outline, from_outlines, section_planes
 from geofit.bodies.questions import section_questions
@@ -41,6 +42,16 @@ def test_a_left_out_section_of_an_ellipsoid(count: int, least: float) -> None:
     assert (truth & got).sum() / (truth | got).sum() > least
     assert body.accuracy is not None
     assert body.accuracy.wrong_side == 0
+
+
+@pytest.mark.parametrize(
+    ("name", "count", "least"),
+    [("horn", 5, 0.9), ("horn", 9, 0.97), ("horn", 17, 0.99), ("fork", 5, 0.8), ("fork", 9, 0.94), ("fork", 17, 0.96)],
+)
+def test_a_left_out_section_of_bodies_that_bend_and_branch(name: str, count: int, least: float) -> None:
+    ours, linear = left_out(name, count)
+    assert ours > least
+    assert ours > linear + 0.02
 
 
 def test_an_outline_within_another_is_a_hole() -> None:

@@ -1,22 +1,30 @@
-"""Ten kinds of bodies, any holes: P10 to P90 holds most true volumes, and the chance of lying inside is honest.
+"""Bodies of many kinds, any holes: P10 to P90 holds most true volumes, and the chance of lying inside is honest.
 
 ``python benchmarks/bodies.py --planted 200`` measures the same on more bodies.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
+import pytest
 
 from bodies.planted import ORIGIN, SIZE
-from bodies.shapes import case
+from bodies.shapes import Case, case, other_case
 from geofit.bodies.fit import fit_body
 from geofit.bodies.posterior import Posterior
 
 
-def test_thirty_bodies_of_ten_kinds() -> None:
+@pytest.mark.parametrize(("make", "count", "error"), [(case, 30, 0.05), (other_case, 40, 0.08)])
+def test_bodies_of_kinds_that_were_used_and_not_used_to_calibrate(
+    make: Callable[[int], Case], count: int, error: float
+) -> None:
     held, errors, chance, inside = [], [], [], []
-    for seed in range(30):
-        one = case(seed)
+    for seed in range(count):
+        one = make(seed)
+        if len(one.data.contacts) < 6:
+            continue
         body, volume = fit_body(one.data), one.volume(56)
         assert body.accuracy is not None
         assert body.accuracy.wrong_side == 0
@@ -26,11 +34,11 @@ def test_thirty_bodies_of_ten_kinds() -> None:
         places = np.random.default_rng(seed).uniform(-0.9, 0.9, (3000, 3))
         chance.append(Posterior(body).probability(places * SIZE + ORIGIN))
         inside.append(one.truth(places) < 0)
-    # 80 % of 30, and two standard errors of a share.
+    # 80 %, and two standard errors of a share of thirty.
     assert 0.65 <= np.mean(held) <= 0.95
-    assert np.median(np.abs(errors)) < 0.05
+    assert np.median(np.abs(errors)) < error
     p, true = np.concatenate(chance), np.concatenate(inside)
     for low, high in ((0.05, 0.2), (0.2, 0.4), (0.4, 0.6), (0.6, 0.8), (0.8, 0.95)):
         own = (p > low) & (p <= high)
         assert own.sum() > 300
-        assert abs(p[own].mean() - true[own].mean()) < 0.08, (low, high)
+        assert abs(p[own].mean() - true[own].mean()) < 0.1, (low, high)

@@ -7,12 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import geofit
+import geofit.implicit as implicit
 from bodies.planted import drilled
 from bodies.shapes import KINDS, horn
 from geofit.bodies.body import BodyFit
 from geofit.bodies.dual import dual_quads
 from geofit.bodies.fit import fit_body
 from geofit.bodies.quads import patched_surface
+from geofit.cad.faces import explore
+from geofit.cad.solid import patch_solid
+from geofit.cad.solid_mesh import solid_triangles
+from geofit.cad.step import read_shapes
 from geofit.implicit.mesh import TriangleMesh
 from geofit.io.boreholes import read_boreholes
 
@@ -76,6 +82,34 @@ def test_planted_bodies_become_nurbs_solids(name: str, tmp_path: Path) -> None:
     assert found.volume == pytest.approx(volume.limit, rel=1e-3)
 
 
+@pytest.mark.parametrize("name", ["ring", "two"])
+def test_distances_from_the_solid_are_those_of_opencascade(name: str, request: pytest.FixtureRequest) -> None:
+    """Places at planted offsets: sigma by the body's foot points, by OpenCASCADE from the solid, and as planted."""
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
+    from OCP.BRepExtrema import BRepExtrema_DistShapeShape
+    from OCP.gp import gp_Pnt
+    from OCP.TopAbs import TopAbs_SHELL
+
+    body: BodyFit = request.getfixturevalue(name)
+    solid = patch_solid(patched_surface(body, tolerance=5e-5).components)
+    shells = list(explore(solid, TopAbs_SHELL))
+    rng = np.random.default_rng(3)
+    foot = body.overview.vertices[rng.choice(len(body.overview.vertices), 40, replace=False)]
+    normal = body.field.gradient(foot)
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    planted = rng.uniform(-1.0, 1.0, len(foot))
+    places = foot + planted[:, None] * normal
+    measured = body.distance(places + body.origin)
+    found = np.empty(len(places))
+    for k, place in enumerate(places.tolist()):
+        vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*place)).Vertex()
+        found[k] = min(BRepExtrema_DistShapeShape(vertex, shell).Value() for shell in shells)
+    np.testing.assert_allclose(found, np.abs(measured), atol=1e-4)
+    np.testing.assert_allclose(measured, planted, atol=1e-4)
+    sigmas = [np.sqrt((d**2).sum() / (len(d) - 1)) for d in (found, measured, planted)]
+    assert max(sigmas) - min(sigmas) < 1e-4
+
+
 def test_quadrilaterals_of_noise_are_closed() -> None:
     value = np.random.default_rng(2).normal(size=(12, 12, 12))
     value[[0, -1]] = value[:, [0, -1]] = value[:, :, [0, -1]] = 1.0
@@ -90,3 +124,33 @@ def test_quadrilaterals_of_noise_are_closed() -> None:
     assert mesh.volume > 0
     value[5, 5, 0] = -1.0
     assert dual_quads(value) is None
+
+
+BALL, LENS = implicit.Sphere([0, 0, 0], 1.0), implicit.ellipsoid([0.9, 0.2, 0.1], [0.8, 0.6, 0.7])
+CREASED = {
+    "union": implicit.union(BALL, LENS),
+    "difference": implicit.difference(BALL, LENS),
+    "intersection": implicit.intersection(BALL, LENS),
+    "flat top": implicit.intersection(implicit.union(BALL, LENS), implicit.Plane([0, 0, 0.3], [0.1, 0, 1])),
+    "hollow with a flat floor": implicit.difference(
+        BALL, implicit.intersection(LENS, implicit.Plane([0, 0, -0.1], [0, 0, -1]))
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CREASED)
+def test_sharp_bodies_keep_their_creases(name: str, tmp_path: Path) -> None:
+    body = geofit.morph(CREASED[name], implicit.Sphere([0, 0, 0], 1.2), cells=64)(0)
+    found = body.write_step(tmp_path / "body.step")
+    assert found.passed, [check.text for check in found.checks if check.passed is False]
+    assert (found.grade, found.solids, found.free_edges, found.brep_valid) == ("nurbs", 1, 0, True)
+    assert found.deviation <= body.epsilon / 2
+    assert found.edge_tolerance <= 1e-3
+    lower, upper = body.extent
+    fine, coarse = (
+        implicit.isosurface(body.field, implicit.Lattice.around(lower, upper, cells=n)).volume for n in (96, 48)
+    )
+    assert found.volume == pytest.approx((4 * fine - coarse) / 3, rel=2e-3)
+    # The two bodies of a crease meet at its true angle there: its places are on both, and triangles cut it off.
+    mesh = solid_triangles(read_shapes(tmp_path / "body.step")[0].shape)
+    assert np.abs(body.field.value(mesh.vertices)).max() <= body.epsilon / 2

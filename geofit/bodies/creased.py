@@ -1,0 +1,116 @@
+"""Solids of bodies with sharp creases: NURBS solids of their smooth parts, joined and cut as the field is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.bodies.implicit_body import ImplicitBody
+from geofit.bodies.quads import patched_surface
+from geofit.data.errors import FitError, StitchError
+from geofit.data.messages import message
+from geofit.implicit.csg import sharp_union
+from geofit.implicit.field import Field
+from geofit.implicit.quadric import Plane
+
+if TYPE_CHECKING:
+    from geofit.cad.solid import SolidReadBack
+
+__all__ = ["creased_solid", "write_solid"]
+
+Floats = NDArray[np.float64]
+
+#: Lengths over which a part is about flat along its longest side, and the room around it as a share of that side.
+CELLS = 48
+ROOM = 0.05
+
+
+def write_solid(body: ImplicitBody, path: str | PathLike[str]) -> SolidReadBack:
+    """Write a body as a NURBS solid, or as triangles where that cannot be done, read it back and check it."""
+    from geofit.cad.solid import write_body
+
+    try:
+        if sharp_union(body.field) is not None:
+            return write_body(body, path, shape=creased_solid(body))
+        return write_body(body, path, patched_surface(body).components)
+    except (FitError, StitchError) as error:
+        return write_body(body, path, reason=str(error))
+
+
+def creased_solid(body: ImplicitBody) -> Any:
+    """Return the OpenCASCADE solid of a body whose field is a sharp union, intersection or difference.
+
+    Raises
+    ------
+    FitError
+        If patches do not follow a part, or a part has no end.
+    StitchError
+        If OpenCASCADE cannot join or cut the parts.
+    """
+    lower, upper = body.extent
+    size = 10 * float(np.linalg.norm(upper - lower))
+    shape, outside = _combined(body.field, body.epsilon, size)
+    if outside:
+        raise _endless()
+    return shape
+
+
+def _combined(part: Field, epsilon: float, size: float) -> tuple[Any, bool]:
+    """Return the solid of a field, and whether the field is what lies outside it."""
+    from geofit.cad.boolean import common, cut, fused, half_space
+    from geofit.cad.solid import patch_solid
+
+    found = sharp_union(part)
+    if found is None:
+        if isinstance(part, Plane):
+            return half_space(part.point, part.normal, size), False
+        return patch_solid(patched_surface(_Part(part, epsilon)).components), False
+    parts = [_combined(one, epsilon, size) for one in found[0]]
+    inner = [shape for shape, outside in parts if not outside]
+    outer = [shape for shape, outside in parts if outside]
+    if not outer:
+        return fused(inner), found[1]
+    # What lies outside some solids, or in others, is what lies outside of the first without the others.
+    shape = common(outer)
+    return (cut(shape, fused(inner)) if inner else shape), not found[1]
+
+
+def _endless() -> FitError:
+    return FitError(
+        message("bodies.part-endless", "A part of the body has no end, so it is no solid. Write triangles instead.")
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Part(ImplicitBody):
+    """A smooth part of a body, as patches need it: its field, and how far they may be from it."""
+
+    field: Field
+    within: float
+    name: str = ""
+
+    @property
+    def epsilon(self) -> float:
+        return self.within
+
+    @property
+    def origin(self) -> Floats:
+        return np.zeros(3)
+
+    @cached_property
+    def extent(self) -> tuple[Floats, Floats]:
+        lower, upper = (np.asarray(corner, float) for corner in self.field.bounds)
+        if not np.isfinite(upper - lower).all():
+            raise _endless()
+        room = ROOM * float((upper - lower).max())
+        return lower - room, upper + room
+
+    @property
+    def spacing(self) -> float:
+        lower, upper = self.extent
+        return float((upper - lower).max()) / CELLS
