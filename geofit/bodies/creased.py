@@ -82,7 +82,7 @@ def _combined(part: Field, epsilon: float, size: float) -> tuple[Any, bool]:
 
 def _endless() -> FitError:
     return FitError(
-        message("bodies.part-endless", "A part of the body has no end, so it is no solid. Write triangles instead.")
+        message("bodies.part-endless", "A part of the body is unbounded: a solid must be closed. Write triangles instead.")
     )
 
 
