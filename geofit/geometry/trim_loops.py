@@ -36,6 +36,8 @@ ON = 1e-9
 LATTICE, AROUND = 60, 2000
 #: Starts of each point on the loops and inside them, and steps of the golden section along a loop.
 STARTS, STEPS = 4, 60
+#: How much longer than its chord half a piece of a loop may be; steps of Newton's method, and the last one, of 0 to 1.
+SLACK, NEWTON, REST = 1.5, 12, 1e-11
 
 
 def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Projection:
@@ -127,7 +129,7 @@ def inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Boo
 
 
 def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
-    """Return the nearest places on the loops: a golden section along the pieces beside the nearest samples."""
+    """Return the nearest places on the loops: on the short pieces around the nearest samples."""
     starts, ways, places, owner = [], [], [], []
     for k, patch in enumerate(patches):
         for loop in loops[k]:
@@ -140,26 +142,63 @@ def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> 
             places.append(patch.evaluate(*(start + ways[-1] / 2).T))
             owner.append(np.full(len(start), k))
     start, way, part = np.concatenate(starts), np.concatenate(ways), np.concatenate(owner)
+    middle = np.concatenate(places)
     count = min(2 * STARTS, len(start))
-    piece = np.asarray(cKDTree(np.concatenate(places)).query(target, k=np.arange(1, count + 1))[1]).ravel()
-    point = np.repeat(np.arange(len(target)), count)
+    far, piece = cKDTree(middle).query(target, k=np.arange(1, count + 1))
+    # A piece can hold the nearest place only if it reaches nearer than the middle of the nearest piece.
+    reach = np.zeros(len(start))
+    for k in np.unique(part):
+        own = part == k
+        for t in (0.0, 1.0):
+            end = patches[k].evaluate(*(start[own] + t * way[own]).T)
+            reach[own] = np.maximum(reach[own], SLACK * np.linalg.norm(end - middle[own], axis=1))
+    point, column = np.nonzero(far - reach[piece] <= far[:, :1])
+    piece = piece[point, column]
+    t, distance, foot = np.empty(len(piece)), np.empty(len(piece)), np.empty((len(piece), 3))
+    for k in np.unique(part[piece]):
+        own = np.flatnonzero(part[piece] == k)
+        t[own] = _nearest_along(patches[k], start[piece[own]], way[piece[own]], target[point[own]])
+        foot[own] = patches[k].evaluate(*(start[piece[own]] + t[own, None] * way[piece[own]]).T)
+        distance[own] = np.linalg.norm(foot[own] - target[point[own]], axis=1)
+    order = np.lexsort((distance, point))
+    best = order[np.flatnonzero(np.diff(point[order], prepend=-1))]
+    u, v = (start[piece[best]] + t[best, None] * way[piece[best]]).T
+    return Projection(distance[best], foot[best], part[piece[best]], u, v, np.ones(len(target), bool))
 
-    def at(t: Floats) -> Floats:
-        result = np.empty((len(t), 3))
-        for k in np.unique(part[piece]):
-            own = part[piece] == k
-            result[own] = patches[k].evaluate(*(start[piece[own]] + t[own, None] * way[piece[own]]).T)
-        return result
 
-    def far(t: Floats) -> Floats:
-        return np.asarray(np.linalg.norm(at(t) - target[point], axis=1))
+def _nearest_along(patch: Patch, start: Floats, way: Floats, target: Floats) -> Floats:
+    """Return where short pieces of curves, straight in a patch's parameters, are nearest to points, 0 to 1.
 
-    t = _golden(far, len(piece))
-    distance = far(t)
-    best = np.lexsort((distance, point))[::count]
-    uv = (start[piece] + t[:, None] * way[piece])[best]
-    u, v = uv.T
-    return Projection(distance[best], at(t)[best], part[piece[best]], u, v, np.ones(len(target), bool))
+    Newton's method; a golden section where it does not come to rest.
+    """
+    t, left = np.full(len(start), 0.5), np.arange(len(start))
+    for _ in range(NEWTON):
+        u, v = (start[left] + t[left, None] * way[left]).T
+        a, b = way[left].T[:, :, None]
+        slope = a * patch.evaluate(u, v, 1, 0) + b * patch.evaluate(u, v, 0, 1)
+        bend = a * a * patch.evaluate(u, v, 2, 0) + 2 * a * b * patch.evaluate(u, v, 1, 1)
+        bend += b * b * patch.evaluate(u, v, 0, 2)
+        away = patch.evaluate(u, v) - target[left]
+        first = np.einsum("nk,nk->n", away, slope)
+        square = np.einsum("nk,nk->n", slope, slope)
+        second = square + np.einsum("nk,nk->n", away, bend)
+        step = first / np.maximum(np.where(second > 0, second, square), 1e-300)
+        moved = np.clip(t[left] - step, 0.0, 1.0)
+        resting = np.abs(moved - t[left]) <= REST
+        # Uphill of a bend there may be a nearer place.
+        resting &= second > 0
+        t[left] = moved
+        left = left[~resting]
+        if not left.size:
+            return t
+
+    def far(share: Floats) -> Floats:
+        return np.asarray(
+            np.linalg.norm(patch.evaluate(*(start[left] + share[:, None] * way[left]).T) - target[left], axis=1)
+        )
+
+    t[left] = _golden(far, len(left))
+    return t
 
 
 def _golden(value: Any, count: int) -> Floats:

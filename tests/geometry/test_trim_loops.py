@@ -6,11 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from converged import converged_distances, ring
 from surfaces import ORIGIN, height_field, horizon, nine
 
 from geofit.cad.step import read_step, write_step
 from geofit.geometry.trim_loops import nearest
 from geofit.io.export.write import untrimmed
+from geofit.splines import bspline
+from geofit.splines.patch import Patch
 from geofit.surfaces.trimmed import TrimmedSurface
 
 
@@ -159,3 +162,22 @@ def star(rng, radius, count):
     angle = np.sort(rng.uniform(0, 2 * np.pi, count))
     far = rng.uniform(0.4, 1, count) * radius
     return np.array([500, 350]) + far[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
+
+
+@pytest.mark.parametrize("turns", [0.0, 180.0])
+@pytest.mark.parametrize("off", [0.2, 60.0])
+def test_distances_to_a_trimmed_fold_are_those_of_a_dense_search(turns, off):
+    u_knots, v_knots = (
+        bspline.clamped_knots(np.linspace(0, 1, 20), 3),
+        bspline.clamped_knots(np.linspace(0, 500, 12), 3),
+    )
+    u, y = np.meshgrid(bspline.greville(u_knots, 3), bspline.greville(v_knots, 3), indexing="ij")
+    x, z = 150 * u + turns * np.sin(2 * np.pi * u) + 0.1 * y, 300 * u + 10 * np.sin(y / 90)
+    patch = Patch("limb", (3, 3), u_knots, v_knots, np.stack([x, y, z], axis=-1))
+    loops = (ring(patch, (0.5, 0.5), 0.4, 100), ring(patch, (0.45, 0.55), 0.1, 25))
+    rng = np.random.default_rng(4)
+    u, v = rng.uniform(0, 1, 60), rng.uniform(0, 500, 60)
+    xyz = patch.evaluate(u, v) + patch.normal(u, v) * rng.normal(0, off, 60)[:, None]
+    found = nearest([patch], xyz, (loops,))
+    assert 0.2 < found.beyond.mean() < 0.8
+    np.testing.assert_allclose(np.abs(found.distance), converged_distances(patch, loops, xyz), atol=1e-9)
