@@ -16,6 +16,7 @@ from geofit.gui.dialogs.preferences import PreferencesDialog
 from geofit.gui.dialogs.shortcuts import ShortcutsDialog
 from geofit.gui.dialogs.system_report import SystemReport
 from geofit.gui.preferences import Preferences
+from geofit.gui.view3d.mouse import Scheme
 
 __all__ = ["Help"]
 
@@ -67,11 +68,16 @@ class Help(QObject):
         IssuesDialog(site, self._window).exec()
 
     def preferences(
-        self, preferences: Preferences, set_theme: Callable[[str], object], set_language: Callable[[str], object]
+        self,
+        preferences: Preferences,
+        set_theme: Callable[[str], object],
+        set_language: Callable[[str], object],
+        set_mouse: Callable[[Scheme], object],
     ) -> None:
-        """Ask for theme and language."""
+        """Ask for theme, language and mouse."""
         dialog = PreferencesDialog(preferences, self._window)
         if dialog.exec() == QDialog.DialogCode.Accepted:
+            set_mouse(dialog.mouse)
             if dialog.theme != preferences.theme:
                 set_theme(dialog.theme)
             if dialog.language != preferences.language:

@@ -29,6 +29,7 @@ from geofit.gui.selecting import Selecting
 from geofit.gui.session import Session
 from geofit.gui.showing import Showing
 from geofit.gui.theme import apply_theme, is_dark
+from geofit.gui.view3d.mouse import Scheme
 from geofit.gui.worker import finish_all
 from geofit.gui.workspace import Workspace
 from geofit.project.commands import RenameSite
@@ -83,6 +84,7 @@ class MainWindow(QMainWindow):
         self._show_recent()
         self._choose_in(self.actions_.themes, preferences.theme)
         self._choose_in(self.actions_.languages, preferences.language)
+        self._set_mouse(preferences.mouse)
         self._restore_layout()
         self.showing.everything()
         self._show_title()
@@ -175,7 +177,9 @@ class MainWindow(QMainWindow):
             "quit": self.close,
             "steps": self._show_steps,
             "rename": self._rename,
-            "preferences": lambda: self.help.preferences(self.preferences, self._set_theme, self.language_chosen.emit),
+            "preferences": lambda: self.help.preferences(
+                self.preferences, self._set_theme, self.language_chosen.emit, self._set_mouse
+            ),
             "home": view.reset_camera,
             "fold": self.panels.bar.toggle,
             "next_panel": lambda: self.panels.reach.step(1),
@@ -341,6 +345,9 @@ class MainWindow(QMainWindow):
         self.preferences.theme = theme  # type: ignore[assignment]
         self._choose_in(self.actions_.themes, theme)
         apply_theme(app, self.preferences.theme)
+
+    def _set_mouse(self, scheme: Scheme) -> None:
+        self.preferences.mouse = self.panels.view.canvas.scheme = scheme
 
     def _choose_in(self, group: object, value: object) -> None:
         for action in group.actions():  # type: ignore[attr-defined]

@@ -9,6 +9,7 @@ from PySide6.QtCore import QByteArray, QSettings
 
 from geofit.gui.language import LANGUAGES, system_language
 from geofit.gui.theme import THEMES, Theme
+from geofit.gui.view3d.mouse import SCHEMES, Scheme
 
 __all__ = ["Preferences"]
 
@@ -41,6 +42,16 @@ class Preferences:
     @language.setter
     def language(self, code: str) -> None:
         self._store.setValue("language", code)
+
+    @property
+    def mouse(self) -> Scheme:
+        """What the buttons of the mouse do in the 3D view."""
+        stored = str(self._store.value("mouse", "geofit"))
+        return next((scheme for scheme in SCHEMES if scheme == stored), "geofit")
+
+    @mouse.setter
+    def mouse(self, scheme: Scheme) -> None:
+        self._store.setValue("mouse", scheme)
 
     @property
     def recent(self) -> tuple[Path, ...]:

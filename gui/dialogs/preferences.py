@@ -1,18 +1,21 @@
-"""Theme and language."""
+"""Theme, language, and what the mouse does in the 3D view."""
 
 from __future__ import annotations
+
+from typing import cast
 
 from PySide6.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QWidget
 
 from geofit.gui.language import LANGUAGES
 from geofit.gui.preferences import Preferences
 from geofit.gui.theme import missing_chinese
+from geofit.gui.view3d.mouse import Scheme
 
 __all__ = ["PreferencesDialog"]
 
 
 class PreferencesDialog(QDialog):
-    """Asks for theme and language; ``theme`` and ``language`` hold what was chosen."""
+    """Asks for theme, language and mouse; ``theme``, ``language`` and ``mouse`` hold what was chosen."""
 
     def __init__(self, preferences: Preferences, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -28,12 +31,26 @@ class PreferencesDialog(QDialog):
             self._language.addItem(text, code)
         self._theme.setCurrentIndex(self._theme.findData(preferences.theme))
         self._language.setCurrentIndex(self._language.findData(preferences.language))
+        self._mouse, self._mouse_words = QComboBox(), QLabel()
+        for scheme, text in (
+            ("geofit", self.tr("geofit")),
+            ("cad", self.tr("CAD")),
+            ("leapfrog", self.tr("Leapfrog")),
+            ("paraview", self.tr("ParaView")),
+        ):
+            self._mouse.addItem(text, scheme)
+        self._mouse.setCurrentIndex(self._mouse.findData(preferences.mouse))
+        self._mouse_words.setWordWrap(True)
+        self._mouse.currentIndexChanged.connect(self._explain)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
         form.addRow(self.tr("&Theme"), self._theme)
         form.addRow(self.tr("&Language"), self._language)
+        form.addRow(self.tr("&Mouse in 3D"), self._mouse)
+        form.addRow("", self._mouse_words)
+        self._explain()
         if missing_chinese():
             note = QLabel(
                 self.tr(
@@ -45,6 +62,20 @@ class PreferencesDialog(QDialog):
             form.addRow(note)
         form.addRow(buttons)
         self.setMinimumWidth(360)
+
+    def _explain(self, *_: object) -> None:
+        words = {
+            "geofit": self.tr("Left turns, Shift + left, middle or right shifts, the wheel zooms."),
+            "cad": self.tr("Middle shifts, Shift + middle turns, the wheel zooms, left only chooses."),
+            "leapfrog": self.tr("Left turns, right zooms, middle or Shift + left shifts."),
+            "paraview": self.tr("Left turns, middle shifts, right zooms."),
+        }
+        self._mouse_words.setText(words[self.mouse])
+
+    @property
+    def mouse(self) -> Scheme:
+        """The chosen scheme of the mouse."""
+        return cast("Scheme", self._mouse.currentData())
 
     @property
     def theme(self) -> str:

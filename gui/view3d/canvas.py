@@ -14,6 +14,7 @@ from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkLight
 
 from geofit.gui.view3d.camera import Viewpoint, between
+from geofit.gui.view3d.mouse import Scheme, drag_of
 from geofit.gui.view3d.projector import Projector
 
 __all__ = ["Canvas"]
@@ -26,6 +27,8 @@ REST = 150
 FLIGHT, FRAME = 0.35, 15
 #: Degrees a pixel of dragging, share of the distance a notch of the wheel.
 TURN, NOTCH = 0.35, 1.2
+#: Pixels of a drag that are one notch of the wheel.
+DRAG = 18.0
 #: While the viewpoint moves, a frame that takes longer than SLOW is followed by one with half, then a third of the
 #: pixels a
 #: side; below QUICK they come back. Seconds.
@@ -73,6 +76,7 @@ class Canvas(QtInteractor):
         self.shrink = 1
         self.handle: Any = None
         self._held: str | None = None
+        self.scheme: Scheme = "geofit"
         self._pressed = self._last = QPointF()
         self._still = QTimer(self, interval=REST, singleShot=True)
         self._still.timeout.connect(self.rest)
@@ -207,7 +211,7 @@ class Canvas(QtInteractor):
 
     def rest(self) -> None:
         """Draw the full detail, unless a button still holds the scene."""
-        if self._held in ("turn", "shift"):
+        if self._held in ("turn", "shift", "zoom"):
             self._still.start()
         elif not self.full:
             self._still.stop()
@@ -228,10 +232,9 @@ class Canvas(QtInteractor):
         left = event.button() == Qt.MouseButton.LeftButton
         if left and self.handle is not None and self.handle.press(event.position()):
             self._held = "handle"
-        elif left and not event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            self._held = "turn"
         else:
-            self._held = "shift"
+            shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+            self._held = drag_of(self.scheme, event.button(), shift)
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Turn, move, drag a handle, or tell where the pointer is."""
@@ -244,7 +247,9 @@ class Canvas(QtInteractor):
         elif self._held == "turn":
             if (here - self._pressed).manhattanLength() >= CLICK or not self.full:
                 self.look(self.viewpoint.turned(-TURN * step.x(), TURN * step.y()), moving=True)
-        else:
+        elif self._held == "zoom":
+            self.look(self.viewpoint.nearer(NOTCH ** (-step.y() / DRAG)), moving=True)
+        elif self._held == "shift":
             metres = self.metres()
             self.look(self.viewpoint.shifted(-metres * step.x(), metres * step.y()), moving=True)
 
@@ -253,12 +258,12 @@ class Canvas(QtInteractor):
         held, self._held = self._held, None
         if held == "handle":
             self.handle.release()
-        elif held == "turn" and (event.position() - self._pressed).manhattanLength() < CLICK:
-            self.clicked.emit(event.position())
-        elif event.button() == Qt.MouseButton.RightButton and (
-            (event.position() - self._pressed).manhattanLength() < CLICK
-        ):
-            self.asked.emit(event.position())
+        elif (event.position() - self._pressed).manhattanLength() < CLICK:
+            shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+            if event.button() == Qt.MouseButton.LeftButton and not shift:
+                self.clicked.emit(event.position())
+            elif event.button() == Qt.MouseButton.RightButton:
+                self.asked.emit(event.position())
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:  # noqa: N802
         """Tell of a double click."""
