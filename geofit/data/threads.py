@@ -13,7 +13,8 @@ __all__ = ["one_thread"]
 
 def one_thread() -> AbstractContextManager[Any]:
     """Return a context in which numpy and scipy use one thread: the last digits do not depend on the machine either."""
-    return _libraries().limit(limits=1)
+    limited: AbstractContextManager[Any] = _libraries().limit(limits=1)
+    return limited
 
 
 @cache
