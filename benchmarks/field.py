@@ -1,7 +1,8 @@
 """The field away from its data: sites of varied truths, many scattered points, folds of the real sets.
 
-Run ``python benchmarks/field.py [sites [COUNT]] [scattered [N ...]] [real [SET ...]]`` (default: a few sites and
-10,000 points, within two minutes). Errors are root mean squares; every truth has its own seed.
+Run ``python benchmarks/field.py [sites [COUNT]] [scattered [N ...]] [real [SET ...]] [--page]`` (default: a few sites
+and 10,000 points, within two minutes); ``--page`` writes the sites to docs/field.md. Errors are root mean squares;
+every truth has its own seed.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from geofit import FitSettings, GeofitError, HorizonFit, PointSet, fit_horizon
 from geofit.prediction.kriging import krige_left_out
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
+from field_page import Row, write_page
 from peers.gp import KERNELS, fit_process
 from peers.pspline import PSpline
 from realdata.score import folds, thin_plate
@@ -135,10 +137,10 @@ def places(area: tuple[float, float, float, float], count: int = 4000) -> np.nda
     return np.random.default_rng(7).uniform((area[0], area[2]), (area[1], area[3]), (count, 2))
 
 
-def sites(seeds: list[int]) -> None:
+def sites(seeds: list[int], page: bool = False) -> None:
     print("error / exact thin plate; exact: largest distance of a core point; a point: control points a data point")
     print(f"{'site':42s}{'core':>7s}{'whole':>7s}{'exact':>9s}{'in core':>8s}{'a point':>8s}{'s':>7s}  energy, noise")
-    rows = []
+    rows, page_rows = [], []
     for seed in seeds:
         one = site(seed)
         start = time.process_time()
@@ -158,6 +160,9 @@ def sites(seeds: list[int]) -> None:
         exact = float(core.max()) if len(core) else np.nan
         a_point = surface.control_points / len(one.points)
         rows.append((*ratios, exact, a_point, seconds))
+        words = one.title.split(", ")
+        noise, least = (float(word.split()[0]) for word in words[2:])
+        page_rows.append(Row(words[0], words[1], noise, least, *ratios, exact, len(core), a_point))
         print(
             f"{seed:3d} {one.title:38s}{ratios[0]:7.2f}{ratios[1]:7.2f}{exact:9.1e}{len(core):8d}"
             f"{a_point:8.1f}{seconds:7.2f}  {surface.diagnostics['energy']} {surface.diagnostics['noise']:.3f}",
@@ -168,6 +173,8 @@ def sites(seeds: list[int]) -> None:
     for word, figures in (("median", np.median(table, axis=0)), ("worst", np.max(table, axis=0))):
         print(f"{word:42s}{figures[0]:7.2f}{figures[1]:7.2f}{'':17s}{figures[3]:8.1f}{figures[4]:7.2f}")
     print(f"core not exact on {lost} of {len(table)} sites\n")
+    if page:
+        write_page(page_rows, (seeds[0], seeds[-1] + 1), Path(__file__).resolve().parents[1] / "docs")
 
 
 def cloud(seed: int, n: int, noise: float = 0.05) -> tuple[PointSet, Height]:
@@ -270,7 +277,7 @@ def _folds(points: PointSet) -> tuple[float, list[float], int, float] | None:
 
 
 def main() -> None:
-    words = sys.argv[1:]
+    words = [word for word in sys.argv[1:] if word != "--page"]
     parts: dict[str, list[str]] = {}
     for word in words:
         if word in ("sites", "scattered", "real"):
@@ -282,7 +289,7 @@ def main() -> None:
     for part, more in (parts or {"sites": ["12"], "scattered": ["10000"]}).items():
         if part == "sites":
             low, high = (0, int(more[0])) if len(more) == 1 else (int(more[0]), int(more[1])) if more else (0, 24)
-            sites(list(range(low, high)))
+            sites(list(range(low, high)), "--page" in sys.argv)
         elif part == "scattered":
             scattered([int(word) for word in more] or [5_000, 10_000, 20_000])
         else:

@@ -21,7 +21,7 @@ from geofit.checks.check import sigma
 from geofit.checks.storage import equal_accuracy
 
 sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
-from peers.geomplate import geom_plate
+from peers.geomplate import COARSE, FINE, Setting, geom_plate
 from peers.pspline import PSpline
 from truth import EASTING, NORTHING, Height, Truth, hills, paper_arrangement, rms, thin_plate
 
@@ -89,11 +89,18 @@ def small() -> None:
         surface.to_cadquery()
         return surface
 
+    for setting in (FINE, COARSE):
+        _beside_plate(truth, ours, setting)
+
+
+def _beside_plate(truth: Truth, ours: Callable[[], HorizonFit], setting: Setting) -> None:
+    points = truth.points
+
     def plate() -> HorizonFit:
-        return geom_plate(points)
+        return geom_plate(points, setting)
 
     seconds = in_turn(ours, plate)
-    print(f"{len(points)} points: fit, check and stitch beside GeomPlate's fit, {TURNS} times in turn")
+    print(f"{len(points)} points: fit, check and stitch beside GeomPlate's fit {setting}, {TURNS} times in turn")
     print(f"{'':12s}{'median, s':>10s}{'sigma, m':>10s}{'core, m':>9s}{'whole, m':>9s}{'poles':>8s}{'a point':>8s}")
     for name, surface, column in (("geofit", ours(), 0), ("GeomPlate", plate(), 1)):
         core, whole = errors(surface.elevation, truth)

@@ -42,6 +42,9 @@ def needed(surface: Surface, tolerance: float) -> Polygon | None:
     import shapely
 
     outline = shapely.Polygon(np.asarray(surface.outline, float) - surface.origin[:2])
+    if is_height_field(surface):
+        wider = outline.buffer(tolerance, join_style="mitre")
+        return None if all(wider.covers(_quad(patch)) for patch in surface.patches) else outline
     share = np.linspace(0, 1, 41)
     samples = []
     for patch in surface.patches:
@@ -57,9 +60,7 @@ def faces(patch: Patch, outline: Polygon) -> list[Any]:
 
     mapping = plan_map(patch)
     assert mapping is not None
-    u0, u1, v0, v1 = patch.domain
-    corners = np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)])
-    quad = shapely.Polygon(corners @ mapping.matrix.T + mapping.start)
+    quad = _quad(patch)
     if outline.buffer(SMALL, join_style="mitre").covers(quad):
         pieces = [quad]
     else:
@@ -75,6 +76,16 @@ def faces(patch: Patch, outline: Polygon) -> list[Any]:
             rings.append(_snapped(uv, patch))
         result.append(_face(surface, rings))
     return result
+
+
+def _quad(patch: Patch) -> Polygon:
+    """Return the plan of a height-field patch."""
+    import shapely
+
+    mapping = plan_map(patch)
+    assert mapping is not None
+    u0, u1, v0, v1 = patch.domain
+    return shapely.Polygon(np.array([(u0, v0), (u1, v0), (u1, v1), (u0, v1)]) @ mapping.matrix.T + mapping.start)
 
 
 def _distinct(ring: Floats) -> Floats:

@@ -73,8 +73,11 @@ def _grid(patch: Patch, u: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:
     along, along_du = (collocation(patch.knots_u, patch.degree[0], u, order) for order in (0, 1))
     across, across_dv = (collocation(patch.knots_v, patch.degree[1], v, order) for order in (0, 1))
     # One axis after the other: a sum over rows for each column of the lattice instead of 16 products a place.
-    rows, rows_du = (np.tensordot(matrix, patch.control, axes=1) for matrix in (along, along_du))
-    return across @ rows, across @ rows_du, across_dv @ rows
+    columns = patch.control.transpose(0, 2, 1)
+    rows, rows_du = (np.tensordot(matrix, columns, axes=1) for matrix in (along, along_du))
+    found = (part @ matrix.T for part, matrix in ((rows, across), (rows_du, across), (rows, across_dv)))
+    points, su, sv = (np.ascontiguousarray(part.transpose(0, 2, 1)) for part in found)
+    return points, su, sv
 
 
 def _ends_and_middles(knots: Floats, fewest: int) -> Floats:

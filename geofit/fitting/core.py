@@ -29,12 +29,13 @@ from geofit.splines.tensor import TensorSpace
 __all__ = ["fit_with_core"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 Rectangle = tuple[float, float, float, float]
 
 #: Control points a data point beside a core, and how many it may take where its points are met with no fewer.
 A_POINT, LAST_CAP = 15, 60
-#: Longest span beside a core, in units of the spacing of the sparse points.
-LONGEST = 0.6
+#: Longest span beside a core, in units of the spacing of the sparse points: on longer ones no rough field fits.
+LONGEST = 0.45
 #: Slope that two neighbours may ask for beyond the field's own, where not all points of a core can be met.
 CLIFF = 0.5
 #: Span of the field's space where the knots are finer for the core's points alone, in units.
@@ -107,7 +108,7 @@ def fit_with_core(
     while True:
         try:
             base, space, coefficients, plane, rule = _through_points(
-                data, core, inside, field, coarse, lines, linear, parametrization.parametric, most, closer, settings
+                data, core, inside, field, lines, linear, parametrization.parametric, most, closer, settings
             )
             break
         except ExactnessError:
@@ -156,7 +157,6 @@ def _through_points(
     core: Rectangle,
     inside: NDArray[np.bool_],
     field: Field,
-    coarse: TensorSpace,
     lines: Lines,
     linear: bool,
     parametric: bool,
@@ -177,10 +177,17 @@ def _through_points(
         If so many control points cannot pass through the points.
     """
     degree = degree_for(len(data.plane))
-    breaks = _breaks(data, core, inside, field, coarse, lines, most, closer, max(settings.max_iterations, 1))
+    # Ties are broken by place, not by the order of the points.
+    chosen = np.flatnonzero(inside)
+    chosen = chosen[np.lexsort(data.plane[chosen].T)]
+    plane = data.plane[chosen]
+    pairs = neighbour_pairs(plane)
+    breaks, counted = _breaks(plane, pairs, data.area, degree, core, lines, most, closer)
     coarser = [bspline.clamped_knots(some_breaks(along, FIELD_SPAN), degree) for along in breaks]
     base = TensorSpace(coarser[0], coarser[1], degree)
     regional = smoothed(data, base, field)
+    misfit = data.value[chosen] - base.matrix(plane) @ regional.coefficients
+    breaks = refine_knots(*breaks, plane, pairs, misfit, degree, counted, max(settings.max_iterations, 1))
     knots = [bspline.clamped_knots(along, degree) for along in breaks]
     fine, start = with_knots(base, regional.coefficients, knots[0], knots[1])
     if linear:
@@ -198,24 +205,22 @@ def _through_points(
 
 
 def _breaks(
-    data: Data,
+    plane: Floats,
+    pairs: Ints,
+    area: Rectangle,
+    degree: int,
     core: Rectangle,
-    inside: NDArray[np.bool_],
-    field: Field,
-    coarse: TensorSpace,
     lines: Lines,
     most: int,
     closer: float,
-    rounds: int,
-) -> tuple[Floats, Floats]:
-    """Lay breaks that follow the core's points, and split them where two points pull one control point apart.
+) -> tuple[tuple[Floats, Floats], Callable[[tuple[int, int]], bool]]:
+    """Lay breaks that follow the core's points, ``plane`` (m, 2) with the ``pairs`` of neighbours among them.
+
+    Return also the question whether a net of so many control points is within the cap.
 
     What makes the surface pass through a point must be narrow in both directions: across the sections breaks hug each
     of them, along them they follow the closest neighbours of any.
     """
-    plane, area = data.plane[inside], data.area
-    degree = degree_for(len(data.plane))
-    pairs = neighbour_pairs(plane)
     within = lines.u[(lines.u > core[0]) & (lines.u < core[1])]
     narrow = NARROW * (core[1] - core[0]) / max(len(lines.u), 1)
     required_u = _thinned(within, (area[0], core[0], core[1], area[1]), narrow)
@@ -232,12 +237,11 @@ def _breaks(
         if in_patches(space.shape, core, space) <= 0.9 * most or stretch > 1e3:
             break
         stretch *= 1.1
-    misfit = data.value[inside] - coarse.matrix(plane) @ smoothed(data, coarse, field).coefficients
 
     def counted(shape: tuple[int, int]) -> bool:
         return in_patches(shape, core, space) <= most
 
-    return refine_knots(breaks_u, breaks_v, plane, misfit, degree, counted, rounds)
+    return (breaks_u, breaks_v), counted
 
 
 def _torn(data: Data, inside: NDArray[np.bool_], coarse: TensorSpace, field: Field) -> NDArray[np.bool_]:

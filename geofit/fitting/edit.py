@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array, diags_array, vstack
 
@@ -33,6 +34,8 @@ Floats = NDArray[np.float64]
 
 #: Rows of control points along a seam that hold its tangent plane.
 TANGENT_ROWS = 2
+#: Rows of control points around those that act at a place that may give way to exact points there.
+BEYOND = 2
 
 
 def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> HorizonFit:
@@ -123,40 +126,33 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
     place, value, name = _target(surface, model, point)
     net, given = model.net, model.problem
     row = net.space.matrix(place / net.unit)
-    acting = np.zeros(net.space.size, bool)
-    acting[row.indices] = True
-    if net.lines is not None and net.frozen[acting].any():
-        raise _straight()
-    if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):
-        raise FitError(
-            message(
-                "edit.control-points-weights-act",
-                "Control points with weights other than 1 act here. Set their weights to 1 first.",
-            )
-        )
     misfit = share * (value - row @ net.coefficients)
     exact = np.flatnonzero(surface.core)
     if isinstance(point, (int, np.integer)):
         exact = exact[exact != point]
     fixed = csr_array(net.space.matrix(given.parametrization.plane[exact] / net.unit))
-    if len(exact):
-        # Points that the acting control points hardly reach must stay all the same: their rows count alike.
-        reached = np.sqrt(np.asarray((fixed * acting.astype(float)).power(2).sum(axis=1)).ravel())
-        fixed = csr_array(diags_array(1 / reached[reached > 0]) @ fixed[reached > 0])
-    system = csr_array(vstack([csr_array(row), fixed])) if fixed.shape[0] else csr_array(row)
-    wanted = np.concatenate([misfit, np.zeros((fixed.shape[0], *misfit.shape[1:]))])
-    try:
-        change = minimum_norm_correction(system, wanted, acting)
-    except ExactnessError:
-        raise ExactnessError(
-            message(
-                "edit.surface-cannot-pulled-points",
-                "The surface cannot be moved to {name}: the exactly interpolated points around it "
-                "({count}) leave no freedom. Exclude the one that is wrong, or fit with core='none'.",
-                name=name,
-                count=fixed.shape[0],
+    acting = np.zeros(net.space.size, bool)
+    acting[row.indices] = True
+    _require_movable(model, acting)
+    # Beside weights, and where the core is linear across its sections, other control points may not move.
+    tied = net.lines is not None or any(True for _ in _weighed(model))
+    change = _moved_beside(csr_array(row), misfit, fixed, acting)
+    wider = 0
+    while change is None:
+        if tied or wider == BEYOND:
+            raise ExactnessError(
+                message(
+                    "edit.surface-cannot-pulled-points",
+                    "The surface cannot be moved to {name}: the exactly interpolated points around it "
+                    "({count}) leave no freedom. Exclude the one that is wrong, or fit with core='none'.",
+                    name=name,
+                    count=int(((fixed * acting.astype(float)).power(2).sum(axis=1) > 0).sum()),
+                )
             )
-        ) from None
+        # Where exact points lie close together, the control points beside those that act have to give way too.
+        around = sliding_window_view(np.pad(acting.reshape(net.space.shape), 1), (3, 3))
+        acting, wider = around.any(axis=(2, 3)).ravel(), wider + 1
+        change = _moved_beside(csr_array(row), misfit, fixed, acting)
     return _changed(
         surface,
         model.with_net(replace(net, coefficients=net.coefficients + change)),
@@ -167,6 +163,35 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
             name=name,
         ),
     )
+
+
+def _require_movable(model: Model, acting: NDArray[np.bool_]) -> None:
+    """Refuse to move control points of a core that is linear across its sections, or beside weights."""
+    if model.net.lines is not None and model.net.frozen[acting].any():
+        raise _straight()
+    if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):
+        raise FitError(
+            message(
+                "edit.control-points-weights-act",
+                "Control points with weights other than 1 act here. Set their weights to 1 first.",
+            )
+        )
+
+
+def _moved_beside(row: csr_array, misfit: Floats, fixed: csr_array, acting: NDArray[np.bool_]) -> Floats | None:
+    """Return the least change of the acting control points that takes a misfit away at ``row`` and none at ``fixed``.
+
+    None where there is no freedom for it.
+    """
+    # Points that the acting control points hardly reach must stay all the same: their rows count alike.
+    reached = np.sqrt(np.asarray((fixed * acting.astype(float)).power(2).sum(axis=1)).ravel())
+    near = csr_array(diags_array(1 / reached[reached > 0]) @ fixed[reached > 0])
+    system = csr_array(vstack([row, near])) if near.shape[0] else row
+    wanted = np.concatenate([misfit, np.zeros((near.shape[0], *misfit.shape[1:]))])
+    try:
+        return minimum_norm_correction(system, wanted, acting)
+    except ExactnessError:
+        return None
 
 
 def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> HorizonFit:

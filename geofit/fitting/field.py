@@ -53,10 +53,13 @@ _NARROW = 0.05
 _BEYOND, _GROWTH = 1.5, 1.5
 #: Starts of the search: kappa per unit, and log rho.
 _KAPPAS, _LOG_RHOS = (0.1, 0.7), (-10.0, -6.0, -2.0)
+#: First steps from there: to the next start, whose value is known.
+_BETWEEN = (math.log(_KAPPAS[1] / _KAPPAS[0]), _LOG_RHOS[1] - _LOG_RHOS[0], 0.0, 0.0)
 #: Stretches that the search for a direction starts from.
 _STRETCHES = ((0.0, 0.0), (0.2, 0.0), (-0.2, 0.0), (0.0, 0.2), (0.0, -0.2))
-#: Rounds of the search over kappa and rho, over all parameters, and on a finer space; first steps there.
-_FIRST, _LAST, _AGAIN, _NEARBY = 4, 3, 5, (0.4, 1.5, 0.0, 0.0)
+#: Rounds of the search over kappa and rho, over all parameters, and on a finer space; first steps there: the range is
+#: known by then, only the noise is less on finer spans.
+_FIRST, _LAST, _AGAIN, _NEARBY = 4, 3, 5, (0.0, 1.5, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -250,14 +253,15 @@ def choose(
 def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rho: float | None) -> list[Optimum]:
     """Compare the smoothnesses without a direction, then give the better one its direction."""
     few = n < ENOUGH
-    alphas = {3: (2,) if few else (2, 3), 2: (2,)}.get(degree, (1,))
+    alphas = {3: (2,) if few else (3, 2), 2: (2,)}.get(degree, (1,))
     logs, free = (_LOG_RHOS, 2) if log_rho is None else ((log_rho,), 1)
-    found = []
+    found: list[tuple[Optimum, Likelihood]] = []
     for alpha in alphas:
         judge = likelihood(alpha)
-        kappas = _KAPPAS if alpha == alphas[0] else _KAPPAS[-1:]
+        kappas = _KAPPAS if alpha == 2 else _KAPPAS[-1:]
         starts = [(math.log(kappa), log, 0.0, 0.0) for kappa in kappas for log in logs]
-        found.append((judge.best(starts, free, _FIRST), judge))
+        rival = found[0][0].value if found else math.inf
+        found.append((judge.best(starts, free, _FIRST, _BETWEEN, rival), judge))
     found.sort(key=lambda one: one[0].value)
     best, judge = found[0]
     if few or best.value >= UNSOLVABLE:

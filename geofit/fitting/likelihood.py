@@ -49,9 +49,9 @@ UNSOLVABLE = 1e12
 RISE = 0.25
 #: How many times that the variance of the slope is tried.
 _WIDER = np.exp(np.arange(0.0, 14.5))
-#: First steps along each parameter, the least gain that another round of steps is worth, and how far behind a rival,
-#: after a round, a search is given up.
-STEPS, SETTLED, BEHIND = (0.7, 1.5, 0.12, 0.12), 2.0, 60.0
+#: First steps along each parameter, the least gain that another round of steps is worth, and how far behind a rival
+#: a search is given up.
+STEPS, SETTLED, BEHIND = (0.7, 1.5, 0.12, 0.12), 0.5, 60.0
 
 
 @dataclass(frozen=True)
@@ -229,12 +229,13 @@ class Likelihood:
         low, high = np.array(self.bounds()).T
         at: Floats = min((np.clip(np.array(one), low, high) for one in starts), key=self)
         size = np.array(steps)
-        for _ in range(rounds if self(at) < min(UNSOLVABLE, rival + 2 * BEHIND) else 0):
+        for _ in range(rounds):
             before = self(at)
             # The noise first: it needs no new E.
             for k in sorted(range(free), key=lambda k: k != 1):
-                at, size[k] = self._along(at, k, size[k])
-            if before - self(at) < SETTLED or self(at) > rival + BEHIND:
+                if size[k] > 0 and self(at) < min(UNSOLVABLE, rival + BEHIND):
+                    at, size[k] = self._along(at, k, size[k])
+            if before - self(at) < SETTLED:
                 break
         value, (kappa, rho) = self(at), np.exp(at[:2]).tolist()
         _, variance, hold = self._known[tuple(float(x) for x in at)]

@@ -24,7 +24,6 @@ from scipy.sparse.linalg import splu
 
 from geofit.data.errors import ExactnessError
 from geofit.data.messages import Message, message
-from geofit.fitting.knots import neighbour_pairs
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
 
@@ -164,6 +163,7 @@ def refine_knots(
     breaks_u: Floats,
     breaks_v: Floats,
     plane: Floats,
+    pairs: Ints,
     misfit: Floats,
     degree: int,
     allowed: Callable[[tuple[int, int]], bool],
@@ -176,7 +176,9 @@ def refine_knots(
     breaks_u, breaks_v : (k,) arrays
         Breaks to start from.
     plane : (m, 2) array
-        Places of the core's points.
+        Places of the core's points, in an order of their places alone.
+    pairs : (k, 2) array of int
+        Which of them are neighbours.
     misfit : (m,) or (m, k) array
         Distance of the field from them, metres.
     degree : int
@@ -186,10 +188,6 @@ def refine_knots(
     rounds : int
         Cap of the number of rounds.
     """
-    # Ties are broken by place, not by the order of the points.
-    order = np.lexsort(plane.T)
-    plane, misfit = plane[order], misfit[order]
-    pairs = neighbour_pairs(plane)
     limit = OVERSHOOT * max(float(np.abs(misfit).max(initial=0.0)), 1e-3)
     for _ in range(rounds):
         space = TensorSpace(bspline.clamped_knots(breaks_u, degree), bspline.clamped_knots(breaks_v, degree), degree)

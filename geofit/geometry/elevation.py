@@ -79,6 +79,10 @@ def plan_map(patch: Patch) -> Plan | None:
     A patch is one if its weights are equal and the x, y of its control points are an affine image of the
     Greville abscissae, to 1e-12 of its size: then x and y are linear in u and v.
     """
+    return patch.prepared(_plan_map)
+
+
+def _plan_map(patch: Patch) -> Plan | None:
     if patch.weights is not None and np.ptp(patch.weights) > 1e-15 * np.abs(patch.weights).max():
         return None
     gu = bspline.greville(patch.knots_u, patch.degree[0])

@@ -72,7 +72,7 @@ class MaternPrecision:
             [np.outer(_times(gu[m - k, m - n], along), _times(gv[k, n], across)).ravel() for along, across in planes]
             for m, k, n in terms
         ]
-        return np.swapaxes(np.array(products), 1, 2)
+        return np.ascontiguousarray(np.swapaxes(np.array(products), 1, 2))
 
     def weights(self, kappa: float, stretch: tuple[float, float]) -> Floats:
         """Return the weight of each term."""

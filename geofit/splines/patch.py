@@ -102,6 +102,18 @@ class Patch:
                 table[a, b] = total / w
         return table[du, dv]
 
+    def prepared(self, make: Callable[[Patch], T]) -> T:
+        """Return ``make(patch)``, made at the first call and kept."""
+        kept: dict[Any, Any] = self.__dict__.setdefault("_prepared", {})
+        if make not in kept:
+            kept[make] = make(self)
+        result: T = kept[make]
+        return result
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Pickle the patch without what was prepared from it."""
+        return {name: value for name, value in self.__dict__.items() if name != "_prepared"}
+
     def normal(self, u: ArrayLike, v: ArrayLike) -> Floats:
         """Return unit normals S_u x S_v; arrays broadcast to shape (..., 3)."""
         cross = np.cross(self.evaluate(u, v, 1, 0), self.evaluate(u, v, 0, 1))

@@ -9,6 +9,7 @@ from truth import EASTING, NORTHING, paper_arrangement
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data.errors import FitError
+from geofit.fitting.knots import neighbour_pairs
 from geofit.fitting.skin import minimum_norm_correction, refine_knots, regularized_correction, ruled, section_lines
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -96,7 +97,7 @@ def test_separate_lowers_the_strain_of_close_neighbours():
     plane = np.concatenate([plane, plane[:1] + np.array((0.0, 0.02))])
     misfit = np.append(misfit, misfit[0] + 1.0)
     u, v = np.arange(7.0), np.arange(6.0)
-    new_u, new_v = refine_knots(u, v, plane, misfit, 3, lambda shape: True, 20)
+    new_u, new_v = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape: True, 20)
     assert np.isin(u, new_u).all()
     assert np.isin(v, new_v).all()
     assert len(new_v) > len(v)
@@ -107,13 +108,15 @@ def test_separate_lowers_the_strain_of_close_neighbours():
 def test_separate_leaves_calm_knots_and_minds_the_cap():
     plane, misfit = spread(8)
     u, v = np.arange(7.0), np.arange(6.0)
-    calm = refine_knots(u, v, plane, misfit, 3, lambda shape: True, 20)
+    calm = refine_knots(u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape: True, 20)
     np.testing.assert_array_equal(calm[0], u)
     np.testing.assert_array_equal(calm[1], v)
     plane = np.concatenate([plane, plane[:1] + np.array((0.0, 0.001))])
     misfit = np.append(misfit, misfit[0] + 1.0)
     for most in (60, 100, 150):
-        new_u, new_v = refine_knots(u, v, plane, misfit, 3, lambda shape, most=most: shape[0] * shape[1] <= most, 50)
+        new_u, new_v = refine_knots(
+            u, v, plane, neighbour_pairs(plane), misfit, 3, lambda shape, most=most: shape[0] * shape[1] <= most, 50
+        )
         assert space_of(new_u, new_v).size <= max(most, space_of(u, v).size)
 
 
