@@ -42,7 +42,7 @@ _TRIES = (
         "yes",
     ),
     (
-        "the long spans beside the core give way to the cap before those inside",
+        "the long spans beside the core are lengthened for the cap before those inside",
         "whole area, worst 1.06 to 1.28",
         "no",
     ),
@@ -52,7 +52,7 @@ _TRIES = (
         "yes",
     ),
     (
-        "relief on drawn sections is no noise; spans shorten where a core is not met; one of two points that "
+        "relief on drawn sections does not count as noise; spans shorten where a core is not met; one of two points that "
         "ask for a cliff is let go; unequal sections make a core",
         "cores lost: 5 of 24, 6 of 48 and 4 of 48 to none; control points a point, worst 28 to 20",
         "yes",

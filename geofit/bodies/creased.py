@@ -82,7 +82,9 @@ def _combined(part: Field, epsilon: float, size: float) -> tuple[Any, bool]:
 
 def _endless() -> FitError:
     return FitError(
-        message("bodies.part-endless", "A part of the body is unbounded: a solid must be closed. Write triangles instead.")
+        message(
+            "bodies.part-endless", "A part of the body is unbounded: a solid must be closed. Write triangles instead."
+        )
     )
 
 

@@ -34,7 +34,7 @@ Floats = NDArray[np.float64]
 
 #: Rows of control points along a seam that hold its tangent plane.
 TANGENT_ROWS = 2
-#: Rows of control points around those that act at a place that may give way to exact points there.
+#: Rows of control points around those that act at a place that may move too where exact points are close.
 BEYOND = 2
 
 
@@ -149,7 +149,7 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
                     count=int(((fixed * acting.astype(float)).power(2).sum(axis=1) > 0).sum()),
                 )
             )
-        # Where exact points lie close together, the control points beside those that act have to give way too.
+        # Where exact points lie close together, the control points beside those that act have to move too.
         around = sliding_window_view(np.pad(acting.reshape(net.space.shape), 1), (3, 3))
         acting, wider = around.any(axis=(2, 3)).ravel(), wider + 1
         change = _moved_beside(csr_array(row), misfit, fixed, acting)

@@ -144,13 +144,14 @@ def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> 
     start, way, part = np.concatenate(starts), np.concatenate(ways), np.concatenate(owner)
     middle = np.concatenate(places)
     count = min(2 * STARTS, len(start))
-    far, piece = cKDTree(middle).query(target, k=np.arange(1, count + 1))
+    found = cKDTree(middle).query(target, k=np.arange(1, count + 1))
+    far, piece = np.asarray(found[0]), np.asarray(found[1])
     # A piece can hold the nearest place only if it reaches nearer than the middle of the nearest piece.
     reach = np.zeros(len(start))
     for k in np.unique(part):
         own = part == k
-        for t in (0.0, 1.0):
-            end = patches[k].evaluate(*(start[own] + t * way[own]).T)
+        for edge in (0.0, 1.0):
+            end = patches[k].evaluate(*(start[own] + edge * way[own]).T)
             reach[own] = np.maximum(reach[own], SLACK * np.linalg.norm(end - middle[own], axis=1))
     point, column = np.nonzero(far - reach[piece] <= far[:, :1])
     piece = piece[point, column]
