@@ -52,8 +52,8 @@ _TRIES = (
         "yes",
     ),
     (
-        "relief on drawn sections does not count as noise; spans shorten where a core is not met; one of two points that "
-        "ask for a cliff is let go; unequal sections make a core",
+        "relief on drawn sections does not count as noise; spans shorten where a core is not met; one of two points "
+        "that ask for a cliff is let go; unequal sections make a core",
         "cores lost: 5 of 24, 6 of 48 and 4 of 48 to none; control points a point, worst 28 to 20",
         "yes",
     ),

@@ -130,17 +130,23 @@ def inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Boo
 
 def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
     """Return the nearest places on the loops: on the short pieces around the nearest samples."""
-    starts, ways, places, owner = [], [], [], []
+    sides = []
     for k, patch in enumerate(patches):
         for loop in loops[k]:
             ends = np.roll(loop, -1, axis=0)
-            count = max(2, -(-AROUND // sum(map(len, loops[k]))))
-            share = np.arange(count) / count
-            start = (loop[:, None] + share[:, None] * (ends - loop)[:, None]).reshape(-1, 2)
-            starts.append(start)
-            ways.append(np.repeat((ends - loop) / count, count, axis=0))
-            places.append(patch.evaluate(*(start + ways[-1] / 2).T))
-            owner.append(np.full(len(start), k))
+            chord = patch.evaluate(*ends.T) - patch.evaluate(*loop.T)
+            sides.append((k, loop, ends - loop, np.linalg.norm(chord, axis=1)))
+    # Pieces of like length: of a straight side beside a finely bent one the nearest would not be among the first.
+    length = sum(float(side[3].sum()) for side in sides) / (AROUND * sum(map(bool, loops)))
+    starts, ways, places, owner = [], [], [], []
+    for k, loop, way, size in sides:
+        count = np.maximum(2, np.ceil(size / length)).astype(int)
+        side = np.repeat(np.arange(len(loop)), count)
+        share = (np.arange(len(side)) - np.repeat(np.cumsum(count) - count, count)) / count[side]
+        starts.append(loop[side] + share[:, None] * way[side])
+        ways.append(way[side] / count[side, None])
+        places.append(patches[k].evaluate(*(starts[-1] + ways[-1] / 2).T))
+        owner.append(np.full(len(side), k))
     start, way, part = np.concatenate(starts), np.concatenate(ways), np.concatenate(owner)
     middle = np.concatenate(places)
     count = min(2 * STARTS, len(start))
