@@ -115,8 +115,8 @@ def page(found: Figures, docs: Path) -> None:
         say(_winners(rows) + (f" Ended without a result: {_list(failed)}." if failed else ""))
     lines += ["## More points", ""]
     say("""The hills again, from 100 points to 10,000,000. A program stops where its next fit is foreseen to take more
-        than 20 s of the processor; geofit goes on as `fit_cloud` where `fit_horizon`, which checks each point and
-        keeps its row and labels, gives way to it. verde takes block means from 2,000 points on.""")
+        than 20 s of the processor; beyond 1,000,000 points geofit is `fit_cloud` alone, which keeps no row
+        and no label of a point. verde takes block means from 2,000 points on.""")
     lines += ["![Time and memory against n](images/bench_growth.svg)", ""]
     growth = {tool: {int(n): row for n, row in rows.items()} for tool, rows in found["growth"].items() if rows}
     counts = sorted({n for rows in growth.values() for n in rows})

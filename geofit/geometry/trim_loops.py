@@ -150,8 +150,8 @@ def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> 
     reach: Floats = np.zeros(len(start))
     for k in np.unique(part):
         own = part == k
-        for t in (0.0, 1.0):
-            end = patches[k].evaluate(*(start[own] + t * way[own]).T)
+        for side in (0.0, 1.0):
+            end = patches[k].evaluate(*(start[own] + side * way[own]).T)
             reach[own] = np.maximum(reach[own], SLACK * np.linalg.norm(end - middle[own], axis=1))
     point, column = np.nonzero(far - reach[near] <= far[:, :1])
     piece = near[point, column]
