@@ -1,4 +1,4 @@
-# make demo | gui | report-demo | test | lint | real | bench | docs | screenshots | package | wheel | audit | system-packages | clean.
+# make demo | gui | report-demo | test | lint | real | bench | profile | docs | screenshots | package | wheel | audit | system-packages | clean.
 # Python 3.11 or newer; everything goes into .venv.
 SHELL := /bin/sh
 # A name may stand on the path and still not run (version managers leave such shims), so each is tried.
@@ -11,7 +11,7 @@ BIN := .venv/bin
 PIP := $(BIN)/python -m pip --disable-pip-version-check
 INSTALL := $(PIP) install --quiet --constraint $(LOCK)
 
-.PHONY: demo gui report-demo test lint real bench docs screenshots package wheel audit system-packages clean python
+.PHONY: demo gui report-demo test lint real bench profile docs screenshots package wheel audit system-packages clean python
 
 demo: .venv/.installed
 	$(BIN)/geofit demo --out demo_out
@@ -49,8 +49,17 @@ lint: .venv/.installed-all
 real: .venv/.installed-all
 	$(BIN)/python benchmarks/real.py
 
+# The peers have an environment of their own: they hold back what geofit needs, or bring much that it does not.
 bench: .venv/.installed-all
-	@set -e; for script in fit distance pores scale; do $(BIN)/python benchmarks/$$script.py; done
+	test -d build/peers || $(PYTHON) -m venv build/peers
+	build/peers/bin/python -m pip --disable-pip-version-check install --quiet -r benchmarks/peers/requirements.txt
+	$(PIP) install --quiet 'polars>=1.0'
+	$(BIN)/python benchmarks/bench.py --peers build/peers/bin/python
+	$(BIN)/python benchmarks/pores.py
+	$(BIN)/python benchmarks/scale.py
+
+profile: .venv/.installed-all
+	$(BIN)/python benchmarks/costs.py
 
 docs: .venv/.installed-all
 	rm -rf build/docs

@@ -21,7 +21,7 @@ sys.path.append(str(Path(__file__).resolve().parents[1] / "tests"))
 from converged import converged_distances, ring
 
 #: Points that the reference measures: it takes 10 ms for each.
-CHECKED = 300
+CHECKED = 100
 
 
 def horizon(rows: int = 100, columns: int = 45) -> Patch:

@@ -151,16 +151,16 @@ def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> 
     middle = np.concatenate(places)
     count = min(2 * STARTS, len(start))
     found = cKDTree(middle).query(target, k=np.arange(1, count + 1))
-    far, piece = np.asarray(found[0]), np.asarray(found[1])
+    far, near = (np.asarray(values) for values in found)
     # A piece can hold the nearest place only if it reaches nearer than the middle of the nearest piece.
-    reach = np.zeros(len(start))
+    reach: Floats = np.zeros(len(start))
     for k in np.unique(part):
         own = part == k
         for edge in (0.0, 1.0):
             end = patches[k].evaluate(*(start[own] + edge * way[own]).T)
             reach[own] = np.maximum(reach[own], SLACK * np.linalg.norm(end - middle[own], axis=1))
-    point, column = np.nonzero(far - reach[piece] <= far[:, :1])
-    piece = piece[point, column]
+    point, column = np.nonzero(far - reach[near] <= far[:, :1])
+    piece = near[point, column]
     t, distance, foot = np.empty(len(piece)), np.empty(len(piece)), np.empty((len(piece), 3))
     for k in np.unique(part[piece]):
         own = np.flatnonzero(part[piece] == k)
