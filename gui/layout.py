@@ -13,7 +13,7 @@ __all__ = ["BOTTOM", "Layout"]
 VERSION = 3
 _Area = Qt.DockWidgetArea
 #: What folds away below the view.
-BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "body_figures", "log")
+BOTTOM = ("residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "body_figures", "morph", "log")
 _PLACES = (
     (_Area.LeftDockWidgetArea, ("tree", "scene"), False),
     (_Area.RightDockWidgetArea, ("fit", "adjust", "bodies"), True),
