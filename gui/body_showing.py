@@ -136,6 +136,10 @@ class BodyShowing(QObject):
             record.provenance, accuracy, verdict, waiting=waiting and not stale, stale=stale, origin=origin
         )
 
+    def mark(self, name: str) -> str:
+        """Return the mark of a body: its colour with its verdict."""
+        return self._mark(name, self._document.state.bodies[name])
+
     def _mark(self, name: str, record: BodyRecord) -> str:
         result = self._document.body(name)
         accuracy = None if result is None else result.accuracy

@@ -14,7 +14,8 @@ VERSION = 3
 _Area = Qt.DockWidgetArea
 #: What folds away below the view.
 BOTTOM = (
-    "residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "changes", "body_figures", "log",
+    "residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "changes", "body_figures", "morph",
+    "log",
 )  # fmt: skip
 _PLACES = (
     (_Area.LeftDockWidgetArea, ("tree", "scene"), False),

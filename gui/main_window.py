@@ -23,6 +23,7 @@ from geofit.gui.help import Help
 from geofit.gui.icons import application_icon
 from geofit.gui.living import Living
 from geofit.gui.menus import Menus
+from geofit.gui.morphing import Morphing
 from geofit.gui.ordering import Ordering
 from geofit.gui.preferences import Preferences
 from geofit.gui.selecting import Selecting
@@ -76,6 +77,7 @@ class MainWindow(QMainWindow):
         self.delivering = Delivering(document, self.activity, preferences, self.panels, self.showing, self)
         self.context = ContextMenus(document, self.panels, self.fitting, self.selecting, self.actions_, self)
         self.bodies = Bodies(session, self.activity, self.fitting, self.showing, self.panels, preferences, self)
+        self.morphing = Morphing(session.document, self.activity, self.fitting, self.bodies, self.panels, self)
         self.help = Help(self)
         self._connect_actions()
         self._connect_panels()
@@ -115,7 +117,7 @@ class MainWindow(QMainWindow):
         self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)
-        for part in (self.showing, self.selecting, self.fitting, self.living, self.bodies):
+        for part in (self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing):
             part.close()
         for end in self._ends:
             end()
@@ -252,7 +254,9 @@ class MainWindow(QMainWindow):
         for refusing in (self.fitting, self.delivering, self.ordering, self.bodies):
             refusing.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
-        for part in (self.files, self.delivering, self.ordering, self.fitting, self.living, self.bodies):
+        for part in (
+            self.files, self.delivering, self.ordering, self.fitting, self.living, self.bodies, self.morphing,
+        ):  # fmt: skip
             part.reported.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.reported.connect(self.tell)

@@ -17,6 +17,7 @@ from geofit.gui.panels.checks import ChecksPanel
 from geofit.gui.panels.fit_panel import FitPanel
 from geofit.gui.panels.histogram import HistogramPanel
 from geofit.gui.panels.log import LogPanel
+from geofit.gui.panels.morph import MorphPanel
 from geofit.gui.panels.plan import PlanPanel
 from geofit.gui.panels.prediction import PredictionPanel
 from geofit.gui.panels.project_tree import ProjectTree
@@ -56,7 +57,7 @@ class Workspace(QObject):
         self.log, self.seams, self.checks = LogPanel(), SeamTable(), ChecksPanel()
         self.prediction, self.plan = PredictionPanel(), PlanPanel()
         self.changes = ChangesPanel()
-        self.bodies, self.body_figures = BodiesPanel(), BodyFigures()
+        self.bodies, self.body_figures, self.morph = BodiesPanel(), BodyFigures(), MorphPanel()
         self.docks = {
             "tree": self._dock("tree", self.tr("Project"), self.tree),
             "scene": self._dock("scene", self.tr("Scene"), self.scene),
@@ -72,6 +73,7 @@ class Workspace(QObject):
             "prediction": self._dock("prediction", self.tr("Away from the data"), self.prediction),
             "changes": self._dock("changes", self.tr("What moved"), self.changes),
             "body_figures": self._dock("body_figures", self.tr("Body figures"), self.body_figures),
+            "morph": self._dock("morph", self.tr("Metamorphosis"), self.morph),
             "log": self._dock("log", self.tr("Log"), self.log),
         }
         self.layout = Layout(window, self.docks)

@@ -14,9 +14,11 @@ from PIL import Image
 from PySide6.QtCore import QBuffer, QCoreApplication, QEvent, QSettings, Qt
 from PySide6.QtWidgets import QApplication, QDialog, QWidget
 
+from geofit.bodies.settings import BodySettings
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.site import Site
+from geofit.geometry.mesh import Mesh
 from geofit.gui.desktop import Desktop
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.export_step import ExportDialog
@@ -27,6 +29,8 @@ from geofit.gui.dialogs.shortcuts import ShortcutsDialog
 from geofit.gui.main_window import MainWindow
 from geofit.gui.wizard.import_wizard import ImportWizard, memory_file
 from geofit.gui.worker import tasks
+from geofit.io.export.triangles import write_ply
+from geofit.project.body_record import Intervals
 from geofit.report.result import HorizonResult
 from geofit.sample import write_site
 
@@ -82,7 +86,7 @@ class _Set:
         self.idle()
         for state in (
             self.start, self.wizard, self.site, self.fitted, self.residuals, self.plan, self.section, self.seams,
-            self.adjust, self.checks, self.prediction, self.export, self.report, self.small,
+            self.adjust, self.checks, self.prediction, self.export, self.report, self.small, self.bodies, self.morph,
         ):  # fmt: skip
             state()
 
@@ -213,6 +217,62 @@ class _Set:
         self.dialog("19_import_problems", IssuesDialog(self.window.session.document.site, self.window))
         self.window.panels.reveal("log")
         self.shoot("20_log", self.window)
+
+    def bodies(self) -> None:
+        for code in ("ORE", "GABBRO"):
+            self.window.bodies.fit("", Intervals((code,), "bodies.toml"), BodySettings())
+            self.idle()
+        layers, panels = self.window.panels.view.layers, self.window.panels
+        for layer in layers:
+            if layer.kind in ("surface", "points", "ground", "dips", "suggestions"):
+                layers.change(layer.key, visible=False)
+        self.window.bodies.showing.choose("ORE")
+        panels.reveal("bodies")
+        result = self.window.session.document.body("ORE")
+        assert result is not None
+        middle = result.mesh.vertices.mean(axis=0) + result.body.origin
+        self.window.showing.line = middle[:2] + np.array([[-170.0, -60.0], [170.0, 60.0]])
+        self.window.actions_["section"].setChecked(True)
+        self.window.showing.show_section()
+        self.zoom("body:ORE")
+        self.shoot("21_bodies", self.window)
+        self.window.actions_["section"].setChecked(False)
+        panels.reveal("body_figures")
+        panels.body_figures.strata.click()
+        self.shoot("22_body_figures", self.window)
+
+    def morph(self) -> None:
+        """Between the lens and a lens that was squeezed and moved."""
+        document, panels = self.window.session.document, self.window.panels
+        result = document.body("ORE")
+        assert result is not None
+        mesh = result.mesh
+        moved = Mesh(
+            mesh.vertices * [0.7, 1.4, 1.2] + [35.0, 10.0, -8.0], mesh.triangles, np.zeros(len(mesh.triangles), int),
+            np.zeros((len(mesh.triangles), 3, 2)), np.asarray(result.body.origin, float), ("ORE 2",),
+        )  # fmt: skip
+        write_ply({"ORE 2": moved}, FOLDER / "ORE 2.ply")
+        self.window.bodies.take_mesh(FOLDER / "ORE 2.ply")
+        self.idle()
+        for name in document.state.bodies:
+            self.window.bodies.styles.restyle(name, visible=False)
+        panels.reveal("morph")
+        rows = panels.morph.list
+        for k in range(rows.count()):
+            on = rows.item(k).text().startswith("ORE")
+            rows.item(k).setCheckState(Qt.CheckState.Checked if on else Qt.CheckState.Unchecked)
+        panels.morph.run.click()
+        self.idle()
+        self.zoom("morph")
+        panels.morph.timeline.put(0.5)
+        panels.morph.moved.emit(0.5)
+        panels.morph.rested.emit(0.5)
+        self.idle(1.0)
+        self.shoot("23_metamorphosis", self.window)
+
+    def zoom(self, key: str) -> None:
+        self.window.panels.view.zoom_to(key)
+        self.idle(1.0)
 
     def dialog(self, name: str, dialog: QDialog) -> None:
         dialog.show()

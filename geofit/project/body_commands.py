@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from geofit.data.messages import Message, message
-from geofit.project.body_record import BodyRecord, BodyStyle, Frame
+from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, Frame
 from geofit.project.command import Command
 from geofit.project.provenance import DocumentError
 from geofit.project.state import State
@@ -37,6 +37,8 @@ class SetBody(Command):
     def text(self) -> Message:  # noqa: D102
         if isinstance(self.record.provenance.source, Frame):
             return message("step.body-frame", "Take a frame as body {name}", name=self.name)
+        if isinstance(self.record.provenance.source, ClosedMesh):
+            return message("step.body-read", "Read body {name}", name=self.name)
         return message("step.body", "Fit body {name}", name=self.name)
 
     def on(self, state: State) -> State:  # noqa: D102

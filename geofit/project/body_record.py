@@ -44,6 +44,7 @@ class Frame:
     dates: tuple[str, ...]
     cells: int
     tau: float
+    seeds: bool = False
 
 
 BodySource = Intervals | ClosedMesh | Frame
@@ -107,7 +108,9 @@ def _source_data(source: BodySource) -> dict[str, Any]:
         case ClosedMesh(file):
             return {"kind": "mesh", "file": file}
         case Frame():
-            plain = {name: getattr(source, name) for name in ("names", "mode", "pace", "dates", "cells", "tau")}
+            plain = {
+                name: getattr(source, name) for name in ("names", "mode", "pace", "dates", "cells", "tau", "seeds")
+            }
             return {"kind": "frame", **plain, "ends": [end.to_data() for end in source.ends]} | {
                 "names": list(source.names),
                 "dates": list(source.dates),
@@ -123,7 +126,16 @@ def _source_from(data: Mapping[str, Any]) -> BodySource:
         case "frame":
             ends = tuple(BodyProvenance.from_data(end) for end in data["ends"])
             names, dates = (tuple(map(str, data[key])) for key in ("names", "dates"))
-            return Frame(ends, names, data["mode"], data["pace"], dates, int(data["cells"]), float(data["tau"]))
+            return Frame(
+                ends,
+                names,
+                data["mode"],
+                data["pace"],
+                dates,
+                int(data["cells"]),
+                float(data["tau"]),
+                bool(data["seeds"]),
+            )
     raise ValueError(f"unknown source of a body '{data['kind']}'")
 
 

@@ -35,6 +35,7 @@ class BodyFigures(QWidget):
         self.head, self.count, self.strata = QLabel(), QLabel(), QPushButton(self.tr("Divide by horizons"))
         self.strata.setToolTip(self.tr("Cut the body by the horizons as they are now, and work out each part."))
         self.count.setWordWrap(True)
+        self.count.setAlignment(Qt.AlignmentFlag.AlignTop)
         self._found: tuple[Violation, ...] = ()
         parts = QSplitter(Qt.Orientation.Horizontal)
         parts.setChildrenCollapsible(False)

@@ -82,7 +82,7 @@ class ProjectTree(QWidget):
         self.setLayout(self.pages)
         self._reports: tuple[str, ...] = ()
         self._bodies: tuple[TreeBody, ...] = ()
-        self.items.itemChanged.connect(self._checked)
+        self.items.dataChanged.connect(self._checked)
         self._silent = False
         self._given: _Given = (None, {}, (), {})
         self.show_site(None, {}, ())
@@ -106,7 +106,8 @@ class ProjectTree(QWidget):
             return
         chosen, folded = self._chosen(), self._folded()
         self._silent = True
-        self.items.removeRows(0, self.items.rowCount())
+        # Reset at once: the filter has been seen to crash while rows went one branch after another.
+        self.items.clear()
         self.items.setHorizontalHeaderLabels([self.tr("Project"), self.tr("Points")])
         self.items.horizontalHeaderItem(1).setTextAlignment(Qt.AlignmentFlag.AlignRight)
         self._group(
@@ -227,10 +228,11 @@ class ProjectTree(QWidget):
         row[0].setCheckState(Qt.CheckState.Checked if body.visible else Qt.CheckState.Unchecked)
         return row
 
-    def _checked(self, item: QStandardItem) -> None:
-        target = item.data(_TARGET)
-        if not self._silent and target is not None and target[0] == "body":
-            self.body_checked.emit(target[1], item.checkState() == Qt.CheckState.Checked)
+    def _checked(self, index: QModelIndex, _: QModelIndex, roles: Sequence[int]) -> None:
+        target = index.data(_TARGET)
+        if not self._silent and Qt.ItemDataRole.CheckStateRole in roles and target is not None and target[0] == "body":
+            on = Qt.CheckState(index.data(Qt.ItemDataRole.CheckStateRole)) == Qt.CheckState.Checked
+            self.body_checked.emit(target[1], on)
 
     def _group(self, key: str, title: str, rows: Sequence[list[QStandardItem]]) -> None:
         if not rows:

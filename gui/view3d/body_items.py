@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,23 +18,25 @@ from geofit.gui.view3d.site_items import DRILLED
 from geofit.gui.view3d.stage import Stage
 from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["BodyScene", "body_shape"]
+__all__ = ["BodyScene", "MorphScene", "body_shape"]
 
 Floats = NDArray[np.float64]
 
 #: Sizes of contacts and widths of logged stretches, logical pixels.
 CONTACT, INSIDE, OUTSIDE = 6.0, 4.0, 2.0
+#: Opacity of the ends of a metamorphosis.
+SKIN = 0.18
 
 
-def body_shape(mesh: TriangleMesh) -> Shape:
-    """Return the triangles of a body (map coordinates) for drawing, with smooth normals."""
+def body_shape(mesh: TriangleMesh, *, coarse: bool = True) -> Shape:
+    """Return the triangles of a body (map coordinates) with smooth normals; ``coarse`` with few while moving."""
     total = np.zeros(mesh.vertices.shape)
     for k in range(3):
         np.add.at(total, mesh.triangles[:, k], mesh.area_vectors)
     length = np.linalg.norm(total, axis=1, keepdims=True)
     normals = np.where(length > 0, total / np.maximum(length, 1e-300), (0.0, 0.0, 1.0))
     fine = Shape(mesh.vertices, mesh.triangles, normals)
-    return Shape(fine.xyz, fine.triangles, fine.normals, thinned(fine))
+    return Shape(fine.xyz, fine.triangles, fine.normals, thinned(fine)) if coarse else fine
 
 
 class BodyScene:
@@ -43,6 +45,7 @@ class BodyScene:
     def __init__(self, stage: Stage) -> None:
         self._stage = stage
         self._shown: dict[str, object] = {}
+        self._seen: dict[str, bool] = {}
 
     def show(self, name: str, mesh: TriangleMesh, colour: str, opacity: float, visible: bool) -> None:
         """Show a body, or its new fit or style; an empty mesh shows nothing."""
@@ -70,17 +73,56 @@ class BodyScene:
             self._stage.show(Layer(key, "body data", name, colour, visible), lambda a, b: _data_item(data, a, b))
             self._shown[key] = data
         self._stage.layers.change(key, colour=colour)
+        if self._seen.get(key) != visible:
+            # Hidden and shown with its body; otherwise as the list of layers has it.
+            self._seen[key] = visible
+            self._stage.layers.change(key, visible=visible)
 
     def remove(self, name: str) -> None:
         """Take a body away with its data."""
         for key in (f"body:{name}", f"body data:{name}"):
             self._stage.layers.remove(key)
             self._shown.pop(key, None)
+            self._seen.pop(key, None)
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the bodies in the scene."""
         return tuple(layer.horizon for layer in self._stage.layers if layer.kind == "body")
+
+
+def _drawn(shape: Shape) -> Callable[[Layer, Look], Item]:
+    return lambda layer, look: shape_item(shape, None, layer, look)
+
+
+class MorphScene:
+    """Shows a frame of a metamorphosis, and its ends as skins that can be seen through."""
+
+    def __init__(self, stage: Stage) -> None:
+        self._stage = stage
+
+    def show_frame(self, name: str, mesh: TriangleMesh, colour: str) -> None:
+        """Show a frame in place of the one before."""
+        shape = body_shape(mesh, coarse=False)
+        self._stage.show(
+            Layer("morph", "morph", name, colour), lambda layer, look: shape_item(shape, None, layer, look)
+        )
+
+    def show_ends(self, ends: Sequence[tuple[str, TriangleMesh, str]]) -> None:
+        """Show ends by name, triangles in map coordinates and colour."""
+        wanted = {f"morph end:{k}" for k in range(len(ends))}
+        for layer in self._stage.layers:
+            if layer.kind == "morph end" and layer.key not in wanted:
+                self._stage.layers.remove(layer.key)
+        for k, (name, mesh, colour) in enumerate(ends):
+            shape = body_shape(mesh)
+            layer = Layer(f"morph end:{k}", "morph end", name, colour, opacity=SKIN)
+            self._stage.show(layer, _drawn(shape))
+
+    def clear(self) -> None:
+        """Take everything away."""
+        self.show_ends(())
+        self._stage.layers.remove("morph")
 
 
 def _data_item(data: BodyData, layer: Layer, look: Look) -> Item:

@@ -24,6 +24,8 @@ _WORDS: dict[str, Any] = {
     "suggestions": QT_TRANSLATE_NOOP("Scene", "Next holes"),
     "body": QT_TRANSLATE_NOOP("Scene", "Body"),
     "body data": QT_TRANSLATE_NOOP("Scene", "Contacts and intervals"),
+    "morph": QT_TRANSLATE_NOOP("Scene", "Frame"),
+    "morph end": QT_TRANSLATE_NOOP("Scene", "End"),
     "plain": QT_TRANSLATE_NOOP("Scene", "One colour"),
     "kind": QT_TRANSLATE_NOOP("Scene", "Kind of source"),
     "deviation": QT_TRANSLATE_NOOP("Scene", "Deviation"),

@@ -18,7 +18,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.actors import Part, lines, poly
 from geofit.gui.view3d.annotations import Annotations, theme_of
 from geofit.gui.view3d.axes import floor_lines, marks, nice
-from geofit.gui.view3d.body_items import BodyScene
+from geofit.gui.view3d.body_items import BodyScene, MorphScene
 from geofit.gui.view3d.camera import Viewpoint, framed
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.contents import Contents
@@ -79,6 +79,7 @@ class SceneView(QWidget):
         self.layers = layers if layers is not None else Layers()
         self._stage = Stage(self.layers, self.canvas.renderer, self.canvas.ren_win, self._changed)
         self.contents, self.bodies = Contents(self._stage), BodyScene(self._stage)
+        self.morph = MorphScene(self._stage)
         self._section, self._clip = SectionPlane(self._section_moved), ClipBox(self._clip_moved)
         self.pointer = Pointer(self.canvas, self._stage, self.contents, self._clip, self)
         self._step, self._framed, self._closed = 0.0, False, False

@@ -1,0 +1,284 @@
+"""Metamorphosis in the window: preview, full grid and table in a process; the slider draws; frames become bodies."""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
+
+from geofit.data.messages import message
+from geofit.gui.activity import Activity
+from geofit.gui.bodies import Bodies
+from geofit.gui.fitting import Fitting
+from geofit.gui.worker import Task, run
+from geofit.gui.workspace import Workspace
+from geofit.implicit.mesh import TriangleMesh
+from geofit.morphing.body import MorphBody
+from geofit.project.body_commands import SetBody
+from geofit.project.body_record import BodyRecord, BodyStyle, next_colour
+from geofit.project.document import Document
+from geofit.project.morph_run import FRAME_FORMATS, MorphRun
+from geofit.project.morph_view import (
+    MorphView,
+    MorphWay,
+    end_shape,
+    export_frames,
+    finished,
+    frame_body,
+    previewed,
+    taken,
+)
+
+__all__ = ["Morphing"]
+
+_LOG = logging.getLogger(__name__)
+#: Frames that are exported, and the kind of film.
+FRAMES, FILM = 25, "gif"
+
+
+class Morphing(QObject):
+    """What the panel of metamorphosis does. ``view`` is the way that is shown, None while there is none."""
+
+    reported = Signal(str)
+
+    def __init__(
+        self, document: Document, activity: Activity, fitting: Fitting, bodies: Bodies, workspace: Workspace,
+        window: QWidget,
+    ) -> None:  # fmt: skip
+        super().__init__(window)
+        self._document, self._activity, self._fitting, self._bodies = document, activity, fitting, bodies
+        self._panels, self._window = workspace, window
+        self.view: MorphView | None = None
+        self._frame: Task | None = None
+        self._wanted: float | None = None
+        panel = self._panel = workspace.morph
+        panel.run_requested.connect(self.run)
+        panel.stop_requested.connect(activity.cancel)
+        panel.moved.connect(self.drag)
+        panel.rested.connect(self.rest)
+        panel.skin_toggled.connect(lambda _: self._show_ends())
+        panel.take_requested.connect(self.ask_name)
+        panel.export_requested.connect(self.ask_export)
+        panel.add_requested.connect(self.ask_file)
+        for choice in (panel.mode, panel.pace):
+            choice.activated.connect(lambda _: self._forget())
+        panel.seeds.toggled.connect(lambda _: self._forget())
+        activity.ended.connect(lambda: panel.set_running(False))
+        bodies.showing.shown.connect(self._show_bodies)
+        document.site_changed.connect(self._on_site)
+        self._later = QTimer(self, singleShot=True, interval=0)
+        self._later.timeout.connect(self._draw)
+
+    def close(self) -> None:
+        """Listen no more; the document may live longer than the window."""
+        self._panel.rest()
+        self._later.stop()
+        self._document.site_changed.disconnect(self._on_site)
+
+    def run(self) -> None:
+        """Join the bodies that are checked: first the preview, which tells what is never reached."""
+        panel, state = self._panel, self._document.state
+        names = panel.chosen()
+        made = self._document.made_bodies()
+        known = [name for name in names if name in made]
+        if len(known) < 2:
+            panel.say(self.tr("Check two bodies that have been made."))
+            return
+        way = MorphWay(
+            tuple(state.bodies[name].provenance for name in known), tuple(known), panel.mode.currentData(),
+            panel.pace.currentData(), panel.given_dates(), panel.seeds.isChecked(),
+        )  # fmt: skip
+        shapes = [end_shape(made[name]) for name in known]
+        if self.view is not None and self.view.way == way and self.view.full is None:
+            self._finish(self.view, shapes)
+            return
+        self._forget()
+        panel.set_running(True)
+        title = self.tr("Join {names}").format(names=", ".join(known))
+        self._activity.do(
+            title, previewed, way, shapes, on_done=lambda view: self._previewed(view, shapes), in_process=True
+        )
+
+    def drag(self, tau: float) -> None:
+        """Show the preview at a share of the way, once the event is over."""
+        self._wanted = tau
+        if not self._later.isActive():
+            self._later.start()
+
+    def rest(self, tau: float) -> None:
+        """Show the frame on the full grid."""
+        view = self.view
+        if view is None or view.full is None:
+            return
+        if self._frame is not None:
+            self._frame.cancel()
+        self._frame = run(self, frame_body, view.full, tau, on_done=self._framed, title="")
+        self._frame.ended.connect(self._frame_ended)
+
+    def ask_name(self) -> None:
+        """Ask what a frame is called as a body."""
+        name, given = QInputDialog.getText(
+            self._window, self.tr("Take a frame as a body"), self.tr("Name of the body"), text=self._proposed()
+        )
+        if given and name.strip():
+            self.take(name.strip())
+
+    def take(self, name: str) -> None:
+        """Take the present frame as a body of the document."""
+        view = self.view
+        if view is None or view.full is None:
+            return
+        given = [end.given for end in view.way.ends]
+        provenance, result = taken(view, self._panel.timeline.tau, name, given)
+        self._document.put_body(provenance, result)
+        style = BodyStyle(next_colour(self._document.state.bodies))
+        self._fitting.push(SetBody(name, BodyRecord(provenance, style)))
+        self._bodies.showing.choose(name)
+
+    def ask_export(self) -> None:
+        """Ask for a folder, and write frames, table and film there."""
+        start = str(self._document.folder or "")
+        folder = QFileDialog.getExistingDirectory(self._window, self.tr("Export frames"), start)
+        if folder:
+            self.export(Path(folder))
+
+    def export(self, folder: Path, frames: int = FRAMES, film: str | None = FILM) -> None:
+        """Write frames, table and film into a folder."""
+        view = self.view
+        if view is not None and view.full is not None:
+            work = (view.full, folder, " - ".join(view.way.names), frames, FRAME_FORMATS, film)
+            self._activity.do(self.tr("Export frames"), export_frames, *work, on_done=self._exported, in_process=True)
+
+    def ask_file(self) -> None:
+        """Ask for a closed body, and take it into the document."""
+        path, _ = QFileDialog.getOpenFileName(
+            self._window, self.tr("Open a closed body"), str(self._document.folder or ""),
+            self.tr("Bodies (*.stl *.obj *.ply *.ts *.step *.stp)"),
+        )  # fmt: skip
+        if path:
+            self._bodies.take_mesh(Path(path))
+
+    def _previewed(self, view: MorphView, shapes: list[Any]) -> None:
+        self.view = view
+        panel, morph = self._panel, view.preview
+        panel.timeline.show_ends(morph.knots.tolist(), view.way.names, [event.tau for event in view.events])
+        panel.timeline.put(0.0)
+        panel.set_ready(True, False)
+        self._show_ends()
+        self.drag(0.0)
+        self._say(view)
+        if morph.unreached and not view.way.seeds:
+            # What is never reached is said before the run: Join again goes on, with or without seeds.
+            panel.set_running(False)
+            return
+        self._finish(view, shapes)
+
+    def _finish(self, view: MorphView, shapes: list[Any]) -> None:
+        self._panel.set_running(True)
+        title = self.tr("Frames of {names}").format(names=", ".join(view.way.names))
+        self._activity.do(title, finished, view, shapes, on_done=self._finished, in_process=True)
+
+    def _finished(self, view: MorphView) -> None:
+        if self.view is None or self.view.way != view.way:
+            return
+        self.view = view
+        rows = view.rows
+        self._panel.timeline.show_curves(
+            [row.tau for row in rows], [row.volume for row in rows], [float(row.euler) for row in rows]
+        )
+        self._panel.set_ready(True, True)
+        self._say(view)
+        self.rest(self._panel.timeline.tau)
+
+    def _say(self, view: MorphView) -> None:
+        """Say which parts are never reached and which vanish; nothing if there are none."""
+        morph, words = view.preview, []
+        for parts, text in (
+            (morph.unreached, self.tr("Not reached by any front: {n} parts, {volume:.4g} m³.")),
+            (morph.vanishing, self.tr("Vanishing without touching the next body: {n} parts, {volume:.4g} m³.")),
+        ):
+            if parts:
+                words.append(text.format(n=len(parts), volume=sum(part.volume for part in parts)))
+        if morph.unreached and not view.way.seeds and view.full is None:
+            words.append(self.tr("Seed them and press Join, or press Join to go on without."))
+        self._panel.say(" ".join(words))
+
+    def _draw(self) -> None:
+        view, tau = self.view, self._wanted
+        if view is None or tau is None:
+            return
+        self._wanted = None
+        self._show_frame(view.preview.surface(tau), tau)
+
+    def _framed(self, body: MorphBody) -> None:
+        if self.view is not None and abs(body.tau - self._panel.timeline.tau) < 1e-9 and self._wanted is None:
+            self._show_frame(TriangleMesh(body.overview.vertices + body.origin, body.overview.triangles), body.tau)
+
+    def _frame_ended(self) -> None:
+        self._frame = None
+
+    def _show_frame(self, mesh: TriangleMesh, tau: float) -> None:
+        view = self.view
+        assert view is not None
+        scene = self._panels.view.morph
+        if len(mesh.triangles):
+            scene.show_frame(self.tr("Between bodies"), mesh, self._colour(view.way.names[0]))
+        day = view.preview.date_of(tau)
+        when = f"{100 * tau:.0f} %" if day is None else day.isoformat()
+        words = self.tr("{when}: {volume} m³, Euler number {euler}, parts: {parts}")
+        volume = f"{mesh.volume:,.0f}".replace(",", "\N{NO-BREAK SPACE}")
+        self._panel.show_place(words.format(when=when, volume=volume, euler=mesh.euler, parts=mesh.components))
+
+    def _show_ends(self) -> None:
+        view, made = self.view, self._document.made_bodies()
+        skins = []
+        if view is not None and self._panel.skin.isChecked():
+            for name in view.way.names:
+                if name in made:
+                    skins.append((name, self._bodies.showing.mesh(made[name]), self._colour(name)))
+        self._panels.view.morph.show_ends(skins)
+
+    def _colour(self, name: str) -> str:
+        record = self._document.state.bodies.get(name)
+        return "#5d6b7a" if record is None else record.style.colour
+
+    def _proposed(self) -> str:
+        assert self.view is not None
+        tau = self._panel.timeline.tau
+        day = self.view.preview.date_of(tau)
+        return f"{'-'.join(self.view.way.names)} {100 * tau:.0f} %" if day is None else day.isoformat()
+
+    def _exported(self, done: MorphRun) -> None:
+        folder = done.files[0].resolve().parent
+        _LOG.info(message("log.wrote", "Wrote {file}", file=str(folder)))
+        self.reported.emit(
+            self.tr("Wrote {n} files into {folder}. {note}").format(
+                n=len(done.files), folder=folder, note=self._panel.note.text()
+            )
+        )
+
+    def _show_bodies(self) -> None:
+        showing = self._bodies.showing
+        self._panel.show_bodies([(name, showing.mark(name)) for name in self._document.state.bodies])
+        view = self.view
+        if view is not None:
+            now = self._document.state.bodies
+            if any(n not in now or now[n].provenance != p for n, p in zip(view.way.names, view.way.ends, strict=True)):
+                self._forget()
+
+    def _forget(self) -> None:
+        """Let go of the way: something that it was made from is another."""
+        self.view, self._wanted = None, None
+        self._panel.rest()
+        self._panel.set_ready(False, False)
+        self._panel.say("")
+        self._panel.show_place("")
+        self._panel.timeline.show_ends((), (), ())
+        self._panels.view.morph.clear()
+
+    def _on_site(self) -> None:
+        self._forget()
+        self._panel.show_bodies(())

@@ -1,0 +1,179 @@
+"""Metamorphosis in the window: bodies in order, what is not reached, slider, play, onion skin, take, export."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QInputDialog
+
+from geofit.geometry.mesh import Mesh
+from geofit.implicit import Sphere, Torus
+from geofit.implicit.isosurface import isosurface
+from geofit.implicit.lattice import Lattice
+from geofit.io.export.triangles import write_ply
+from geofit.project.body_record import Frame
+
+CENTRE = np.array([500900.0, 3100900.0, 1450.0])
+
+
+def write(path, *fields):
+    """Write fields about the site's middle as one closed mesh."""
+    vertices, triangles, start = [], [], 0
+    for field in fields:
+        low, high = field.bounds
+        mesh = isosurface(field, Lattice.around(np.asarray(low) - 6, np.asarray(high) + 6, cells=40), capped=True)
+        vertices.append(mesh.vertices)
+        triangles.append(mesh.triangles + start)
+        start += len(mesh.vertices)
+    faces = np.concatenate(triangles)
+    n = len(faces)
+    uv = np.zeros((n, 3, 2))
+    drawn = Mesh(np.concatenate(vertices), faces, np.zeros(n, np.int64), uv, CENTRE, (path.stem,))
+    write_ply({path.stem: drawn}, path)
+    return path
+
+
+@pytest.fixture
+def bodies(app, sample, tmp_path):
+    app.window.files.open(sample / "site.toml")
+    app.idle()
+    write(tmp_path / "ball.ply", Sphere([0, 0, 0], 30.0))
+    write(tmp_path / "ring.ply", Torus([0, 0, 0], [0, 0, 1], 40.0, 14.0))
+    write(tmp_path / "two.ply", Sphere([10, 0, 0], 30.0), Sphere([120, 0, 0], 20.0))
+    for name in ("ball", "ring", "two"):
+        app.window.bodies.take_mesh(tmp_path / f"{name}.ply")
+        app.idle()
+    app.panel, app.morphing = app.window.panels.morph, app.window.morphing
+    app.window.panels.reveal("morph")
+    return app
+
+
+def check(app, *names):
+    rows = app.panel.list
+    for k in range(rows.count()):
+        on = rows.item(k).data(Qt.ItemDataRole.UserRole) in names
+        rows.item(k).setCheckState(Qt.CheckState.Checked if on else Qt.CheckState.Unchecked)
+
+
+def join(app, *names):
+    check(app, *names)
+    app.qtbot.mouseClick(app.panel.run, Qt.MouseButton.LeftButton)
+    app.idle()
+
+
+def rested(app):
+    app.qtbot.waitUntil(lambda: app.morphing._frame is None and not app.morphing._later.isActive(), timeout=60_000)
+
+
+def test_a_ball_becomes_a_ring_under_the_slider(bodies, tmp_path, monkeypatch):
+    panel, layers = bodies.panel, bodies.window.panels.view.layers
+    assert not panel.run.isEnabled()
+    assert not panel.timeline.isEnabled()
+    assert "not a record of the process" in panel.note.text()
+    assert panel.note.isVisible()
+    join(bodies, "ball", "ring")
+    view = bodies.morphing.view
+    assert view.full is not None
+    assert view.full.lattice.spacing < view.preview.lattice.spacing
+    assert panel.timeline.events == tuple(event.tau for event in view.events)
+    assert len(panel.timeline.events) == 1
+    assert not panel.said.isVisible()
+    # Onion skins: both ends, clear.
+    assert [layer.horizon for layer in layers if layer.kind == "morph end"] == ["ball", "ring"]
+    panel.skin.setChecked(False)
+    assert not [layer for layer in layers if layer.kind == "morph end"]
+    # Dragged, the preview is shown; let go, the full grid.
+    timeline, plot = panel.timeline, panel.timeline._plot()
+    at = QPoint(round(plot.left() + 0.5 * plot.width()), 12)
+    QTest.mousePress(timeline, Qt.MouseButton.LeftButton, pos=at)
+    assert timeline.tau == pytest.approx(0.5, abs=0.01)
+    bodies.qtbot.waitUntil(lambda: "50 %" in panel.where.text(), timeout=20_000)
+    assert "morph" in layers
+    QTest.mouseRelease(timeline, Qt.MouseButton.LeftButton, pos=at)
+    rested(bodies)
+    volumes = [row.volume for row in view.rows]
+    assert volumes[0] == pytest.approx(bodies.document.body("ball").mesh.volume)
+    assert volumes[-1] == pytest.approx(bodies.document.body("ring").mesh.volume)
+    # Keys and steps move it, the play ends at the last body.
+    QTest.keyClick(timeline, Qt.Key.Key_Home)
+    assert timeline.tau == 0.0
+    bodies.qtbot.mouseClick(panel.forth, Qt.MouseButton.LeftButton)
+    assert timeline.tau == pytest.approx(1 / 60)
+    timeline.put(0.95)
+    panel.play.setChecked(True)
+    bodies.qtbot.waitUntil(lambda: not panel.play.isChecked(), timeout=20_000)
+    assert timeline.tau == 1.0
+    rested(bodies)
+    assert "Euler number 0" in panel.where.text()
+    # A frame is a body of the project like any other, made from what its ends are made from.
+    timeline.put(0.25)
+    monkeypatch.setattr(QInputDialog, "getText", lambda *_, **__: ("quarter", True))
+    bodies.qtbot.mouseClick(panel.take, Qt.MouseButton.LeftButton)
+    bodies.idle()
+    record = bodies.document.state.bodies["quarter"]
+    assert isinstance(record.provenance.source, Frame)
+    assert record.provenance.source.names == ("ball", "ring")
+    taken = bodies.document.body("quarter")
+    assert taken.mesh.volume == pytest.approx(np.interp(0.25, np.linspace(0, 1, 25), volumes), rel=0.03)
+    assert "body:quarter" in layers
+    assert "not a record" in bodies.window.panels.bodies.source.frame.text()
+    from geofit.project.body_building import make_body
+
+    folder = bodies.document.site_file.resolve().parent
+    source, settings = record.provenance.source, record.provenance.settings
+    again, made = make_body(source, settings, "quarter", (), folder, {})
+    assert again == record.provenance
+    np.testing.assert_array_equal(made.mesh.vertices, taken.mesh.vertices)
+    # Frames and table; no film, which needs no window to be right.
+    bodies.morphing.export(tmp_path / "out", frames=3, film=None)
+    bodies.idle()
+    assert {file.suffix for file in (tmp_path / "out").iterdir() if file.is_file()} >= {".pvd", ".glb", ".csv", ".json"}
+    assert "not a record of the process" in bodies.window.statusBar().currentMessage()
+    # Without one of its ends there is no way any more.
+    bodies.window.bodies.styles.delete("ring")
+    bodies.idle()
+    assert bodies.morphing.view is None
+    assert "morph" not in layers
+    assert not panel.timeline.isEnabled()
+
+
+def test_what_is_never_reached_is_told_before_the_run(bodies):
+    panel = bodies.panel
+    join(bodies, "ball", "two")
+    view = bodies.morphing.view
+    assert len(view.preview.unreached) == 1
+    assert view.full is None
+    assert "Not reached by any front: 1 parts" in panel.said.text()
+    assert not panel.take.isEnabled()
+    panel.seeds.setChecked(True)
+    assert bodies.morphing.view is None
+    join(bodies, "ball", "two")
+    seeded = bodies.morphing.view
+    assert seeded.way.seeds
+    assert seeded.full is not None
+    assert seeded.rows[-1].components == 2
+    panel.seeds.setChecked(False)
+    join(bodies, "ball", "two")
+    bodies.qtbot.mouseClick(panel.run, Qt.MouseButton.LeftButton)
+    bodies.idle()
+    assert bodies.morphing.view.full is not None
+
+
+def test_dates_and_order_are_those_of_the_list(bodies):
+    panel = bodies.panel
+    panel.list.insertItem(0, panel.list.takeItem(1))
+    panel.dates.setText("2024-01-01，2025-01-01")
+    join(bodies, "ball", "ring")
+    view = bodies.morphing.view
+    assert view.way.names == ("ring", "ball")
+    panel.timeline.put(0.5)
+    panel.moved.emit(0.5)
+    rested(bodies)
+    assert "2024-07-02" in panel.where.text()
+    panel.dates.setText("2025-01-01, 2024-01-01")
+    bodies.qtbot.mouseClick(panel.run, Qt.MouseButton.LeftButton)
+    bodies.qtbot.waitUntil(lambda: bool(bodies.failures), timeout=60_000)
+    assert "2024-01-01" in str(bodies.failures.pop())
+    bodies.qtbot.waitUntil(panel.run.isVisible)
