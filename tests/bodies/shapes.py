@@ -191,7 +191,7 @@ def _maybe_turn(rng: Random) -> Floats:
     return _turn(rng) if rng.random() < 0.6 else np.eye(3)
 
 
-#: Kinds that no factor of the prediction was chosen on.
+#: Kinds that no factor of the chance of lying inside was chosen on.
 OTHERS: dict[str, Callable[[Random], Truth]] = {
     "superquadric": _superquadric,
     "bent lens": _bent_lens,

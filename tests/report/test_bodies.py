@@ -31,8 +31,10 @@ def ellipsoid(seed: int) -> geofit.BodyData:
     way = rng.normal(size=(160, 3))
     way /= np.linalg.norm(way, axis=1)[:, None]
     hole = np.array([f"H{int(a) % 12}" for a in np.degrees(np.arctan2(way[:, 1], way[:, 0])) // 30 + 12])
+    # Not exactly an ellipsoid: of that the fit would leave nothing in doubt, and no hole to suggest.
+    rough = 1 + 0.01 * rng.normal(size=(160, 1))
     return geofit.BodyData(
-        contacts=way * SEMI + CENTRE, inside=way * SEMI * 0.6 + CENTRE, outside=way * SEMI * 1.5 + CENTRE,
+        contacts=rough * way * SEMI + CENTRE, inside=way * SEMI * 0.6 + CENTRE, outside=way * SEMI * 1.5 + CENTRE,
         hole=hole, inside_hole=hole, outside_hole=hole, inside_length=1.0, outside_length=1.0,
     )  # fmt: skip
 
