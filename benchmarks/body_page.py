@@ -54,7 +54,7 @@ def write_figures(calibrated: Score, others: Score) -> None:
         "P10-P90: share of bodies whose true volume lies between them; asked: 74-86 %. Places are drawn in the box; "
         "those of a class of chance should lie inside as often as the chance says; asked: within 5 points. The factors "
         "of the chance were chosen on the first family alone; the reach and the spread of the volumes were chosen "
-        "looking at both, so the second family is no blind judge of those.",
+        "looking at both, so the second family does not judge those blindly.",
     ]
     for title, score in (("Ten kinds", calibrated), ("Five other kinds, fewer holes, more noise", others)):
         lines += ["", f"### {title}", "", "| kind | bodies | volume: median error | mean | worst | P10-P90 holds |"]
