@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtCore import QModelIndex, QPoint, QSortFilterProxyModel, Qt, Signal
-from PySide6.QtGui import QIcon, QStandardItem, QStandardItemModel
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QLineEdit, QTreeView, QVBoxLayout, QWidget
 
 from geofit.data.site import Site
@@ -16,6 +15,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, level_mark
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import natural
+from geofit.gui.panels.tree_model import TreeModel, TreeRow
 from geofit.gui.translate import translated
 from geofit.report.digits import metres
 from geofit.report.style import horizon_colours
@@ -23,7 +23,6 @@ from geofit.report.style import horizon_colours
 __all__ = ["ProjectTree", "TreeBody"]
 
 _Given = tuple[Site | None, Mapping[str, HorizonFit], Container[str], Mapping[str, Verdict]]
-_TARGET = Qt.ItemDataRole.UserRole
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class ProjectTree(QWidget):
         self.search = QLineEdit(clearButtonEnabled=True)
         self.search.setPlaceholderText(self.tr("Filter by name"))
         self.search.setAccessibleName(self.tr("Filter of the project tree"))
-        self.items = QStandardItemModel(0, 2, self)
+        self.items = TreeModel((self.tr("Project"), self.tr("Points")), self._checked, self)
         self.shown = QSortFilterProxyModel(self)
         self.shown.setSourceModel(self.items)
         self.shown.setRecursiveFilteringEnabled(True)
@@ -82,7 +81,6 @@ class ProjectTree(QWidget):
         self.setLayout(self.pages)
         self._reports: tuple[str, ...] = ()
         self._bodies: tuple[TreeBody, ...] = ()
-        self.items.dataChanged.connect(self._checked)
         self._silent = False
         self._given: _Given = (None, {}, (), {})
         self.show_site(None, {}, ())
@@ -101,36 +99,32 @@ class ProjectTree(QWidget):
         verdicts = verdicts or {}
         self._given = (site, surfaces, stale, verdicts)
         if site is None:
-            self.items.removeRows(0, self.items.rowCount())
+            self.items.show([])
             self.pages.say(self.tr("No site open: open a site or a project, or drop its files on the window."))
             return
         chosen, folded = self._chosen(), self._folded()
         self._silent = True
-        # Reset at once: the filter has been seen to crash while rows went one branch after another.
-        self.items.clear()
-        self.items.setHorizontalHeaderLabels([self.tr("Project"), self.tr("Points")])
-        self.items.horizontalHeaderItem(1).setTextAlignment(Qt.AlignmentFlag.AlignRight)
-        self._group(
-            "horizons",
-            self.tr("Horizons"),
-            [self._horizon(name, site, surfaces, stale, verdicts.get(name)) for name in site.horizons],
-        )
-        self._group("bodies", self.tr("Bodies"), [self._body(body) for body in self._bodies])
+        groups = [
+            self._group(
+                "horizons",
+                self.tr("Horizons"),
+                [self._horizon(name, site, surfaces, stale, verdicts.get(name)) for name in site.horizons],
+            ),
+            self._group("bodies", self.tr("Bodies"), [self._body(body) for body in self._bodies]),
+        ]
         for kind, title in (("borehole", self.tr("Boreholes")), ("adit", self.tr("Adits"))):
             holes = sorted((hole for hole in site.holes if hole.kind == kind), key=lambda hole: natural(hole.name))
             counts = _counts(site, "hole")
             mark = icon("hole" if kind == "borehole" else "adit")
-            rows = [_row(h.name, counts.get(h.name, 0), mark, ("hole", h.name)) for h in holes]
-            self._group(kind, title, rows)
+            rows = [TreeRow(h.name, ("hole", h.name), counts.get(h.name, 0), mark) for h in holes]
+            groups.append(self._group(kind, title, rows))
         counts = _counts(site, "section")
         sections = sorted(site.sections, key=lambda section: natural(section.name))
-        rows = [_row(s.name, counts.get(s.name, 0), icon("section"), ("section", s.name)) for s in sections]
-        self._group("sections", self.tr("Sections"), rows)
-        self._group(
-            "reports",
-            self.tr("Reports"),
-            [_row(Path(path).name, None, icon("report"), ("report", path), path) for path in self._reports],
-        )
+        rows = [TreeRow(s.name, ("section", s.name), counts.get(s.name, 0), icon("section")) for s in sections]
+        groups.append(self._group("sections", self.tr("Sections"), rows))
+        rows = [TreeRow(Path(path).name, ("report", path), None, icon("report"), path) for path in self._reports]
+        groups.append(self._group("reports", self.tr("Reports"), rows))
+        self.items.show([group for group in groups if group.rows])
         self._arrange(folded)
         self._go(chosen)
         self._silent = False
@@ -149,7 +143,7 @@ class ProjectTree(QWidget):
 
     def body_at(self, at: QPoint) -> str | None:
         """Return the body whose row lies under a place of the tree's view."""
-        target = self.view.indexAt(at).siblingAtColumn(0).data(_TARGET)
+        target = self._target(self.view.indexAt(at))
         return target[1] if target is not None and target[0] == "body" else None
 
     def choose_body(self, name: str) -> None:
@@ -177,18 +171,12 @@ class ProjectTree(QWidget):
         surfaces: Mapping[str, HorizonFit],
         stale: Container[str],
         verdict: Verdict | None,
-    ) -> list[QStandardItem]:
+    ) -> TreeRow:
         surface = surfaces.get(name)
         count, colour = len(site.horizons[name]), horizon_colours(site.horizons)[name]
         if surface is None or surface.accuracy is None:
-            row = _row(
-                name,
-                count,
-                icon(f"horizon:{colour}"),
-                ("horizon", name),
-                self.tr("{name}: not fitted yet").format(name=name),
-            )
-            return row
+            words = self.tr("{name}: not fitted yet").format(name=name)
+            return TreeRow(name, ("horizon", name), count, icon(f"horizon:{colour}"), words)
         a, old = surface.accuracy, name in stale
         judged = verdict or verdict_of(a)
         words = self.tr("{name}: {verdict}; patches: {patches}, points: {n}").format(
@@ -199,55 +187,28 @@ class ProjectTree(QWidget):
         if old:
             title = self.tr("{name} (stale)").format(name=name)
             words += "\n" + self.tr("Older than the settings: press Fit")
-        row = _row(title, count, icon("stale" if old else level_mark(judged.level)), ("horizon", name), words)
-        row[0].setData(f"{name}, {translated(judged.word)}", Qt.ItemDataRole.AccessibleTextRole)
-        if old:
-            font = row[0].font()
-            font.setItalic(True)
-            row[0].setFont(font)
+        mark, spoken = icon("stale" if old else level_mark(judged.level)), f"{name}, {translated(judged.word)}"
+        row = TreeRow(title, ("horizon", name), count, mark, words, spoken, italic=old)
         for patch in surface.patches:
             group = a.by_patch.get(patch.name)
             rows, columns = patch.control.shape[:2]
             about = self.tr("Patch {name}: {rows} × {columns} control points, largest |d| {most} m").format(
                 name=translated(patch.name), rows=rows, columns=columns, most=metres(group.max_abs if group else 0.0)
             )
-            row[0].appendRow(
-                _row(
-                    translated(patch.name),
-                    group.n if group else 0,
-                    icon(f"patch:{colour}"),
-                    ("patch", f"{name}\n{patch.name}"),
-                    about,
-                )
-            )
+            target = ("patch", f"{name}\n{patch.name}")
+            points = group.n if group else 0
+            row.rows.append(TreeRow(translated(patch.name), target, points, icon(f"patch:{colour}"), about))
         return row
 
-    def _body(self, body: TreeBody) -> list[QStandardItem]:
-        row = _row(body.name, body.count, icon(body.mark), ("body", body.name), body.words)
-        row[0].setCheckable(True)
-        row[0].setCheckState(Qt.CheckState.Checked if body.visible else Qt.CheckState.Unchecked)
-        return row
+    def _body(self, body: TreeBody) -> TreeRow:
+        return TreeRow(body.name, ("body", body.name), body.count, icon(body.mark), body.words, checked=body.visible)
 
-    def _checked(self, index: QModelIndex, _: QModelIndex, roles: Sequence[int]) -> None:
-        target = index.data(_TARGET)
-        if not self._silent and Qt.ItemDataRole.CheckStateRole in roles and target is not None and target[0] == "body":
-            on = Qt.CheckState(index.data(Qt.ItemDataRole.CheckStateRole)) == Qt.CheckState.Checked
-            self.body_checked.emit(target[1], on)
+    def _checked(self, row: TreeRow, on: bool) -> None:
+        self.body_checked.emit(row.target[1], on)
 
-    def _group(self, key: str, title: str, rows: Sequence[list[QStandardItem]]) -> None:
-        if not rows:
-            return
-        head = QStandardItem(self.tr("{title} ({n})").format(title=title, n=len(rows)))
-        font = head.font()
-        font.setBold(True)
-        head.setFont(font)
-        head.setData(("group", key), _TARGET)
-        head.setFlags(Qt.ItemFlag.ItemIsEnabled)
-        for row in rows:
-            head.appendRow(row)
-        end = QStandardItem()
-        end.setFlags(Qt.ItemFlag.ItemIsEnabled)
-        self.items.appendRow([head, end])
+    def _group(self, key: str, title: str, rows: list[TreeRow]) -> TreeRow:
+        words = self.tr("{title} ({n})").format(title=title, n=len(rows))
+        return TreeRow(words, ("group", key), head=True, rows=rows)
 
     def _filter(self, text: str) -> None:
         self.shown.setFilterFixedString(text.strip())
@@ -259,40 +220,36 @@ class ProjectTree(QWidget):
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
-        for i in range(self.items.rowCount()):
-            item = self.items.item(i)
-            key = item.data(_TARGET)
+        for head in self.items.rows:
             # A first look shows the horizons, and the rest only where it is short.
-            small = key[1] in ("horizons", "bodies") or item.rowCount() <= 6
-            opened = small if folded is None else key not in folded
-            self.view.setExpanded(self.shown.mapFromSource(item.index()), opened)
+            small = head.target[1] in ("horizons", "bodies") or len(head.rows) <= 6
+            opened = small if folded is None else head.target not in folded
+            self.view.setExpanded(self._index(head), opened)
 
     def _folded(self) -> set[object] | None:
-        if not self.items.rowCount():
+        if not self.items.rows:
             return None
-        heads = [self.items.item(i) for i in range(self.items.rowCount())]
-        closed = [h for h in heads if not self.view.isExpanded(self.shown.mapFromSource(h.index()))]
-        return {head.data(_TARGET) for head in closed}
+        return {head.target for head in self.items.rows if not self.view.isExpanded(self._index(head))}
+
+    def _index(self, row: TreeRow) -> QModelIndex:
+        return self.shown.mapFromSource(self.items.index_of(row))
 
     def _chosen(self) -> tuple[str, str] | None:
-        found = self.view.currentIndex().siblingAtColumn(0).data(_TARGET)
-        return None if found is None else (found[0], found[1])
+        return self._target(self.view.currentIndex())
+
+    def _target(self, index: QModelIndex) -> tuple[str, str] | None:
+        row = self.items.row_of(self.shown.mapToSource(index))
+        return None if row is None else row.target
 
     def _go(self, target: tuple[str, str] | None) -> None:
-        for i in range(self.items.rowCount()):
-            head = self.items.item(i)
-            for k in range(head.rowCount()):
-                item = head.child(k)
-                of = [item, *(item.child(m) for m in range(item.rowCount()))]
-                for each in of:
-                    if target is not None and each.data(_TARGET) == target:
-                        index = self.shown.mapFromSource(each.index())
-                        self.view.setCurrentIndex(index)
-                        self.view.scrollTo(index)
-                        return
+        for row in self.items.all():
+            if row.target == target and not row.head:
+                self.view.setCurrentIndex(self._index(row))
+                self.view.scrollTo(self._index(row))
+                return
 
     def _ask_menu(self, at: QPoint) -> None:
-        target = self.view.indexAt(at).siblingAtColumn(0).data(_TARGET)
+        target = self._target(self.view.indexAt(at))
         if target is not None:
             kind, name = target
             if kind == "patch":
@@ -300,7 +257,7 @@ class ProjectTree(QWidget):
             self.menu_requested.emit(kind, name, self.view.viewport().mapToGlobal(at))
 
     def _tell(self, index: QModelIndex) -> None:
-        target = index.siblingAtColumn(0).data(_TARGET)
+        target = self._target(index)
         if self._silent or target is None:
             return
         kind, name = target
@@ -316,15 +273,6 @@ class ProjectTree(QWidget):
             self.body_chosen.emit(name)
         elif kind == "report":
             self.report_chosen.emit(name)
-
-
-def _row(name: str, count: int | None, mark: QIcon, target: tuple[str, str], words: str = "") -> list[QStandardItem]:
-    item, number = QStandardItem(mark, name), QStandardItem("" if count is None else f"{count}")
-    item.setData(target, _TARGET)
-    item.setToolTip(words or name)
-    number.setToolTip(words or name)
-    number.setTextAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-    return [item, number]
 
 
 def _counts(site: Site, column: str) -> dict[str, int]:

@@ -41,18 +41,18 @@ def with_ore(opened):
 
 def tree_bodies(app):
     """Return the texts of the bodies in the tree."""
-    items = app.panels.tree.items
-    heads = [items.item(i) for i in range(items.rowCount())]
-    return [head.child(k).text() for head in heads for k in range(head.rowCount()) if head.text().startswith("Bodies")]
+    return [row.text for row in app.panels.tree.items.all() if row.target[0] == "body"]
 
 
 def tree_item(app, name):
+    (row,) = (row for row in app.panels.tree.items.all() if row.text == name)
+    return row
+
+
+def set_checked(app, name, on):
     items = app.panels.tree.items
-    for i in range(items.rowCount()):
-        for k in range(items.item(i).rowCount()):
-            if items.item(i).child(k).text() == name:
-                return items.item(i).child(k)
-    raise AssertionError(name)
+    state = Qt.CheckState.Checked if on else Qt.CheckState.Unchecked
+    assert items.setData(items.index_of(tree_item(app, name)), state, Qt.ItemDataRole.CheckStateRole)
 
 
 def check(app, code):
@@ -194,7 +194,7 @@ def test_fit_rename_style_and_delete_are_undone_and_done_again(with_ore, monkeyp
 
 def test_tree_and_scene_list_change_the_same_style(with_ore):
     document, layers = with_ore.document, with_ore.panels.view.layers
-    tree_item(with_ore, "ORE").setCheckState(Qt.CheckState.Unchecked)
+    set_checked(with_ore, "ORE", False)
     with_ore.idle()
     assert not layers["body:ORE"].visible
     assert not document.state.bodies["ORE"].style.visible
@@ -204,7 +204,7 @@ def test_tree_and_scene_list_change_the_same_style(with_ore):
     layers.change("body:ORE", visible=True)
     with_ore.qtbot.waitUntil(lambda: document.state.bodies["ORE"].style.opacity == 0.4, timeout=5_000)
     with_ore.idle()
-    assert tree_item(with_ore, "ORE").checkState() == Qt.CheckState.Checked
+    assert tree_item(with_ore, "ORE").checked
     # One step for a slider that was dragged.
     assert with_ore.desktop.session.stack.count() == 3
     tree = with_ore.panels.tree
@@ -215,7 +215,7 @@ def test_tree_and_scene_list_change_the_same_style(with_ore):
 
 def _index(app, name):
     tree = app.panels.tree
-    return tree.shown.mapFromSource(tree_item(app, name).index())
+    return tree.shown.mapFromSource(tree.items.index_of(tree_item(app, name)))
 
 
 def test_choosing_a_body_in_the_tree_shows_it_in_the_panel(with_ore):
@@ -254,7 +254,7 @@ def test_the_section_cuts_bodies_with_contacts_and_intervals(with_ore):
     seen = np.abs((contacts[:, :2] - line[0]) @ [way[1], -way[0]]) <= near
     drawn = [one for one in axes.lines if one.get_marker() == "o" and len(one.get_xdata()) == seen.sum()]
     assert drawn
-    tree_item(with_ore, "ORE").setCheckState(Qt.CheckState.Unchecked)
+    set_checked(with_ore, "ORE", False)
     with_ore.idle()
     panel.canvas.draw()
     assert "ORE" not in panel.canvas.figure.axes[0].get_legend_handles_labels()[1]
@@ -335,7 +335,7 @@ def test_a_saved_project_opens_with_its_bodies_and_tells_read_from_made_again(wi
     for name in ("bodies", "bodies.toml"):
         source = sample / name
         (shutil.copytree if source.is_dir() else shutil.copy)(source, tmp_path / name)
-    tree_item(with_ore, "ORE").setCheckState(Qt.CheckState.Unchecked)
+    set_checked(with_ore, "ORE", False)
     with_ore.idle()
     before = with_ore.document.state
     path = tmp_path / "dam.geofit"

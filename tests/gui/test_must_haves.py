@@ -119,11 +119,11 @@ def test_03_rows_read_are_rows_used_and_rows_listed(app, qtbot, tmp_path):
 def test_04_the_tree_has_holes_adits_sections_horizons_patches_and_reports(shown):
     tree = shown.panels.tree
     tree.show_reports(["report.html"])
-    heads = [tree.items.item(row) for row in range(tree.items.rowCount())]
+    heads = tree.items.rows
     for word in ("Horizons", "Boreholes", "Adits", "Sections", "Reports"):
-        assert any(head.text().startswith(word) for head in heads), word
-    horizons = next(head for head in heads if head.text().startswith("Horizons"))
-    patches = [horizons.child(k).rowCount() for k in range(horizons.rowCount()) if horizons.child(k).text() == NAME]
+        assert any(head.text.startswith(word) for head in heads), word
+    horizons = next(head for head in heads if head.text.startswith("Horizons"))
+    patches = [len(row.rows) for row in horizons.rows if row.text == NAME]
     assert patches == [len(fitted().patches)]
 
 
@@ -324,7 +324,7 @@ def test_18_the_report_has_figures_and_hashes_and_is_listed(shown, qtbot, tmp_pa
     html = (tmp_path / "out" / "report.html").read_text("utf-8")
     assert NAME in html
     assert any(digest[:12] in html for digest in sample_site().inputs.values())
-    heads = [shown.panels.tree.items.item(k).text() for k in range(shown.panels.tree.items.rowCount())]
+    heads = [head.text for head in shown.panels.tree.items.rows]
     assert any(head.startswith("Reports") for head in heads)
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from panel_samples import FAULT, WITH_PERIPHERY, fitted, sample_site
-from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPalette
 
 from geofit.gui import worker
@@ -68,10 +67,10 @@ def test_one_horizon_has_one_colour(qtbot, palette):
         assert drawn[name] == wanted[name]
         plan.show_surface(site, name, surfaces[name], surfaces[name].settings)
         assert plan.view.data.colour == wanted[name]
-        (row,) = tree.items.findItems(name, Qt.MatchFlag.MatchRecursive | Qt.MatchFlag.MatchExactly)
-        assert shades(row.child(0).icon())[0] == wanted[name]
+        (row,) = (row for row in tree.items.all() if row.text == name)
+        assert shades(row.rows[0].mark)[0] == wanted[name]
     tree.show_site(site, {})
-    (row,) = tree.items.findItems(FAULT, Qt.MatchFlag.MatchRecursive | Qt.MatchFlag.MatchExactly)
-    assert shades(row.icon())[0] == wanted[FAULT]
+    (row,) = (row for row in tree.items.all() if row.text == FAULT)
+    assert shades(row.mark)[0] == wanted[FAULT]
     view.close()
     assert worker.finish_all()

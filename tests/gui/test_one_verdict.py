@@ -38,8 +38,7 @@ def shown(app):
 
 
 def tree_row(app):
-    head = app.panels.tree.items.item(0)
-    return next(head.child(k) for k in range(head.rowCount()) if head.child(k).text().startswith(NAME))
+    return next(row for row in app.panels.tree.items.all() if row.text.startswith(NAME))
 
 
 def test_a_failed_check_is_amber_everywhere_and_in_the_same_words(shown, qtbot, capsys):
@@ -55,8 +54,8 @@ def test_a_failed_check_is_amber_everywhere_and_in_the_same_words(shown, qtbot, 
     assert badge._mark.name == "warning"
     assert said in badge.text.splitlines()
     row = tree_row(shown)
-    assert "WARNING" in row.data(Qt.ItemDataRole.AccessibleTextRole)
-    assert said in row.toolTip()
+    assert "WARNING" in row.spoken
+    assert said in row.words
     dialog = ExportDialog(shown.document.surfaces(), None, {NAME: verdict})
     qtbot.addWidget(dialog)
     assert dialog.horizons.item(0).text() == f"{NAME}   {verdict.text}"
@@ -86,7 +85,7 @@ def test_what_is_known_away_from_the_data_reaches_badge_and_tree(shown):
     shown.idle()
     assert "10.0 ε" in str(shown.panels.verdict.text)
     assert shown.panels.verdict.lamps[2][0].name == "failed"
-    assert "10.0 ε" in tree_row(shown).toolTip()
+    assert "10.0 ε" in tree_row(shown).words
 
 
 def test_another_control_error_is_another_verdict_without_a_fit(shown):
@@ -97,7 +96,7 @@ def test_another_control_error_is_another_verdict_without_a_fit(shown):
     assert not document.stale(NAME)
     assert document.surface(NAME).surface is surface.surface
     assert shown.panels.verdict.text.splitlines()[0] == "FAIL"
-    assert "FAIL" in tree_row(shown).data(Qt.ItemDataRole.AccessibleTextRole)
+    assert "FAIL" in tree_row(shown).spoken
     shown.window.session.stack.undo()
     shown.idle()
     assert shown.panels.verdict.text.splitlines()[0] == "WARNING"
