@@ -177,29 +177,18 @@ def gram_diagonals(knots: Floats, degree: int) -> Floats:
 def insertion_matrix(coarse: Floats, fine: Floats, degree: int) -> Floats:
     """Return T with c_fine = T @ c_coarse for a knot vector ``fine`` that contains ``coarse``.
 
-    Source: Boehm's knot insertion, *The NURBS Book*, A5.1, one knot after the other.
+    Source: E. Cohen, T. Lyche, R. Riesenfeld, Computer Graphics and Image Processing 14, 1980, 87-111 (the Oslo
+    algorithm): the matrix of one degree from that of the degree below.
     """
-    matrix = np.eye(len(coarse) - degree - 1)
-    knots = coarse
-    for knot in _missing(coarse, fine):
-        k = int(spans(knots, degree, np.array([knot]))[0])
-        count = len(knots) - degree - 1
-        step = np.zeros((count + 1, count))
-        i = np.arange(count + 1)
-        alpha = np.where(i <= k - degree, 1.0, 0.0)
-        inside = (i > k - degree) & (i <= k)
-        width = knots[i[inside] + degree] - knots[i[inside]]
-        alpha[inside] = (knot - knots[i[inside]]) / width
-        step[i[:-1], i[:-1]] = alpha[:-1]
-        step[i[1:], i[:-1]] = 1 - alpha[1:]
-        matrix = step @ matrix
-        knots = np.insert(knots, k + 1, knot)
+    count = len(fine) - degree - 1
+    matrix = np.zeros((count, len(coarse) - 1))
+    at = np.searchsorted(coarse, fine[:count], side="right") - 1
+    matrix[np.arange(count), np.minimum(at, len(coarse) - degree - 2)] = 1.0
+    for k in range(1, degree + 1):
+        new = fine[k : count + k, None]
+        width = coarse[k:] - coarse[:-k]
+        over = 1 / np.where(width > 0, width, np.inf)
+        rising = matrix * ((new - coarse[:-k]) * over)
+        falling = matrix * ((coarse[k:] - new) * over)
+        matrix = rising[:, :-1] + falling[:, 1:]
     return matrix
-
-
-def _missing(coarse: Floats, fine: Floats) -> list[float]:
-    have = {float(v): int(c) for v, c in zip(*np.unique(coarse, return_counts=True), strict=True)}
-    missing: list[float] = []
-    for value, count in zip(*np.unique(fine, return_counts=True), strict=True):
-        missing += [float(value)] * (int(count) - have.get(float(value), 0))
-    return missing
