@@ -158,7 +158,7 @@ def test_a_project_that_removes_the_files_of_others_is_found(fuzz, files, monkey
     """Item 6: any name in the folder's name is removed."""
     import re
 
-    monkeypatch.setattr("geofit.io.project._SURFACE_FILE", re.compile(r".*"))
+    monkeypatch.setattr("geofit.io.project.SURFACE_FILE", re.compile(r".*"))
     outcomes, failures = fuzz.run(40, 5, files("surfaces", "p.geofit"), 30)
     assert outcomes["failed"], outcomes
     assert "was touched" in failures[0] or "FileNotFoundError" in failures[0]

@@ -10,22 +10,25 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.implicit_body import ImplicitBody
 from geofit.bodies.quads import patched_surface
 from geofit.data.errors import FitError, StitchError
 from geofit.data.messages import message
 from geofit.implicit.csg import sharp_union
 from geofit.implicit.field import Field
+from geofit.implicit.isosurface import isosurface
+from geofit.implicit.lattice import Lattice
+from geofit.implicit.mesh import TriangleMesh
 from geofit.implicit.quadric import Plane
 
 if TYPE_CHECKING:
+    from geofit.bodies.implicit_body import ImplicitBody
     from geofit.cad.solid import SolidReadBack
 
 __all__ = ["creased_solid", "write_solid"]
 
 Floats = NDArray[np.float64]
 
-#: Lengths over which a part is about flat along its longest side, and the room around it as a share of that side.
+#: Cells of a part's mesh along its longest side, and the room around it as a share of that side.
 CELLS = 48
 ROOM = 0.05
 
@@ -89,20 +92,12 @@ def _endless() -> FitError:
 
 
 @dataclass(frozen=True, eq=False)
-class _Part(ImplicitBody):
-    """A smooth part of a body, as patches need it: its field, and how far they may be from it."""
+class _Part:
+    """A smooth part of a body, as patches need it."""
 
     field: Field
-    within: float
-    name: str = ""
-
-    @property
-    def epsilon(self) -> float:
-        return self.within
-
-    @property
-    def origin(self) -> Floats:
-        return np.zeros(3)
+    epsilon: float
+    cut_sides: tuple[str, ...] = ()
 
     @cached_property
     def extent(self) -> tuple[Floats, Floats]:
@@ -112,7 +107,9 @@ class _Part(ImplicitBody):
         room = ROOM * float((upper - lower).max())
         return lower - room, upper + room
 
-    @property
-    def spacing(self) -> float:
+    @cached_property
+    def overview(self) -> TriangleMesh:
         lower, upper = self.extent
-        return float((upper - lower).max()) / CELLS
+        spacing = float((upper - lower).max()) / CELLS
+        counts = np.ceil((upper - lower) / spacing).astype(int) + 1
+        return isosurface(self.field, Lattice(lower, spacing, (int(counts[0]), int(counts[1]), int(counts[2]))))

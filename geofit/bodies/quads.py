@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,16 +17,37 @@ from geofit.implicit.field import Field
 from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
 
-if TYPE_CHECKING:
-    from geofit.bodies.implicit_body import ImplicitBody
-
-__all__ = ["PatchedSurface", "patched_surface"]
+__all__ = ["Patchable", "PatchedSurface", "patched_surface"]
 
 Floats = NDArray[np.float64]
 
 #: Patches of a body at most, and of a part at least as a rule.
 MOST = 500
 FEWEST = 24
+
+
+class Patchable(Protocol):
+    """What patches need of a body: see :class:`geofit.bodies.implicit_body.ImplicitBody`."""
+
+    @property
+    def field(self) -> Field:
+        """The field, negative inside."""
+
+    @property
+    def overview(self) -> TriangleMesh:
+        """Closed triangles of moderate size."""
+
+    @property
+    def extent(self) -> tuple[Floats, Floats]:
+        """Corners of a box around the body."""
+
+    @property
+    def epsilon(self) -> float:
+        """Distance in metres that a file may have from the body."""
+
+    @property
+    def cut_sides(self) -> tuple[str, ...]:
+        """Sides of its box at which the body is cut."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,13 +68,13 @@ class PatchedSurface:
         return tuple(patch for part in self.components for patch in part)
 
 
-def patched_surface(body: ImplicitBody, tolerance: float | None = None) -> PatchedSurface:
+def patched_surface(body: Patchable, tolerance: float | None = None) -> PatchedSurface:
     """Return NURBS patches that meet the surface of a body within a tolerance.
 
     Parameters
     ----------
     body : ImplicitBody
-        The body.
+        The body, or a part of one.
     tolerance : float, optional
         Largest distance in metres between patches and surface; by default half of epsilon, and at most a thousandth
         of the body's size.

@@ -13,7 +13,8 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import ClassVar, Literal
+from os import PathLike
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -31,6 +32,9 @@ from geofit.pores.distance import Border, squared_distance
 from geofit.pores.extraction import pore_network
 from geofit.pores.network import PoreNetwork
 from geofit.pores.volume import RockVolume, VolumeError
+
+if TYPE_CHECKING:
+    from geofit.cad.solid import SolidReadBack
 
 __all__ = ["Construction", "ContactField", "PoreSurface", "pore_surface"]
 
@@ -197,6 +201,10 @@ class PoreSurface(ImplicitBody):
     def _lattice(self, spacing: float) -> Lattice:
         counts = np.maximum(np.rint(self.bounds[1] / spacing).astype(int), 1)
         return Lattice(np.zeros(3), spacing, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
+
+    def write_step(self, path: str | PathLike[str], nurbs: bool = False) -> SolidReadBack:
+        """Write the pores as a STEP AP242 solid, of triangles by default: 500 patches do not follow a pore space."""
+        return super().write_step(path, nurbs)
 
     @cached_property
     def porosity(self) -> float:

@@ -187,8 +187,8 @@ class ProjectTree(QWidget):
         if old:
             title = self.tr("{name} (stale)").format(name=name)
             words += "\n" + self.tr("Older than the settings: press Fit")
-        mark, spoken = icon("stale" if old else level_mark(judged.level)), f"{name}, {translated(judged.word)}"
-        row = TreeRow(title, ("horizon", name), count, mark, words, spoken, italic=old)
+        mark, aloud = icon("stale" if old else level_mark(judged.level)), f"{name}, {translated(judged.word)}"
+        row = TreeRow(title, ("horizon", name), count, mark, words, aloud, italic=old)
         for patch in surface.patches:
             group = a.by_patch.get(patch.name)
             rows, columns = patch.control.shape[:2]

@@ -20,9 +20,9 @@ _Role = Qt.ItemDataRole
 
 @dataclass(eq=False)
 class TreeRow:
-    """A row: its text and what is counted, what it stands for, and the rows below it.
+    """A row: its text, what is counted, its target (kind and name), and the rows below it.
 
-    ``checked`` is None for a row without a check box; ``spoken`` is what a screen reader says in place of the text.
+    ``checked`` is None for a row without a check box; ``aloud`` is what a screen reader says in place of the text.
     A head is bold and cannot be chosen.
     """
 
@@ -31,7 +31,7 @@ class TreeRow:
     count: int | None = None
     mark: QIcon | None = None
     words: str = ""
-    spoken: str = ""
+    aloud: str = ""
     checked: bool | None = None
     italic: bool = False
     head: bool = False
@@ -135,7 +135,7 @@ class TreeModel(QAbstractItemModel):
         if role == _Role.CheckStateRole and row.checked is not None:
             return Qt.CheckState.Checked if row.checked else Qt.CheckState.Unchecked
         if role == _Role.AccessibleTextRole:
-            return row.spoken or row.text
+            return row.aloud or row.text
         return row.text if role == _Role.DisplayRole else row.mark if role == _Role.DecorationRole else None
 
     def setData(self, index: _Index, value: Any, role: int = _Role.EditRole) -> bool:  # noqa: N802

@@ -54,7 +54,7 @@ def test_a_failed_check_is_amber_everywhere_and_in_the_same_words(shown, qtbot, 
     assert badge._mark.name == "warning"
     assert said in badge.text.splitlines()
     row = tree_row(shown)
-    assert "WARNING" in row.spoken
+    assert "WARNING" in row.aloud
     assert said in row.words
     dialog = ExportDialog(shown.document.surfaces(), None, {NAME: verdict})
     qtbot.addWidget(dialog)
@@ -96,7 +96,7 @@ def test_another_control_error_is_another_verdict_without_a_fit(shown):
     assert not document.stale(NAME)
     assert document.surface(NAME).surface is surface.surface
     assert shown.panels.verdict.text.splitlines()[0] == "FAIL"
-    assert "FAIL" in tree_row(shown).spoken
+    assert "FAIL" in tree_row(shown).aloud
     shown.window.session.stack.undo()
     shown.idle()
     assert shown.panels.verdict.text.splitlines()[0] == "WARNING"

@@ -57,7 +57,7 @@ def saved(folder, site, bodies):
     )
     drawn = {name: saved_body(result) for name, (_, result) in bodies.items()}
     path = folder / "dam.geofit"
-    save_state(state, site, SITE, path, {}, False, drawn, progress=nothing)
+    save_state(state, site, SITE, path, {}, False, bodies=drawn, progress=nothing)
     return path, state
 
 
@@ -123,10 +123,10 @@ def test_bodies_come_back_with_what_they_were_made_from(tmp_path, site, ore):
 def test_saving_again_keeps_the_file_of_a_body_that_is_not_made_yet(tmp_path, site, ore):
     path, state = saved(tmp_path, site, {"ORE": ore})
     (file,) = (tmp_path / "dam_surfaces").iterdir()
-    save_state(state, site, SITE, path, {}, True, {}, progress=nothing)
+    save_state(state, site, SITE, path, {}, True, bodies={}, progress=nothing)
     assert open_project(path).bodies[0].mesh == f"dam_surfaces/{file.name}"
     # Without the body its file goes.
-    save_state(State.of_site(site), site, SITE, path, {}, True, {}, progress=nothing)
+    save_state(State.of_site(site), site, SITE, path, {}, True, bodies={}, progress=nothing)
     assert not file.exists()
     assert json.loads(path.read_text("utf-8"))["version"] == VERSION
 
