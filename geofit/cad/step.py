@@ -274,7 +274,8 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
     try:
         # Beside its place, unless OpenCASCADE could not open it there.
         beside = legible(str(target.parent)) == str(target.parent)
-        handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=".geofit-", suffix=".step")
+        prefix = f".{target.stem if legible(target.stem) == target.stem else 'geofit'}-"
+        handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=prefix, suffix=".step")
     except OSError as error:
         raise InputError(
             message(

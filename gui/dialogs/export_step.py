@@ -231,8 +231,9 @@ class ExportDialog(TaskDialog):
     def _stopped(self, files: list[Path]) -> None:
         """Sweep away what the ended process left half written."""
         for file in files:
-            for rest in file.parent.glob(f".{escape(file.stem)}-????????.step"):
-                rest.unlink(missing_ok=True)
+            for name in (escape(file.stem), "geofit"):
+                for rest in file.parent.glob(f".{name}-????????.step"):
+                    rest.unlink(missing_ok=True)
         self.say(self.tr("Stopped. A file that was not finished is not there."))
 
     def _open_folder(self) -> None:

@@ -89,7 +89,8 @@ def test_stop_ends_the_process_and_leaves_no_file(qtbot, tmp_path, monkeypatch):
     qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
     assert not dialog.target.isEnabled()
     qtbot.waitUntil(dialog.stop.isVisible)
-    (tmp_path / ".dam-k3y8x1qz.step").write_text("what a process that is ended leaves behind")
+    for name in (".dam-k3y8x1qz.step", ".geofit-uh9ar_wx.step"):
+        (tmp_path / name).write_text("what a process that is ended leaves behind")
     press(qtbot, dialog, dialog.stop)
     assert "Stopped" in dialog.message.text()
     assert not list(tmp_path.iterdir())
