@@ -39,6 +39,12 @@ class Centring(QObject):
                 return True
         return super().eventFilter(watched, event)
 
+    def close(self) -> None:
+        """Put a panel back, and listen no more: docks that are being destroyed still send events."""
+        self.back()
+        for dock in self._docks.values():
+            dock.removeEventFilter(self)
+
     def bring(self, name: str) -> None:
         """Bring a panel into the middle."""
         self.back()

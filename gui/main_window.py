@@ -113,7 +113,7 @@ class MainWindow(QMainWindow):
             self.files.leave(self.leave_without_asking)
             return
         self._ready = False
-        self.panels.centring.back()
+        self.panels.centring.close()
         self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)

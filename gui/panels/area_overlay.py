@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF, QWheelEvent
 from PySide6.QtWidgets import QWidget
 
@@ -39,7 +39,7 @@ class AreaOverlay(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(self.tr("Corners of the study area"))
         self.setToolTip(self.tr("Drag a corner; double-click a side to add one; Delete removes the chosen one."))
-        view.installEventFilter(self)
+        view.resized.connect(self._cover)
         self.hide()
 
     def edit(self, corners: Floats) -> None:
@@ -52,11 +52,9 @@ class AreaOverlay(QWidget):
         self.raise_()
         self.update()
 
-    def eventFilter(self, watched: QObject, event: QEvent) -> bool:  # noqa: N802
+    def _cover(self) -> None:
         """Stay as large as the plan."""
-        if event.type() == QEvent.Type.Resize:
-            self.setGeometry(self._view.rect())
-        return super().eventFilter(watched, event)
+        self.setGeometry(self._view.rect())
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
         """Paint the area with its handles."""

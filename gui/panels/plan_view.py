@@ -65,6 +65,7 @@ class PlanView(QWidget):
     box_dragging = Signal(object)
     box_dragged = Signal(object)
     pointer_moved = Signal(float, float)
+    resized = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -351,6 +352,7 @@ class PlanView(QWidget):
         self._layer = None
         if not self._fitted or not self._moved or not event.oldSize().isValid():
             self.fit()
+        self.resized.emit()
 
     def changeEvent(self, event: QEvent) -> None:  # noqa: N802
         """Follow the theme and the language."""
