@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 import threading
@@ -128,7 +129,13 @@ def app(qtbot, monkeypatch, qapp):
     desktop.session.end()
     window.deleteLater()
     desktop.deleteLater()
-    qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    # A collection of garbage amid the end of a window would free objects that Qt is about to free.
+    gc.collect()
+    gc.disable()
+    try:
+        qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    finally:
+        gc.enable()
 
 
 @pytest.fixture(scope="session")
