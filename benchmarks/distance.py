@@ -1,4 +1,4 @@
-"""Points a second of geofit's projection beside OpenCASCADE's, initialised once, and beside a converged reference.
+"""Projection in points a second: geofit and OpenCASCADE (initialised once), both against a converged reference.
 
 Run ``python benchmarks/distance.py [POINTS]`` (default 100,000; OpenCASCADE projects every 100th of them). Points a
 second are those of one processor.

@@ -17,7 +17,7 @@ sections of 40 points in a dense core, straight, crooked, crossing or at unequal
 The truths are sums of waves, hills, folds, and random fields of three smoothnesses. "Core" and "whole" are root mean
 square errors at 4,000 places of the core and of the whole area, divided by those of scipy's exact thin-plate spline of
 the same points. Settings are the defaults. A core counts as exact if every point is met but those of two that
-contradict each other right beside one another, of which one is let go and named.
+contradict each other at almost the same place; one of each pair is released and named.
 """
 _TRIED = """
 ## What was tried
@@ -37,12 +37,12 @@ the hull of the points: 5 to 7 % of the area, 12 to 83 % of the squared error on
 #: Change, what was measured, and whether it was kept.
 _TRIES = (
     (
-        "longest span beside the core 0.45 instead of 0.6 of the spacing",
+        "longest span outside the core 0.45 instead of 0.6 of the spacing",
         "whole area, GM 0.685 to 0.669, worst 1.27 to 1.09; core the same",
         "yes",
     ),
     (
-        "the long spans beside the core are lengthened for the cap before those inside",
+        "under the cap, spans outside the core are lengthened before those inside",
         "whole area, worst 1.06 to 1.28",
         "no",
     ),

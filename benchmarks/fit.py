@@ -100,7 +100,7 @@ def _beside_plate(truth: Truth, ours: Callable[[], HorizonFit], setting: Setting
         return geom_plate(points, setting)
 
     seconds = in_turn(ours, plate)
-    print(f"{len(points)} points: fit, check and stitch beside GeomPlate's fit {setting}, {TURNS} times in turn")
+    print(f"{len(points)} points: fit, check and stitch against GeomPlate's fit {setting}, {TURNS} times in turn")
     print(f"{'':12s}{'median, s':>10s}{'sigma, m':>10s}{'core, m':>9s}{'whole, m':>9s}{'poles':>8s}{'a point':>8s}")
     for name, surface, column in (("geofit", ours(), 0), ("GeomPlate", plate(), 1)):
         core, whole = errors(surface.elevation, truth)

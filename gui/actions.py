@@ -30,7 +30,7 @@ _PLAIN: dict[str, _Spec] = {
     "add_data": (QT_TRANSLATE_NOOP("Actions", "A&dd data…"), "Ctrl+Shift+A",
                  QT_TRANSLATE_NOOP("Actions", "Add files to the open site: new holes, picks, sections"), ""),
     "reload": (QT_TRANSLATE_NOOP("Actions", "Re&load changed files"), "Ctrl+Shift+R",
-               QT_TRANSLATE_NOOP("Actions", "Read the files of the site again; what was done stays"), ""),
+               QT_TRANSLATE_NOOP("Actions", "Read the site's files again; your work is kept"), ""),
     "save": (QT_TRANSLATE_NOOP("Actions", "&Save"), _Key.Save,
              QT_TRANSLATE_NOOP("Actions", "Save the project with its surfaces"), "save"),
     "save_as": (QT_TRANSLATE_NOOP("Actions", "Save &as…"), _Key.SaveAs, "", ""),

@@ -242,7 +242,10 @@ class Bodies(QObject):
             left = [one for one in self._using if one not in found.divided_by]
             if left:
                 text = message(
-                    "log.body-not-over", "Not all over body {name}: {names}", name=name, names=", ".join(left)
+                    "log.body-not-over",
+                    "These do not cover all of body {name}: {names}",
+                    name=name,
+                    names=", ".join(left),
                 )
                 self.reported.emit(translated(text))
                 _LOG.info(text)

@@ -1,4 +1,4 @@
-"""A panel in the middle of the window: a double click on its title brings it beside the 3D view, another one back."""
+"""A panel in the centre: a double click on its title puts it next to the 3D view, another one puts it back."""
 
 from __future__ import annotations
 

@@ -148,7 +148,7 @@ class Living(QObject):
             self._bar.hide()
         for name, what in found.items():
             if what == "missing":
-                _LOG.warning(message("log.file-missing", "{file} is not there any more.", file=name))
+                _LOG.warning(message("log.file-missing", "{file} no longer exists.", file=name))
 
     def _stamped(self) -> dict[str, _Stamp]:
         document = self._document
@@ -190,7 +190,7 @@ class Living(QObject):
         words = [translated(one.text) for one in change.arrivals if one.any]
         if change.carried:
             words.append(translated(carried))
-        self.reported.emit(" · ".join(words) or self.tr("The files have changed, their points have not."))
+        self.reported.emit(" · ".join(words) or self.tr("The files have changed, but their points have not."))
         self._panels.reveal("changes")
 
     def show(self) -> None:

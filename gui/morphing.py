@@ -255,7 +255,7 @@ class Morphing(QObject):
         folder = done.files[0].resolve().parent
         _LOG.info(message("log.wrote", "Wrote {file}", file=str(folder)))
         self.reported.emit(
-            self.tr("Wrote {n} files into {folder}. {note}").format(
+            self.tr("Wrote {n} files to {folder}. {note}").format(
                 n=len(done.files), folder=folder, note=self._panel.note.text()
             )
         )

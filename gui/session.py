@@ -90,7 +90,7 @@ class Session(QObject):
                 _LOG.warning(
                     message(
                         "log.data-not-kept",
-                        "The former data cannot be kept, so a crash would lose the way back to them: {error}",
+                        "The earlier data cannot be stored, so they could not be restored after a crash: {error}",
                         error=shown_error(error),
                     )
                 )

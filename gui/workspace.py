@@ -46,7 +46,7 @@ class Workspace(QObject):
         self.offer = OfferBar()
         self.middle = QSplitter(Qt.Orientation.Horizontal)
         beside = _stacked(self.offer, self.centre)
-        # The start page is wide; beside a panel in the middle the view may be narrower.
+        # The start page is wide; next to a panel in the centre the view may be narrower.
         beside.setMinimumWidth(240)
         self.middle.addWidget(beside)
         self.middle.setChildrenCollapsible(False)

@@ -408,7 +408,7 @@ def _from_1(data: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _from_2(data: Mapping[str, Any]) -> dict[str, Any]:
-    """Version 2 had no bodies, no files beside those of the site file, and no earlier data."""
+    """Version 2 had no bodies, no files in addition to those of the site file, and no earlier data."""
     if "bodies" in data:
         raise ValueError("unknown key 'bodies'")
     return {**data, "version": 3}

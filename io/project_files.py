@@ -1,4 +1,4 @@
-"""The files beside a project file: each surface as STEP, the triangles of each body as PLY, named by their hashes."""
+"""The files next to a project file: surfaces as STEP, triangles of bodies as PLY, named by their hashes."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ def read_rule(reader: Reader, table: dict[str, Any], where: Message) -> ContactR
         for key in ("occurrence", "thinner"):
             if key in table:
                 raise reader.fail(
-                    message("import.rule-without-code", "{where} names no code of which it takes a limit", where=where),
+                    message("import.rule-without-code", "{where} names no code whose limit it takes", where=where),
                     message("import.rule-without-code-remedy", "Write top or base, or leave this key out."),
                     key,
                 )

@@ -17,7 +17,7 @@ from geofit.data.settings import FitSettings
 PAGE = Path(__file__).resolve().parents[1] / "docs" / "settings.md"
 HEAD = """# Settings of a fit
 
-The same names stand in a script (`geofit.FitSettings(epsilon=0.25)`), in a site file (`epsilon = 0.25` under a horizon)
+Use the same names in a script (`geofit.FitSettings(epsilon=0.25)`), in a site file (`epsilon = 0.25` under a horizon)
 and, with dashes, on the command line (`geofit fit --epsilon 0.25`). The fit panel shows the labels.
 """
 

@@ -60,7 +60,7 @@ def morph(
     spacing: Annotated[float | None, typer.Option(help="Spacing of the lattice, m, in place of cells.")] = None,
     align: Annotated[bool, typer.Option("--align", help="Align A with B by principal axes (no dates).")] = False,
     seeds: Annotated[bool, typer.Option("--seeds", help="Start small balls where the front would never come.")] = False,
-    step: Annotated[str | None, typer.Option(help="Share of the way, or date, of a frame to write as STEP.")] = None,
+    step: Annotated[str | None, typer.Option(help="Frame to write as STEP: its progress (0 to 1) or its date.")] = None,
     horizon: Annotated[
         list[Path] | None, typer.Option(help="Surface that cuts the frames, for volumes by stratum; may be repeated.")
     ] = None,

@@ -31,7 +31,7 @@ class SettingText:
     choices : mapping
         Words for values that are not numbers.
     number : {"", "real", "whole"}
-        Which numbers it takes beside the choices: none, real or whole ones.
+        Which numbers it accepts in addition to the choices: none, real or whole ones.
     least : int, optional
         The smallest whole number that it takes; real numbers must be above 0.
     """

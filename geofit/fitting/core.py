@@ -34,7 +34,7 @@ Rectangle = tuple[float, float, float, float]
 
 #: Control points a data point beside a core, and how many it may take where its points are met with no fewer.
 A_POINT, LAST_CAP = 15, 60
-#: Longest span beside a core, in units of the spacing of the sparse points: on longer ones no rough field fits.
+#: Longest span outside a core, in units of the spacing of the sparse points: on longer ones no rough field fits.
 LONGEST = 0.45
 #: Slope that two neighbours may ask for beyond the field's own, where not all points of a core can be met.
 CLIFF = 0.5
@@ -265,7 +265,7 @@ def _torn(data: Data, inside: NDArray[np.bool_], coarse: TensorSpace, field: Fie
 def _torn_note(point: Message) -> Message:
     note = message(
         "fitting.core-point-contradicts-neighbour",
-        "{point} contradicts a point right beside it: the core does not meet both, and passes through the other",
+        "{point} contradicts a point very close to it: the core cannot meet both and passes through the other",
         point=point,
     )
     return note.with_severity("warning")

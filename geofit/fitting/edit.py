@@ -149,7 +149,7 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
                     count=int(((fixed * acting.astype(float)).power(2).sum(axis=1) > 0).sum()),
                 )
             )
-        # Where exact points lie close together, the control points beside those that act have to move too.
+        # Where exact points lie close together, the control points next to those that act have to move too.
         around = sliding_window_view(np.pad(acting.reshape(net.space.shape), 1), (3, 3))
         acting, wider = around.any(axis=(2, 3)).ravel(), wider + 1
         change = _moved_beside(csr_array(row), misfit, fixed, acting)
@@ -166,7 +166,7 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
 
 
 def _require_movable(model: Model, acting: NDArray[np.bool_]) -> None:
-    """Refuse to move control points of a core that is linear across its sections, or beside weights."""
+    """Refuse to move control points of a core that is linear across its sections, or next to weighted ones."""
     if model.net.lines is not None and model.net.frozen[acting].any():
         raise _straight()
     if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):

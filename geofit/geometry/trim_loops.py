@@ -136,7 +136,7 @@ def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> 
             ends = np.roll(loop, -1, axis=0)
             chord = patch.evaluate(*ends.T) - patch.evaluate(*loop.T)
             sides.append((k, loop, ends - loop, np.linalg.norm(chord, axis=1)))
-    # Pieces of like length: of a straight side beside a finely bent one the nearest would not be among the first.
+    # Pieces of like length: the nearest one of a straight side would not be among the first next to a finely bent side.
     length = sum(float(side[3].sum()) for side in sides) / (AROUND * sum(map(bool, loops)))
     starts, ways, places, owner = [], [], [], []
     for k, loop, way, size in sides:

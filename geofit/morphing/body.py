@@ -47,9 +47,9 @@ class MorphBody(ImplicitBody):
     name : str
         Name.
     tau : float
-        Share of the way from the first body to the last, 0 to 1, in the chosen pace.
+        Progress from the first body to the last, 0 to 1, in the chosen pace.
     s : float
-        Share of the way between its two surveys as the front measures it: 1 - exp(-t).
+        Progress between its two surveys as the front measures it: 1 - exp(-t).
     date : datetime.date or None
         Its date, where the surveys have one.
     field : Field

@@ -25,7 +25,7 @@ __all__ = ["Added", "add_files"]
 
 @dataclass(frozen=True, eq=False)
 class Added:
-    """The ``site`` with the new files, all ``tables`` beside those of its site file (TOML), what was not used."""
+    """The ``site`` with the new files, all ``tables`` that its site file does not have (TOML), what was not used."""
 
     site: Site
     tables: tuple[str, ...]

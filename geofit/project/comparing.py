@@ -125,7 +125,7 @@ def compare_states(
         raise InputError(
             message("compare.nothing-common", "The two states have no horizon in common"),
             message(
-                "compare.names", "The earlier has {old}; the later has {new}.",
+                "compare.names", "The earlier state has {old}; the later one has {new}.",
                 old=", ".join(before) or "-", new=", ".join(after) or "-",
             ),
             file=str(new),

@@ -88,7 +88,7 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
         The site as it is worked on (:meth:`~geofit.project.state.State.shaped`), and as it is read now; horizons
         whole, not in blocks.
     added : iterable of str
-        Tables that were read beside the site file's, as TOML; all of them.
+        All tables that were read in addition to the site file's, as TOML.
 
     Returns
     -------
@@ -112,7 +112,7 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
         lost += [
             message(
                 "project.exclusion-lost",
-                "{name}: {file} row {row} is not excluded any more: its point is gone or was corrected",
+                "{name}: {file} row {row} is no longer excluded: its point is gone or was corrected",
                 name=Untranslated(name), file=Untranslated(row.file), row=row.row,
             )
             for row in gone
@@ -137,7 +137,7 @@ def change_of_data(state: State, before: Site, after: Site, added: Iterable[str]
                 )
             )
     gone_names = [name for name in state.order if name not in settings]
-    lost += [message("project.horizon-gone", "{name}: the new data have no point of it", name=Untranslated(name))
+    lost += [message("project.horizon-gone", "{name}: the new data contain no point of it", name=Untranslated(name))
              for name in gone_names]  # fmt: skip
     files = tuple(name for name, digest in after.inputs.items() if before.inputs.get(name) != digest)
     command = ChangeData(data, files, tuple(added), settings, parts, excluded, earlier)

@@ -89,8 +89,8 @@ def picks_of(site: Site, rule: ContactRule) -> Picks:
 def horizon_table(name: str, rule: ContactRule, site_file: Path, site: Site, added: Sequence[str]) -> str:
     """Return the [[horizon]] table of a rule as TOML, to be added to those of the site file.
 
-    Where the site file has no [[horizon]] table, every name of its files makes a horizon; beside the new table they
-    are named too, or they would be lost.
+    Where the site file has no [[horizon]] table, every name of its files makes a horizon; they are named along with
+    the new table, or they would be lost.
     """
     stated = with_tables(tomllib.loads(site_file.read_text(encoding="utf-8-sig")), added, site_file.name)
     table: dict[str, Any] = {"name": name, rule.limit: list(rule.codes) if len(rule.codes) > 1 else rule.codes[0]}

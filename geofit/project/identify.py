@@ -87,7 +87,7 @@ def surface_lines(surface: HorizonFit, xyz: Floats, uncertainty: Uncertainty | N
             i, j = (int(np.abs(axis - value).argmin()) for axis, value in ((uncertainty.x, x), (uncertainty.y, y)))
             half = WIDTH * float(np.hypot(uncertainty.sd[j, i], uncertainty.noise))
             if np.isfinite(half):
-                lines.append(message("identify.band", "a new hole finds it within ± {half:.2f} m (90 %)", half=half))
+                lines.append(message("identify.band", "a new hole meets it within ± {half:.2f} m (90 %)", half=half))
     return tuple(lines)
 
 

@@ -115,7 +115,7 @@ def run_morph(
     film : {"gif", "mp4"}, optional
         Kind of film; None for none.
     step : float or str, optional
-        Share of the way or date of the frame that becomes a STEP solid.
+        Progress or date of the frame that becomes a STEP solid.
     horizons : mapping of str to surface, optional
         The volume of each frame is given between them.
     progress : callable, optional

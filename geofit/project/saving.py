@@ -211,7 +211,7 @@ def _added(project: Project) -> tuple[str, ...]:
 
 
 def saved_data(state: State, project_file: Path) -> dict[str, Site]:
-    """Return the earlier data that a state names and that are beside a project, whole, by their names."""
+    """Return the earlier data that a state names and whose files are with the project, whole, by their names."""
     found = {}
     for digest in earlier_data(state):
         with suppress(InputError):
@@ -225,7 +225,7 @@ def earlier_data(state: State) -> tuple[str, ...]:
 
 
 def _data_file(project_file: Path, digest: str) -> Path:
-    """Return the file that holds earlier data of the site, beside the project."""
+    """Return the file that holds earlier data of the site, next to the project."""
     return project_file.with_name(f"{project_file.stem}_data") / f"{file_stems([digest])[digest]}.npz"
 
 

@@ -17,7 +17,7 @@ __all__ = ["change_blocks", "contact_rows"]
 MOST_ROWS = 40
 _HEADER = (
     message("change.hole", "Hole"), message("change.kind", "Kind"), message("change.easting", "Easting, m"),
-    message("change.northing", "Northing, m"), message("change.found", "Found, m"),
+    message("change.northing", "Northing, m"), message("change.found", "Observed, m"),
     message("change.predicted", "Predicted, m"), message("change.low", "90 % low, m"),
     message("change.high", "90 % high, m"), message("change.residual", "Residual, m"),
     message("change.inside", "Inside"),
@@ -48,7 +48,7 @@ def change_blocks(change: ChangeReport | None, picture: str, t: Language) -> lis
             (t("Area that moved"), digits.share(change.share), moved),
             (t("New contacts"), digits.count(len(change.contacts)), t("{count} with a band", count=change.judged)),
             (t("Inside the earlier band"), digits.share(change.inside), t("90 % expected")),
-            (t("Their residuals, rms"), digits.length(change.residual_rms), t("before they were known")),
+            (t("RMS of their residuals"), digits.length(change.residual_rms), t("before they were known")),
         )
     )
     blocks: list[Block] = [
@@ -86,7 +86,7 @@ def change_blocks(change: ChangeReport | None, picture: str, t: Language) -> lis
 
 def _contacts(change: ChangeReport, t: Language) -> Table:
     columns = (
-        Column(t("Hole")), Column(t("Found, m"), "number"), Column(t("Predicted, m"), "number"),
+        Column(t("Hole")), Column(t("Observed, m"), "number"), Column(t("Predicted, m"), "number"),
         Column(t("90 % band, m"), "number"), Column(t("Residual, m"), "number"), Column(t("Inside")),
     )  # fmt: skip
     rows: list[tuple[Cell, ...]] = []

@@ -69,7 +69,7 @@ class HorizonBuilder(QDialog):
         self.thinner.setRange(0.0, 1000.0)
         self.thinner.setSingleStep(0.1)
         self.thinner.setSuffix(" m")
-        self.thinner.setToolTip(self.tr("Thinner beds do not count: partings within, and beds by themselves"))
+        self.thinner.setToolTip(self.tr("Thinner beds are ignored, whether they are partings or stand alone"))
         self.name, self.words = QLineEdit(), QLabel()
         self.words.setWordWrap(True)
         self.words.setMinimumHeight(3 * self.fontMetrics().height())

@@ -65,10 +65,10 @@ class PreferencesDialog(QDialog):
 
     def _explain(self, *_: object) -> None:
         words = {
-            "geofit": self.tr("Left turns, Shift + left, middle or right shifts, the wheel zooms."),
-            "cad": self.tr("Middle shifts, Shift + middle turns, the wheel zooms, left only chooses."),
-            "leapfrog": self.tr("Left turns, right zooms, middle or Shift + left shifts."),
-            "paraview": self.tr("Left turns, middle shifts, right zooms."),
+            "geofit": self.tr("Left rotates; Shift + left, middle or right pans; the wheel zooms."),
+            "cad": self.tr("Middle pans, Shift + middle rotates, the wheel zooms, left only selects."),
+            "leapfrog": self.tr("Left rotates, right zooms, middle or Shift + left pans."),
+            "paraview": self.tr("Left rotates, middle pans, right zooms."),
         }
         self._mouse_words.setText(words[self.mouse])
 

@@ -104,7 +104,7 @@ class BodiesPanel(QWidget):
         self.progress.setAccessibleName(self.tr("Progress"))
         self.fit_button, self.export_button = QPushButton(self.tr("Fit")), QPushButton(self.tr("Export…"))
         self.fit_button.setProperty("primary", True)
-        self.fit_button.setToolTip(self.tr("Fit this body to its data, and work out its volumes."))
+        self.fit_button.setToolTip(self.tr("Fit this body to its data and compute its volumes."))
         self.export_button.setToolTip(self.tr("Write this body as STEP, triangles or block model."))
         self._lay_out()
         self.list.activated.connect(lambda _: self.chosen.emit(self.list.currentData()))
@@ -245,7 +245,7 @@ class BodiesPanel(QWidget):
             if taken
             else self.tr("Choose the codes that lie inside the body.")
             if self._shown is None and source is None
-            else self.tr("Not fitted yet with what is written here: press Fit.")
+            else self.tr("Not fitted with these settings yet: press Fit.")
             if changed
             else self.tr("The data have changed since this body was made: press Fit.")
             if self._shown is not None and self._shown.stale

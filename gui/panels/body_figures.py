@@ -33,7 +33,7 @@ class BodyFigures(QWidget):
         self.volumes.setAccessibleName(self.tr("Volumes of the body"))
         self.violations.setAccessibleName(self.tr("Violations of the body"))
         self.head, self.count, self.strata = QLabel(), QLabel(), QPushButton(self.tr("Divide by horizons"))
-        self.strata.setToolTip(self.tr("Cut the body by the horizons as they are now, and work out each part."))
+        self.strata.setToolTip(self.tr("Cut the body along the current horizons and compute the volume of each part."))
         self.count.setWordWrap(True)
         self.count.setAlignment(Qt.AlignmentFlag.AlignTop)
         self._found: tuple[Violation, ...] = ()
@@ -91,7 +91,7 @@ class BodyFigures(QWidget):
         rows.append((self.tr("whole body"), result.mesh.components, whole))
         rows += [(translated(part.name), part.pieces, part.volumes) for part in result.strata]
         figures = np.array([_figures(volumes) for _, _, volumes in rows])
-        spread = self.tr("Over conditional simulations that honour every contact and sample.")
+        spread = self.tr("From conditional simulations that honour every contact and sample.")
         titles = (
             (self.tr("Fitted, m³"), ""),
             ("P10, m³", spread),
@@ -111,9 +111,9 @@ class BodyFigures(QWidget):
         self._found = result.violations
         a = result.accuracy
         if a is None:
-            self.count.setText(self.tr("Nothing was fitted: there are no data to disagree with."))
+            self.count.setText(self.tr("Nothing was fitted: there are no data to check against."))
         elif not self._found:
-            text = self.tr("No violations: {n} contacts within ε, {metres:.1f} m logged on their side.")
+            text = self.tr("No violations: {n} contacts within ε, {metres:.1f} m logged on the correct side.")
             self.count.setText(text.format(n=a.n, metres=a.logged_length))
         else:
             text = self.tr("Violations: {n}; samples on the wrong side: {wrong}; {metres:.2f} m of {logged:.1f} m")

@@ -147,7 +147,7 @@ class ChangesPanel(QWidget):
         rank = np.array([{False: 0, True: 1, None: 2}[one.inside] for one in contacts], float)
         return [
             Column(self.tr("Hole"), np.array([one.group for one in contacts], np.str_)),
-            Column(self.tr("Found, m"), numbers("z"), 2),
+            Column(self.tr("Observed, m"), numbers("z"), 2),
             Column(self.tr("Predicted, m"), numbers("predicted"), 2, self.tr("Elevation of the earlier surface there")),
             Column(
                 self.tr("90 % ±, m"),
@@ -155,7 +155,7 @@ class ChangesPanel(QWidget):
                 2,
                 self.tr("Half the width of the earlier 90 % band there"),
             ),
-            Column(self.tr("Residual, m"), numbers("residual"), 2, self.tr("Found minus predicted")),
+            Column(self.tr("Residual, m"), numbers("residual"), 2, self.tr("Observed minus predicted")),
             Column(self.tr("In the band"), np.array([words[one.inside] for one in contacts], np.str_), order=rank),
         ]
 

@@ -74,7 +74,9 @@ class MorphPanel(QWidget):
                 box.addItem(words, value)
         self.dates = QLineEdit()
         self.dates.setPlaceholderText("2024-05-31, 2025-05-31")
-        self.dates.setToolTip(self.tr("A date for each body, apart by commas; then the way is proportional to time."))
+        self.dates.setToolTip(
+            self.tr("A date for each body, separated by commas; progress is then proportional to time.")
+        )
         self.seeds = QCheckBox(self.tr("Seed unreached parts"))
         self.run, self.stop = QPushButton(self.tr("Join")), QPushButton(self.tr("Stop"))
         self.run.setProperty("primary", True)
@@ -83,8 +85,8 @@ class MorphPanel(QWidget):
         self.timeline = MorphTimeline()
         self.back, self.play, self.forth = QToolButton(), QToolButton(), QToolButton()
         for button, sign, words in (
-            (self.back, "◀", self.tr("One frame back")), (self.play, "▶", self.tr("Play or stop")),
-            (self.forth, "▶|", self.tr("One frame on")),
+            (self.back, "◀", self.tr("Previous frame")), (self.play, "▶", self.tr("Play or stop")),
+            (self.forth, "▶|", self.tr("Next frame")),
         ):  # fmt: skip
             button.setText(sign)
             button.setToolTip(words)

@@ -42,7 +42,7 @@ class MorphTimeline(QWidget):
         self.setMinimumSize(QSize(260, 96))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName(self.tr("Share of the way"))
+        self.setAccessibleName(self.tr("Progress"))
         self.setCursor(Qt.CursorShape.PointingHandCursor)
 
     def show_ends(self, knots: Sequence[float], names: Sequence[str], events: Sequence[float]) -> None:

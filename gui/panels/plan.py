@@ -54,7 +54,7 @@ class PlanPanel(QWidget):
             ("undo", self.tr("Undo drag"), self.tr("Take back the last drag that was not used yet.")),
             ("use", self.tr("Use"), self.tr("Make the rectangle the core of the next fit.")),
             ("area", self.tr("Study area"), self.tr("Draw the study area, or drag its corners.")),
-            ("file area", self.tr("As in files"), self.tr("Take the study area that the site's files state.")),
+            ("file area", self.tr("As in files"), self.tr("Use the study area given in the site's files.")),
         ):
             button = QPushButton(words)
             button.setToolTip(about)
