@@ -20,8 +20,8 @@ class ChangeData(Command):
     """Other data for the site.
 
     ``data`` names them, ``files`` are those that are new or changed, ``added`` all tables that the site file does not
-    have. ``settings`` has every horizon that the site has now, in the order of its files, ``parts`` the blocks that stay,
-    ``excluded`` the rows as they are called now, and ``earlier`` the surfaces that can be compared.
+    have. ``settings`` has every horizon that the site has now, in the order of its files, ``parts`` the blocks that
+    stay, ``excluded`` the rows as they are called now, and ``earlier`` the surfaces that can be compared.
     """
 
     kind = "data"
