@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from geofit.data.errors import InputError
 from geofit.data.messages import Untranslated, message
-from geofit.io.parser_errors import parser_message
+from geofit.io.toml_file import parse_toml
 from geofit.io.toml_text import toml_value
 
 __all__ = ["tables_text", "with_tables"]
@@ -27,13 +26,13 @@ def tables_text(tables: Tables) -> str:
     return "\n".join(lines)
 
 
-def with_tables(top: Mapping[str, Any], added: Iterable[str], file: str) -> dict[str, Any]:
+def with_tables(site_file: bytes, added: Iterable[str], file: str) -> dict[str, Any]:
     """Return what a site file holds with more tables after its own.
 
     Parameters
     ----------
-    top : mapping
-        What the site file holds, as TOML gives it.
+    site_file : bytes
+        The site file.
     added : iterable of str
         Texts of :func:`tables_text`.
     file : str
@@ -42,20 +41,12 @@ def with_tables(top: Mapping[str, Any], added: Iterable[str], file: str) -> dict
     Raises
     ------
     InputError
-        If a text is not valid TOML, or adds a second one of what a site has once.
+        If the file or a text is not valid TOML, or a text adds a second one of what a site has once.
     """
-    merged = dict(top)
+    see = message("import.see-docs-site-file", "See docs/site_file.md.")
+    merged = parse_toml(site_file, file, see)
     for text in added:
-        try:
-            tables = tomllib.loads(text)
-        except ValueError as error:
-            what, line = parser_message(error)
-            raise InputError(
-                message("import.added-no-toml", "Added tables are not valid TOML: {error}", error=what),
-                message("import.see-docs-site-file", "See docs/site_file.md."),
-                file=file,
-                row=line,
-            ) from None
+        tables = parse_toml(text.encode(), file, see)
         for key, value in tables.items():
             if key in SINGLE and key in merged:
                 raise InputError(

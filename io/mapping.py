@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from fnmatch import fnmatchcase
@@ -15,8 +14,8 @@ from geofit.data.messages import Untranslated, message
 from geofit.data.numbers import shown
 from geofit.io.columns import SCHEMAS
 from geofit.io.hints import nearest
-from geofit.io.parser_errors import parser_message
 from geofit.io.source import Source
+from geofit.io.toml_file import parse_toml
 from geofit.io.toml_text import toml_key, toml_value
 
 __all__ = ["KINDS", "ColumnMapping", "load_mappings", "save_mappings"]
@@ -167,29 +166,7 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
     Keys: ``docs/site_file.md``.
     """
     source = Source(path=Path(path))
-    try:
-        top = tomllib.loads(source.read().decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        what, _ = parser_message(error)
-        raise InputError(
-            message("import.mapping-not-utf", "The mapping is not UTF-8: {error}", error=what),
-            message("import.save-utf", "Save it as UTF-8."),
-            file=source.name,
-        ) from None
-    except RecursionError:
-        raise InputError(
-            message("import.file-nested-deeply", "The file is nested too deeply"),
-            message("import.see-docs-formats-md", "See docs/formats_in.md."),
-            file=source.name,
-        ) from None
-    except ValueError as error:  # also a number of more than 4,300 digits
-        what, line = parser_message(error)
-        raise InputError(
-            message("import.mapping-no-toml", "The mapping is not valid TOML: {error}", error=what),
-            message("import.see-docs-formats-md", "See docs/formats_in.md."),
-            file=source.name,
-            row=line,
-        ) from None
+    top = parse_toml(source.read(), source.name, message("import.see-docs-formats-md", "See docs/formats_in.md."))
     version, tables = top.pop("version", VERSION), top.pop("table", [])
     if not isinstance(version, int) or version > VERSION:
         raise InputError(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.data.errors import InputError, SettingsError
+from geofit.data.errors import SettingsError
 from geofit.data.logs import LoggedHoles
 from geofit.data.messages import Untranslated, message
 from geofit.data.points import KINDS, PointSet
@@ -34,7 +33,6 @@ from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, load_mappings
 from geofit.io.orientations import load_orientations
-from geofit.io.parser_errors import parser_message
 from geofit.io.picks import load_picks
 from geofit.io.places import list_places
 from geofit.io.site_drawings import gather, read_sections
@@ -101,7 +99,7 @@ def load_site(path: str | Path, progress: Progress | None = None, *, added: Sequ
     """Read a site file, which may have no horizon yet; see :func:`read_site`."""
     source = Source(path=Path(path))
     journal = Journal()
-    top = with_tables(_parse(journal.read(source), source.name), added, source.name)
+    top = with_tables(journal.read(source), added, source.name)
     return build_site(top, source.path, journal, progress=progress)
 
 
@@ -211,32 +209,6 @@ def build_site(
         boreholes=tuple(LoggedHoles(c.paths, c.ends, c.logs) for c in boreholes),
         title=title,
     )
-
-
-def _parse(data: bytes, name: str) -> dict[str, Any]:
-    try:
-        return tomllib.loads(data.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        what, _ = parser_message(error)
-        raise InputError(
-            message("import.site-file-not-utf", "The site file is not UTF-8: {error}", error=what),
-            message("import.save-utf", "Save it as UTF-8."),
-            file=name,
-        ) from None
-    except RecursionError:
-        raise InputError(
-            message("import.file-nested-deeply", "The file is nested too deeply"),
-            message("import.see-docs-site-file", "See docs/site_file.md."),
-            file=name,
-        ) from None
-    except ValueError as error:  # also a number of more than 4,300 digits
-        what, line = parser_message(error)
-        raise InputError(
-            message("import.site-file-no-toml", "The site file is not valid TOML: {error}", error=what),
-            message("import.see-docs-site-file", "See docs/site_file.md."),
-            file=name,
-            row=line,
-        ) from None
 
 
 def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:

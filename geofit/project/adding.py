@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from geofit.io.import_plan import Plan, complete, look_at
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
 from geofit.io.site_file import build_site, read_site
+from geofit.io.source import Source
 from geofit.project.import_tables import Tables, site_tables
 
 __all__ = ["Added", "add_files"]
@@ -93,7 +93,7 @@ def _new_horizons(tables: Tables, site_file: Path, site: Site, added: Sequence[s
 
     Beside [[horizon]] tables only listed names are read; without any, every name makes a horizon.
     """
-    stated = with_tables(tomllib.loads(site_file.read_text(encoding="utf-8-sig")), added, site_file.name)
+    stated = with_tables(Source(path=site_file).read(), added, site_file.name)
     if "horizon" not in stated:
         return []
     top: dict[str, Any] = {"site": {"crs": site.crs}} if site.crs else {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +17,7 @@ from geofit.io.added_tables import tables_text, with_tables
 from geofit.io.contact_rules import ContactRule
 from geofit.io.contacts import load_rule
 from geofit.io.journal import Journal
+from geofit.io.source import Source
 
 __all__ = ["Code", "Picks", "codes_of", "horizon_table", "picks_of"]
 
@@ -92,7 +92,7 @@ def horizon_table(name: str, rule: ContactRule, site_file: Path, site: Site, add
     Where the site file has no [[horizon]] table, every name of its files makes a horizon; they are named along with
     the new table, or they would be lost.
     """
-    stated = with_tables(tomllib.loads(site_file.read_text(encoding="utf-8-sig")), added, site_file.name)
+    stated = with_tables(Source(path=site_file).read(), added, site_file.name)
     table: dict[str, Any] = {"name": name, rule.limit: list(rule.codes) if len(rule.codes) > 1 else rule.codes[0]}
     if rule.occurrence is not None:
         table["occurrence"] = rule.occurrence

@@ -388,3 +388,14 @@ def test_the_title_block_of_the_report_is_read_and_its_errors_name_the_key(make_
         with pytest.raises(InputError) as refused:
             read_site(path)
         assert refused.value.column == key
+
+
+@pytest.mark.parametrize(
+    "text", ["[picks", "picks = " + "[" * 3000, "a = " + "1" * 5000], ids=["cut off", "deep", "long"]
+)
+def test_added_tables_that_are_no_toml_are_refused(tmp_path, text):
+    site = tmp_path / "site.toml"
+    site.write_text('[site]\nname = "Dam"\n', encoding="utf-8")
+    with pytest.raises(InputError, match=r"TOML|nested") as caught:
+        read_site(site, added=(text,))
+    assert caught.value.file == "site.toml"
