@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from geofit.cad.solid import SolidReadBack
     from geofit.implicit.field import Field
 
-__all__ = ["ImplicitBody"]
+__all__ = ["ImplicitBody", "OwnField"]
 
 Floats = NDArray[np.float64]
 
@@ -169,3 +169,23 @@ class ImplicitBody:
 
     def _local(self, xyz: ArrayLike) -> Floats:
         return np.asarray(measurable_places(xyz) - self.origin)
+
+
+class OwnField(ImplicitBody):
+    """A body that is a field itself, in its own coordinates: ``bounds`` is the box that contains it."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def bounds(self) -> tuple[Floats, Floats]:
+            """Corners (3,) of a box that contains the body."""
+
+    @property
+    def origin(self) -> Floats:
+        """(3,) zeros: coordinates are as they are."""
+        return np.zeros(3)
+
+    @property
+    def extent(self) -> tuple[Floats, Floats]:
+        """The box that contains the body."""
+        return self.bounds

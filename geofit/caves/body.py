@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.bodies.implicit_body import ImplicitBody
+from geofit.bodies.implicit_body import OwnField
 from geofit.caves.adjust import AdjustedSurvey, adjust
 from geofit.caves.sections import Sections, sections
 from geofit.caves.survey import Survey
@@ -83,7 +83,7 @@ def _area(walls: Floats) -> Floats:
 
 
 @dataclass(frozen=True, eq=False)
-class PassageBody(ImplicitBody):
+class PassageBody(OwnField):
     """The body of the passages of a survey; a field in the sense of :class:`geofit.implicit.Field`.
 
     Parameters
@@ -151,16 +151,6 @@ class PassageBody(ImplicitBody):
     def field(self) -> Self:
         """The body itself."""
         return self
-
-    @property
-    def origin(self) -> Floats:
-        """(3,) zeros: the stations have the survey's coordinates."""
-        return np.zeros(3)
-
-    @property
-    def extent(self) -> tuple[Floats, Floats]:
-        """The box that contains the body."""
-        return self.bounds
 
     @property
     def spacing(self) -> float:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.bodies.implicit_body import ImplicitBody
+from geofit.bodies.implicit_body import OwnField
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.medial.kernel import STIFFNESS, reach
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class MetaballBody(ImplicitBody):
+class MetaballBody(OwnField):
     """The body on which the fields of metaballs sum to 1 or more.
 
     It is a field in the sense of :class:`geofit.implicit.Field`: (1 - sum f_i) times the mean radius over the
@@ -124,16 +124,6 @@ class MetaballBody(ImplicitBody):
     def field(self) -> Self:
         """The body itself."""
         return self
-
-    @property
-    def origin(self) -> Floats:
-        """(3,) zeros: the centres are coordinates as they are."""
-        return np.zeros(3)
-
-    @property
-    def extent(self) -> tuple[Floats, Floats]:
-        """The box that contains every ball's reach."""
-        return self.bounds
 
     @property
     def spacing(self) -> float:

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.bodies.implicit_body import ImplicitBody
+from geofit.bodies.implicit_body import OwnField
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.implicit.field import Box, Field
@@ -129,7 +129,7 @@ class ContactField:
 
 
 @dataclass(frozen=True, eq=False)
-class PoreSurface(ImplicitBody):
+class PoreSurface(OwnField):
     """The pore space as a body. It is a :class:`geofit.implicit.field.Field` itself.
 
     Attributes
@@ -177,16 +177,6 @@ class PoreSurface(ImplicitBody):
         from geofit.implicit.field import range_in
 
         return range_in(self.field, lower, upper)
-
-    @property
-    def origin(self) -> Floats:
-        """(3,) zeros: the low corner of the sample."""
-        return np.zeros(3)
-
-    @property
-    def extent(self) -> Box:
-        """The box of the sample."""
-        return self.bounds
 
     @property
     def spacing(self) -> float:
