@@ -9,6 +9,7 @@ Math. Geol. 15, 1983).
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -22,7 +23,7 @@ from geofit.bodies.rbf import Saddle
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["SPREAD", "Posterior"]
+__all__ = ["ON_SURFACE", "SPREAD", "Posterior"]
 
 Floats = NDArray[np.float64]
 
@@ -40,6 +41,8 @@ TRUST = 30
 WITHIN = 0.87
 WITHOUT = 0.69
 SHIFT = 0.16
+#: The chance of lying inside at the surface itself: the normal distribution at -SHIFT.
+ON_SURFACE = math.erfc(SHIFT / math.sqrt(2)) / 2
 #: The factor with which 80 % of their volumes fall between P10 and P90. It is larger: what a field of one roughness
 #: misses of a shape is the same all over a body and does not cancel in its volume.
 SPREAD = 1.0

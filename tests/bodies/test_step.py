@@ -10,7 +10,7 @@ import pytest
 import geofit
 import geofit.implicit as implicit
 from bodies.planted import drilled
-from bodies.shapes import KINDS
+from bodies.shapes import KINDS, horn
 from geofit.bodies.body import BodyFit
 from geofit.bodies.dual import dual_quads
 from geofit.bodies.fit import fit_body
@@ -58,13 +58,15 @@ def test_seams_and_deviation(ring: BodyFit) -> None:
 
 def sample_body(name: str) -> BodyFit:
     """Return a body of the sample site, or one of the planted shapes."""
+    if name == "horn":
+        return fit_body(drilled(horn(), 1, rows=11), name=name)
     if name == "fork":
         return fit_body(drilled(KINDS["fork"](np.random.default_rng(3)), 1, rows=11), name=name)
     tables = [SAMPLE / f"{table}.csv" for table in ("collar", "survey", "lithology")]
     return fit_body(read_boreholes(*tables[:2], tables[2:], dip="down-positive"), codes=name, name=name)
 
 
-@pytest.mark.parametrize("name", ["ORE", "VOID", "GABBRO", "fork"])
+@pytest.mark.parametrize("name", ["ORE", "VOID", "GABBRO", "horn", "fork"])
 def test_planted_bodies_become_nurbs_solids(name: str, tmp_path: Path) -> None:
     body = sample_body(name)
     patched = patched_surface(body)
@@ -80,7 +82,7 @@ def test_planted_bodies_become_nurbs_solids(name: str, tmp_path: Path) -> None:
     assert found.volume == pytest.approx(volume.limit, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", ["two"])
+@pytest.mark.parametrize("name", ["ring", "two"])
 def test_distances_from_the_solid_are_those_of_opencascade(name: str, request: pytest.FixtureRequest) -> None:
     """Places at planted offsets: sigma by the body's foot points, by OpenCASCADE from the solid, and as planted."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeVertex
