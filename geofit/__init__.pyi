@@ -1,7 +1,6 @@
 # The names of `import geofit`, one line each: types for editors, and the table of what is imported when first used.
 from geofit import implicit as implicit
 from geofit import io as io
-from geofit.bodies.body import BodyFit as BodyFit
 from geofit.bodies.data import BodyData as BodyData
 from geofit.bodies.fit import fit_body as fit_body
 from geofit.bodies.implicit_body import ImplicitBody as ImplicitBody
@@ -24,14 +23,12 @@ from geofit.io.export.write import write_surface as write_surface
 from geofit.io.picks import read_points as read_points
 from geofit.io.site_file import read_site as read_site
 from geofit.io.surface_files import read_surface as read_surface
-from geofit.io.volume_slices import open_volume as open_volume
 from geofit.io.volumes import read_volume as read_volume
 from geofit.medial.fit import metaballs as metaballs
 from geofit.morphing.between import between as between
 from geofit.morphing.morph import morph as morph
 from geofit.pores.balls import maximal_balls as maximal_balls
 from geofit.pores.extraction import pore_network as pore_network
-from geofit.pores.sliced import SlicedVolume as SlicedVolume
 from geofit.pores.surface import pore_surface as pore_surface
 from geofit.pores.volume import RockVolume as RockVolume
 from geofit.prediction.bands import band as band
@@ -46,7 +43,6 @@ from geofit.site.fit_site import fit_site as fit_site
 from geofit.site.order import compare_horizons as compare_horizons
 from geofit.site.order import thickness as thickness
 from geofit.site.separate import separate_horizons as separate_horizons
-from geofit.streaming.fit import CloudFit as CloudFit
 from geofit.streaming.fit import fit_cloud as fit_cloud
 
 __version__: str

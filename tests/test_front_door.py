@@ -55,7 +55,7 @@ def dots(path: ElementTree.Element) -> np.ndarray:
 def test_tab_finds_every_name_before_it_is_imported():
     assert set(geofit.__all__) <= set(dir(geofit))
     assert set(geofit.io.__all__) <= set(dir(geofit.io))
-    assert 20 <= len(geofit.__all__) <= 50
+    assert 20 <= len(geofit.__all__) <= 45
     assert geofit.__all__ == sorted(geofit.__all__)
 
 

@@ -43,7 +43,7 @@ RESULTS = (
     "geofit.surfaces.protocol", "geofit.surfaces.patch_surface", "geofit.surfaces.trimmed",
     "geofit.surfaces.mesh_surface", "geofit.splines.patch", "geofit.data.accuracy", "geofit.data.prediction",
     "geofit.site.fit_site", "geofit.site.order", "geofit.site.separate", "geofit.site.fault_blocks",
-    "geofit.streaming.fit",
+    "geofit.streaming.fit", "geofit.bodies.body", "geofit.pores.sliced",
     "geofit.site.throw", "geofit.morphing.sequence", "geofit.morphing.body", "geofit.morphing.change",
     "geofit.sampling.contours", "geofit.sampling.cut", "geofit.data.site",
 )  # fmt: skip
