@@ -54,6 +54,7 @@ class HorizonBuilder(QDialog):
         self.codes.verticalHeader().hide()
         self.codes.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 8)
         self.codes.horizontalHeader().setDefaultAlignment(_NUMBER)
+        self.codes.horizontalHeaderItem(0).setTextAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         self.codes.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.codes.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.codes.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
@@ -81,7 +82,7 @@ class HorizonBuilder(QDialog):
         form = QFormLayout()
         for words, field in (
             (self.tr("&Limit"), self.limit),
-            (self.tr("&Which of several"), self.occurrence),
+            (self.tr("&Which bed"), self.occurrence),
             (self.tr("&Ignore beds below"), self.thinner),
             (self.tr("&Name"), self.name),
         ):

@@ -8,6 +8,7 @@ from typing import Any, cast
 import numpy as np
 from matplotlib.ticker import MaxNLocator
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
 from geofit.data.languages import Language
@@ -75,6 +76,12 @@ class ChangesPanel(QWidget):
         self.table.chosen.connect(self._tell_place)
         self._button = self.add_requested.emit
         self.show_nothing()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:  # noqa: N802
+        """Put the table below the map where the panel is higher than wide."""
+        super().resizeEvent(event)
+        high = self.height() > self.width()
+        self.parts.setOrientation(Qt.Orientation.Vertical if high else Qt.Orientation.Horizontal)
 
     def show_nothing(self, lost: Sequence[Message] = ()) -> None:
         """Say that the horizon's data have not changed."""
