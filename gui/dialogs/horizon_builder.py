@@ -54,7 +54,9 @@ class HorizonBuilder(QDialog):
         self.codes.verticalHeader().hide()
         self.codes.verticalHeader().setDefaultSectionSize(self.fontMetrics().height() + 8)
         self.codes.horizontalHeader().setDefaultAlignment(_NUMBER)
-        self.codes.horizontalHeaderItem(0).setTextAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
+        code = self.codes.horizontalHeaderItem(0)
+        assert code is not None
+        code.setTextAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)
         self.codes.setSelectionMode(QAbstractItemView.SelectionMode.NoSelection)
         self.codes.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.codes.horizontalHeader().setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
