@@ -22,8 +22,6 @@ from geofit.implicit.mesh import TriangleMesh
 if TYPE_CHECKING:
     from geofit.cad.solid import SolidReadBack
 
-    pass
-
 __all__ = ["GEOMETRY_ONLY", "MorphBody"]
 
 Floats = NDArray[np.float64]

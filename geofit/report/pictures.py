@@ -81,11 +81,11 @@ def draw_change(comparison: Comparison, t: Language = EN) -> bytes:
     from matplotlib.figure import Figure
 
     grid = comparison.change.difference
-    height = float(np.clip(4.3 * np.ptp(grid.y) / np.ptp(grid.x) + 0.75, 2.4, 5.0))
+    height = float(np.clip(4.3 * np.ptp(grid.y) / np.ptp(grid.x) + 0.87, 2.5, 5.1))
     with drawing(TYPE):
         figure = Figure(figsize=(WIDTH, height), dpi=DOTS)
-        change_map(figure.add_axes((0.115, 0.45 / height, 0.63, 1 - 0.7 / height)), comparison, t)
-        return png(figure)
+        change_map(figure.add_axes((0.115, 0.5 / height, 0.63, 1 - 0.82 / height)), comparison, t)
+        return png(figure, margin=8)
 
 
 def draw_site(results: Sequence[HorizonResult], t: Language = EN) -> Pictures:
