@@ -75,9 +75,9 @@ def load_contacts(boreholes: Boreholes, code: str, limit: Limit, journal: Journa
 def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Journal) -> PointSet:
     """Take the contacts of a rule; the journal receives what is found."""
     carrying = [log for log in boreholes.logs if np.isin(log.code, rule.codes).any()]
+    codes = sorted({str(c) for log in boreholes.logs for c in np.unique(log.code)})
     if not carrying:
         code = rule.codes[0]
-        codes = sorted({str(c) for log in boreholes.logs for c in np.unique(log.code)})
         raise InputError(
             message(
                 "import.no-interval-code-codes",
@@ -87,6 +87,19 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
             ),
             nearest(code, codes, message("import.name-one", "Name one of them.")),
             file=", ".join(log.file for log in boreholes.logs) or None,
+        )
+    for code in (one for one in rule.codes if one not in codes):
+        journal.add(
+            "warning",
+            carrying[0].file,
+            message(
+                "import.code-of-rule-unknown",
+                "No interval has the code '{code}', which counts as one bed with {others}",
+                code=Untranslated(code),
+                others=", ".join(one for one in rule.codes if one in codes),
+            ),
+            nearest(code, codes, message("import.name-one", "Name one of them.")),
+            value=code,
         )
     found = []
     for log in carrying:

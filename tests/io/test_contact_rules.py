@@ -111,3 +111,12 @@ def test_the_site_file_states_rules_and_complains_clearly(tmp_path):
 def test_a_rule_needs_a_code():
     with pytest.raises(SettingsError):
         ContactRule(())
+
+
+def test_a_code_that_no_interval_has_is_named_though_others_are_found():
+    journal = Journal()
+    points = load_rule(logged(BEDS), ContactRule(("sand", "snad"), "top"), journal)
+    assert len(points) == 1
+    (issue,) = (one for one in journal.issues if one.reason.code == "import.code-of-rule-unknown")
+    assert (issue.severity, issue.value) == ("warning", "snad")
+    assert "Did you mean 'sand'?" in str(issue.remedy)
