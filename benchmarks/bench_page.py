@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from pathlib import Path
 from statistics import median
@@ -115,7 +116,7 @@ def page(found: Figures, docs: Path) -> None:
         say(_winners(rows) + (f" Ended without a result: {_list(failed)}." if failed else ""))
     lines += ["## More points", ""]
     say("""The hills again, from 100 points to 10,000,000. A program stops where its next fit is foreseen to take more
-        than 20 s of the processor; beyond 1,000,000 points geofit is `fit_cloud` alone, which keeps no row
+        than 20 s of CPU time; beyond 1,000,000 points geofit is `fit_cloud` alone, which keeps no row
         and no label of a point. verde takes block means from 2,000 points on.""")
     lines += ["![Time and memory against n](images/bench_growth.svg)", ""]
     growth = {tool: {int(n): row for n, row in rows.items()} for tool, rows in found["growth"].items() if rows}
@@ -193,16 +194,14 @@ def _plots(compared: dict[str, dict[str, Figures]], growth: dict[str, dict[int, 
                         marker="D" if _ours(tool) else "o",
                         label=TOOLS[tool].title,
                     )
-            axis.set(xscale="log", yscale="log", title=kind, xlabel="time of a fit, s of the processor")
-            axis.grid(alpha=0.25, which="major")
+            axis.set(xscale="log", yscale="log", title=kind, xlabel="CPU time of a fit, s")
+            _plain(axis)
         axes[0].set_ylabel("rms error against the truth, m")
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
         _save(figure, images / "bench_error.svg")
         figure, axes = plt.subplots(1, 2, figsize=(10, 4.4), layout="constrained")
-        for axis, key, label in zip(
-            axes, ("seconds", "memory"), ("time of a fit, s of the processor", "memory, MB"), strict=True
-        ):
+        for axis, key, label in zip(axes, ("seconds", "memory"), ("CPU time of a fit, s", "memory, MB"), strict=True):
             for tool, rows in growth.items():
                 # Less than 1 MB is within what reading the points took for a while.
                 n = [k for k in sorted(rows) if key == "seconds" or rows[k][key] >= 1]
@@ -217,10 +216,24 @@ def _plots(compared: dict[str, dict[str, Figures]], growth: dict[str, dict[int, 
                     label=TOOLS[tool].title.replace("`", ""),
                 )
             axis.set(xscale="log", yscale="log", xlabel="points", ylabel=label)
-            axis.grid(alpha=0.25, which="major")
+            _plain(axis)
         handles, labels = axes[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False)
         _save(figure, images / "bench_growth.svg")
+
+
+def _plain(axis: Any) -> None:
+    """Write the ticks of both logarithmic axes as text: viewers of SVG place the parts of a formula each in its way."""
+    from matplotlib.ticker import NullFormatter
+
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_major_formatter(lambda value, _: f"{value:g}" if value < 1e4 else f"10{_raised(value)}")
+        side.set_minor_formatter(NullFormatter())
+    axis.grid(alpha=0.25, which="major")
+
+
+def _raised(value: float) -> str:
+    return str(round(math.log10(value))).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
 def _save(figure: Any, path: Path) -> None:

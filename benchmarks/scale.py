@@ -237,9 +237,8 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
         "",
     ]
     say(f"""Two processes cost {many["two"] - many["one"]:.1f} s more of the processors than one: each loads the
-        libraries (0.7 s), and they share caches and memory; sending points and surfaces takes less than 1 ms a horizon.
-        Half of their seconds is the wall time of two free processors; the measured one is that of this
-        run{_beside(many)}. *1e4 horizons*: {each * 1e4 / 3600:.1f} h of one processor,
+        libraries, and they share caches and memory. Half of their seconds is the wall time of two free processors; the
+        measured one is that of this run{_beside(many)}. *1e4 horizons*: {each * 1e4 / 3600:.1f} h of one processor,
         {each * 1e4 / 64:.0f} s on 64 if nothing else limits them.""")
     lines += ["## Tables", ""]
     text = f"""A CSV of {CSV_ROWS:,} rows, {csv["bytes"] / 1e6:.0f} MB: {csv["cpu"]:.2f} s at first, peak memory
