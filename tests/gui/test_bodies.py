@@ -118,7 +118,7 @@ def test_a_body_of_the_sites_own_codes_goes_stale_with_its_form(opened):
     assert not opened.bodies.showing.stale(opened.document.state.bodies["风化带"])
     assert panel.banner.text == ""
     check(opened, "弱风化")
-    assert "Not fitted yet" in panel.banner.text
+    assert "Not fitted with these settings yet" in panel.banner.text
     panel.form.fields["epsilon"].edit.setText("-1")
     panel.form.changed.emit()
     assert "Control error ε" in panel.form.errors["epsilon"].text()

@@ -114,7 +114,7 @@ def test_what_is_wrong_in_a_site_file_is_told_with_its_line(tmp_path):
     with pytest.raises(InputError) as caught:
         read_site(tmp_path / "site.toml")
     assert translate(caught.value.message, ZH) == (
-        "site.toml，第 2 行：场地文件不是 TOML：键之后应为“=”。请见 docs/site_file.md。"
+        "site.toml，第 2 行：文件不是 TOML：键之后应为“=”。请见 docs/site_file.md。"
     )
 
 
