@@ -59,5 +59,5 @@ def run_site(
         say(f"geofit: {name}: {text}")
     if result.results:
         pages = f"{out / 'report.html'}{', .pdf' if pdf else ''}"
-        say(f"Report: {pages} and .json; surfaces and tables beside it")
+        say(f"Report: {pages} and .json; surfaces and tables in the same folder")
     return result.exit_code

@@ -87,7 +87,7 @@ def write_stl(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Floats:
         triangle["corners"] = corners
         triangles.append(triangle)
     every = np.concatenate(triangles)
-    head = b"metres relative to the origin in the text file beside".ljust(80)
+    head = b"metres relative to the origin in the text file next to it".ljust(80)
     with replacing(path) as part:
         part.write_bytes(head + np.uint32(len(every)).astype("<u4").tobytes() + every.tobytes())
     _state_origin(origin, path, "x east, y north, z up")
