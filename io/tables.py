@@ -13,6 +13,7 @@ from geofit.data.messages import Message, folded, message
 from geofit.io.big_columns import BLANK, ODD, TAKEN, BigColumn, big_columns, find_lines
 from geofit.io.big_text import BIG, BigText, big_text
 from geofit.io.journal import Journal
+from geofit.io.not_tables import require_table
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, quoted_cells, split_line
 from geofit.io.source import Source
 
@@ -65,9 +66,11 @@ def read_table(source: Source, journal: Journal) -> Table:
     Raises
     ------
     InputError
-        If the file is missing, empty, no text, or has a header only.
+        If the file is missing, empty, no text, a model or document, or has a header only.
     """
-    lines, encoding = _lines(journal.read(source), source)
+    data = journal.read(source)
+    require_table(data, source.name)
+    lines, encoding = _lines(data, source)
     start = _skip_comments(lines, source.name, journal)
     sample = [line for line in lines[start : start + 4 * _SAMPLE] if line.strip()][:_SAMPLE]
     if not sample:

@@ -33,7 +33,7 @@ from geofit.data.legible import legible
 from geofit.data.messages import message
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
-from geofit.surfaces.protocol import FittedSurface
+from geofit.surfaces.protocol import Surface
 
 __all__ = ["UNITS", "Unit", "read_shapes", "read_step", "step_surfaces", "store_step", "write_step"]
 
@@ -55,9 +55,7 @@ PARAMETERS = {
 }
 
 
-def write_step(
-    surfaces: Mapping[str, FittedSurface], path: str | PathLike[str], *, unit: Unit = "m"
-) -> dict[str, ReadBack]:
+def write_step(surfaces: Mapping[str, Surface], path: str | PathLike[str], *, unit: Unit = "m") -> dict[str, ReadBack]:
     """Write horizons as one STEP AP242 assembly, read it back with OpenCASCADE and check it.
 
     Each horizon is a named, coloured product, each face has its patch's name. The file is written under a
@@ -65,8 +63,8 @@ def write_step(
 
     Parameters
     ----------
-    surfaces : mapping of str to FittedSurface
-        Horizons by the name that the file shall give them.
+    surfaces : mapping of str to Surface
+        Fits, or surfaces read from files, by the name that the file shall give them.
     path : path
         The file, usually ``*.step``.
     unit : {"m", "mm"}
@@ -92,7 +90,7 @@ def write_step(
     }
 
 
-def store_step(surfaces: Mapping[str, FittedSurface], path: str | PathLike[str], *, unit: Unit = "m") -> dict[str, Any]:
+def store_step(surfaces: Mapping[str, Surface], path: str | PathLike[str], *, unit: Unit = "m") -> dict[str, Any]:
     """Write the same file without reading it back, for a project of one's own; return the shells by horizon.
 
     Errors as :func:`write_step`.
@@ -224,7 +222,7 @@ def _parameters(unit: Unit = "m") -> Iterator[None]:
             getattr(Interface_Static, setter)(name, value)
 
 
-def _fill(document: Any, surfaces: Mapping[str, FittedSurface], shells: Mapping[str, Any]) -> None:
+def _fill(document: Any, surfaces: Mapping[str, Surface], shells: Mapping[str, Any]) -> None:
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())

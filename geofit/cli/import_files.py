@@ -18,7 +18,7 @@ __all__ = ["import_"]
 @guarded
 def import_(
     files: Annotated[list[Path], typer.Argument(metavar="FILES...", help="Tables, drawings, maps, grids of one site.")],
-    site: Annotated[Path, typer.Option(metavar="OUT.toml", help="The site file to write; mapping and issues go into the same folder.")],
+    site: Annotated[Path, typer.Option(metavar="OUT.toml", help="The site file; mapping and issues go with it.")],
     mapping: Annotated[Path | None, typer.Option(help="Mapping (TOML) of columns that a guess would miss.")] = None,
     crs: Annotated[str, typer.Option(help="Coordinate system of the site, EPSG:number; degrees are projected.")] = "",
     base: Annotated[list[str] | None, typer.Option(help="Code whose base is a horizon; may be repeated.")] = None,

@@ -8,16 +8,18 @@ import re
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from surfaces import ORIGIN, fold, height_field, horizon, nine
 
 from geofit.cad.export import write_brep, write_iges
+from geofit.cad.step import write_step
 from geofit.data.errors import InputError
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.judge import judge
 from geofit.io.export.tsurf import write_tsurf
 from geofit.io.export.write import write_surface
-from geofit.io.surface_files import read_surfaces
+from geofit.io.surface_files import read_surface, read_surfaces
 from geofit.surfaces.mesh_surface import MeshSurface
 from geofit.surfaces.trimmed import TrimmedSurface
 
@@ -239,3 +241,27 @@ def test_five_thousand_triangles_are_measured_exactly():
     share = rng.dirichlet([1, 1, 1], len(mesh.triangles))
     places = np.einsum("nk,nkd->nd", share, mesh.points[mesh.triangles])
     assert np.abs(one.distance(places + ORIGIN)).max() < 1e-8
+
+
+@pytest.mark.parametrize("source", ["step", "igs", "brep"])
+@pytest.mark.parametrize("target", ["step", "igs", "brep", "ifc", "stl"])
+def test_a_surface_that_was_read_is_written_again(source, target, tmp_path):
+    """A file of one CAD format becomes one of another: no points and no settings are needed for that."""
+    whole, _ = nine()
+    first, second = tmp_path / f"a.{source}", tmp_path / f"b.{target}"
+    write_surface(horizon([whole]), first)
+    found = read_surface(first)
+    write_surface(found, second)
+    if target in ("step", "igs", "brep"):
+        x, y = (ORIGIN[:2] + np.random.default_rng(3).uniform((20, 20), (980, 680), (50, 2))).T
+        assert_allclose(read_surface(second).elevation(x, y), horizon([whole]).surface.elevation(x, y), atol=1e-6)
+
+
+def test_the_read_back_of_an_unfitted_surface_has_no_points(tmp_path):
+    write_surface(horizon(nine()[1]), tmp_path / "a.igs")
+    found = read_surface(tmp_path / "a.igs")
+    (back,) = write_step({"a": found}, tmp_path / "a.step").values()
+    checks = {check.name: check for check in back.checks}
+    assert checks["read-back core"].passed is None
+    assert checks["read-back seam angle"].passed is None
+    assert checks["read-back validity"].passed
