@@ -4,7 +4,8 @@
 
     GeofitError                  catch this one to catch them all
     ├── InputError               a file or a table cannot be used: file, row, column, value, remedy
-    ├── PointsError              arrays that are not set of points (shape, NaN, infinities)
+    ├── ArgumentError            an argument of another type than the function takes
+    ├── PointsError              arrays that are no set of points (shape, NaN, infinities)
     ├── SettingsError            a setting out of its range
     ├── FitError                 these points cannot be fitted in this way
     │   └── ExactnessError       no control net within the cap passes through all of the core's points
@@ -13,8 +14,8 @@
     └── Cancelled                the caller's progress function asked to stop
 
 Each carries a :class:`~geofit.data.messages.Message` (``error.message``, ``error.code``) that states what was given,
-what
-is needed, and what to do. ``str(error)`` is English; :func:`geofit.data.languages.translate` gives other languages.
+what is needed, and what to do. ``str(error)`` is English; :func:`geofit.data.languages.translate` gives other
+languages.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from geofit.data.legible import legible
 from geofit.data.messages import EMPTY, Message, Untranslated, folded, message
 
 __all__ = [
+    "ArgumentError",
     "Cancelled",
     "ExactnessError",
     "FitError",
@@ -134,8 +136,12 @@ def _sentence(reason: Message, remedy: Message) -> Message:
     return message("error.reason", "{reason}.", reason=reason)
 
 
+class ArgumentError(GeofitError, TypeError):
+    """An argument of another type than the function takes."""
+
+
 class PointsError(GeofitError, ValueError):
-    """Arrays that are not set of points."""
+    """Arrays that are no set of points."""
 
 
 class SettingsError(GeofitError, ValueError):

@@ -28,6 +28,7 @@ from geofit.splines.patch import Patch
 if TYPE_CHECKING:
     from geofit.fitting.horizon_fit import HorizonFit
 
+
 __all__ = ["acted_on", "adjust", "move_to", "support", "weigh"]
 
 Floats = NDArray[np.float64]
@@ -288,14 +289,15 @@ def acted_on(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[NDArray[n
 
 
 def _model(surface: HorizonFit) -> Model:
-    if surface.model is None:
+    model: Model | None = getattr(surface, "model", None)
+    if model is None:
         text = message(
             "edit.read-file-patches-no",
             "'{name}' was read from a file: its patches have no common control net. Fit it again, then adjust.",
             name=surface.name,
         )
         raise FitError(text)
-    return surface.model
+    return model
 
 
 def _finite(value: float, name: str) -> None:

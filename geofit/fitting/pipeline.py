@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
+from geofit.data.given import SETTINGS, require_kind
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress
 from geofit.data.settings import FitSettings
@@ -52,6 +53,8 @@ def fit_horizon(
 
     Raises
     ------
+    ArgumentError
+        If ``points`` is no set of points, or ``settings`` are none.
     PointsError
         If fewer than three points are given.
     FitError
@@ -64,7 +67,8 @@ def fit_horizon(
     Li, Miao, Liu, Wang (2011), sec. 3.2 and 3.3. Stitching and export are separate: ``fit.to_cadquery()``,
     ``fit.write_step(path)``.
     """
-    settings = settings or FitSettings()
+    settings = FitSettings() if settings is None else settings
+    require_kind("settings", settings, FitSettings, SETTINGS)
     corners = require(points, boundary)
     stage = Stages(progress)
     # The banded systems are small: more threads cost more than they give, and change the last digits.

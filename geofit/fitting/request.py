@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import refuse_far
 from geofit.data.errors import PointsError
+from geofit.data.given import POINTS, require_kind
 from geofit.data.messages import message, plural_message
 from geofit.data.points import PointSet, look_like_degrees
 from geofit.geometry.area import fault_of_area
@@ -28,10 +29,13 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
 
     Raises
     ------
+    ArgumentError
+        If ``points`` is no set of points.
     PointsError
         If fewer than three places are given, if they look like degrees, or if the corners enclose no area or one
         that is far off the points.
     """
+    require_kind("points", points, PointSet, POINTS)
     if len(points) < 3:
         given = plural_message("fit.given-points", "{count} point given", "{count} points given", count=len(points))
         text = message(

@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import measurable_places
 from geofit.data.errors import FitError, SettingsError
+from geofit.data.given import require_kind
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.prediction import PredictionResult, Uncertainty
@@ -27,6 +28,10 @@ from geofit.splines import bspline
 __all__ = ["Grid", "PredictionError", "band", "grid_over", "prediction_sd", "uncertainty_on"]
 
 Floats = NDArray[np.float64]
+UNCERTAINTY = message(
+    "prediction.uncertainty-needed",
+    "the uncertainty of an examination is needed: examine(surface).uncertainty; where that is None, its notes say why.",
+)
 #: What a standard deviation is of: the surface, or the contact that a new hole finds there.
 Of = Literal["surface", "contact"]
 
@@ -142,6 +147,8 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
 
     Raises
     ------
+    ArgumentError
+        If ``uncertainty`` is none, as after an examination that could estimate nothing.
     FitError
         If nothing is known about how the surface was fitted.
 
@@ -150,6 +157,7 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
     The posterior of the field is evaluated at each place and multiplied by the calibration factor of the nearest node
     of the grid.
     """
+    require_kind("uncertainty", uncertainty, Uncertainty, UNCERTAINTY)
     model = _model(surface)
     frame = model.problem.parametrization.frame
     flat = np.ndim(xyz) > 0 and np.shape(xyz)[-1] == 2

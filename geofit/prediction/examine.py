@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from geofit.data.given import FIT, require_kind
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.prediction import LeftOut, Outlier, PredictionResult, Suggestion
@@ -56,6 +57,8 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> Prediction
 
     Raises
     ------
+    ArgumentError
+        If ``surface`` is no fit.
     Cancelled
         If ``progress`` returned False.
 
@@ -64,6 +67,7 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> Prediction
     Leave-out errors without refits follow from the smoothing matrix: Wahba, Spline Models for Observational Data
     (1990), sec. 4.2. Suggested boreholes are chosen one by one so that each reduces the mean variance most.
     """
+    require_kind("surface", surface, HorizonFit, FIT)
     model = surface.model
     if model is None:
         return _nothing(

@@ -6,11 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import Literal
+from typing import Literal, get_args
 
-from geofit.data.errors import InputError
+from geofit.data.errors import InputError, SettingsError
+from geofit.data.given import FIT, require_kind
 from geofit.data.languages import language as language_of
-from geofit.data.messages import message
+from geofit.data.messages import Untranslated, message
 from geofit.data.site import Site
 from geofit.data.title_block import TitleBlock
 from geofit.fitting.horizon_fit import HorizonFit
@@ -58,6 +59,10 @@ def write_report(
 
     Raises
     ------
+    ArgumentError
+        If what is given is no fit.
+    SettingsError
+        If a form is unknown.
     InputError
         If there is no fit, or the folder cannot be created.
     MissingDependencyError
@@ -76,7 +81,20 @@ def write_report(
         case Mapping():
             given = list(fits.values())
         case _:
+            require_kind("fits", fits, Sequence, FIT)
             given = list(fits)
+    for fit in given:
+        require_kind("fits", fit, HorizonFit, FIT)
+    for form in forms:
+        if form not in get_args(Form):
+            raise SettingsError(
+                message(
+                    "report.form-unknown",
+                    "A report as '{form}' is unknown; choose {names}.",
+                    form=Untranslated(form),
+                    names=", ".join(get_args(Form)),
+                )
+            )
     if not given:
         raise InputError(
             message("run.no-fit", "There is no fit to report"),

@@ -51,7 +51,7 @@ def write_film(bodies: Sequence[MorphBody], path: str | PathLike[str]) -> Path:
     Raises
     ------
     SettingsError
-        If the ending is another, or ffmpeg fails.
+        If there is no frame, the ending is another, or ffmpeg fails.
     MissingDependencyError
         If there is no OpenGL library, or no encoder of MP4.
 
@@ -59,6 +59,8 @@ def write_film(bodies: Sequence[MorphBody], path: str | PathLike[str]) -> Path:
     -----
     One camera from the south-west; the first and the last body are drawn sheer behind each frame: ``docs/morph.md``.
     """
+    if not bodies:
+        raise SettingsError(message("report.film-without-frames", "A film of no frames; give at least one body."))
     labels = [
         f"{body.date.isoformat() if body.date else f'tau {body.tau:.2f}'}   {body.volume:,.0f} m3   "
         + ("interpolated" if body.interpolated else "survey")

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from geofit.data.errors import FitError, PointsError, SettingsError
+from geofit.data.given import SITE, require_kind
 from geofit.data.guard import guarded
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
@@ -92,6 +93,8 @@ def fit_site(
     ------
     Cancelled
         If ``progress`` returned False.
+    ArgumentError
+        If ``site`` is no site.
     SchedulerError
         If the scheduler is lost.
 
@@ -99,6 +102,7 @@ def fit_site(
     -----
     Each horizon as :func:`geofit.fit_horizon` does it; each block of a faulted one as :func:`geofit.fit_blocks`.
     """
+    require_kind("site", site, Site, SITE)
     names = tuple(names) or tuple(site.horizons)
     if scheduler is None:
         found = _one_by_one(site, names, changes or {}, progress)

@@ -19,6 +19,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from threadpoolctl import threadpool_limits
 
 from geofit.data.errors import SettingsError
+from geofit.data.given import FIT, require_kind
 from geofit.data.messages import EMPTY, Message, message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
@@ -106,6 +107,8 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
 
     Raises
     ------
+    ArgumentError
+        If a surface is no fit.
     SettingsError
         If the sequence does not fit the surfaces, or one was not fitted here over the map.
 
@@ -114,7 +117,11 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
     Exact points keep their residual to 1e-8 m. The whole net is changed, not its patches: seams stay closed and
     tangent. A core that is ruled between its sections moves at its periphery only.
     """
+    for name, surface in surfaces.items():
+        require_kind(f"surfaces[{name!r}]", surface, HorizonFit, FIT)
     require_sequence(surfaces, sequence)
+    if not sequence:
+        return Separation(dict(surfaces), {}, ())
     if not (minimum >= 0 and np.isfinite(minimum)):
         raise SettingsError(
             message(

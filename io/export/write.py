@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from importlib import import_module
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol, runtime_checkable
 
 from geofit.data.errors import InputError, SettingsError
 from geofit.data.files import file_stems
+from geofit.data.given import SURFACES, require_kind
 from geofit.data.messages import Message, message
 from geofit.sampling.contours import contours
 from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
@@ -23,6 +24,14 @@ if TYPE_CHECKING:
 __all__ = ["FORMATS", "Format", "format_of", "untrimmed", "write_surface"]
 
 Surfaces = Mapping[str, Surface]
+
+
+@runtime_checkable
+class _Drawable(Protocol):
+    """What every surface has, and nothing else that a caller may take for one."""
+
+    def triangulate(self, tolerance: float = 0.05) -> Any:
+        """As :meth:`Surface.triangulate`."""
 
 
 @dataclass(frozen=True)
@@ -135,6 +144,8 @@ def write_surface(
 
     Raises
     ------
+    ArgumentError
+        If what is given is no surface.
     InputError
         If the format is unknown, or cannot represent these surfaces.
     SettingsError
@@ -156,7 +167,9 @@ def write_surface(
     ['T1.obj']
     """
     out = Path(path)
-    given: Surfaces = surfaces if isinstance(surfaces, Mapping) else {surfaces.name: surfaces}
+    given: Surfaces = surfaces if isinstance(surfaces, Mapping) else {getattr(surfaces, "name", ""): surfaces}
+    for name, surface in given.items():
+        require_kind(f"surfaces[{name!r}]" if given is surfaces else "surfaces", surface, _Drawable, SURFACES)
     if not given:
         raise InputError(
             message("export.no-surface-write", "No surface to write"),
