@@ -134,7 +134,7 @@ class Delivering(QObject):
         surfaces = self._surfaces()
         if surfaces:
             site, provenances = self._document.site_in_use(), dict(self._document.state.provenances)
-            results = [self._result(name, surface) for name, surface in surfaces.items()]
+            results = [self.result(name, surface) for name, surface in surfaces.items()]
             bodies = {name: body for name, body in self._document.made_bodies().items() if body.fitted is not None}
             dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder(), bodies)
             dialog.written.connect(self.list_report)
@@ -143,7 +143,7 @@ class Delivering(QObject):
             )
             dialog.exec()
 
-    def _result(self, name: str, surface: HorizonFit) -> HorizonResult:
+    def result(self, name: str, surface: HorizonFit) -> HorizonResult:
         """Return what a report says of a surface; of a STEP file only if one was written of this very surface."""
         site, prediction = self._document.site_in_use(), self._document.prediction(name)
         change = self._document.comparison(name)

@@ -61,7 +61,7 @@ class Files(QObject):
 
     def open_sample(self, folder: Path | None = None) -> None:
         """Open the sample site; it is written into the user's documents if missing."""
-        place = folder or Path(_documents()) / "geofit sample site"
+        place = folder or Path(documents()) / "geofit sample site"
         self.leave(lambda: self._open_sample(place))
 
     def import_files(self, files: Sequence[Path]) -> None:
@@ -292,5 +292,5 @@ def _read_sample(folder: Path, *, progress: Progress) -> tuple[Path, Site]:
     return site_file, _read_site(site_file, progress=progress)
 
 
-def _documents() -> str:
+def documents() -> str:
     return QStandardPaths.writableLocation(QStandardPaths.StandardLocation.DocumentsLocation)

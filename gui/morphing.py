@@ -78,6 +78,11 @@ class Morphing(QObject):
         self._later.stop()
         self._document.site_changed.disconnect(self._on_site)
 
+    @property
+    def idle(self) -> bool:
+        """Whether the frame that was asked for last is shown."""
+        return self._frame is None and not self._later.isActive()
+
     def run(self) -> None:
         """Join the bodies that are checked: first the preview, which tells what is never reached."""
         panel, state = self._panel, self._document.state

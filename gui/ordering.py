@@ -59,7 +59,7 @@ class Ordering(QObject):
     def check(self) -> None:
         """Compare the strata available, in the document's order."""
         # The model behind the patches is not needed there, and is much to send to another process.
-        surfaces = {name: one.with_(model=None) for name, one in self._strata().items()}
+        surfaces = {name: one.with_(model=None) for name, one in self.strata().items()}
         document = self._document
         pairs = comparable(tuple(surfaces), document.state.parts)
         if not pairs:
@@ -70,7 +70,7 @@ class Ordering(QObject):
             title, all_orders, surfaces, pairs, document.site.ground, on_done=self._found, in_process=True
         )
 
-    def _strata(self) -> dict[str, HorizonFit]:
+    def strata(self) -> dict[str, HorizonFit]:
         """Return the surfaces over the map; where the site states an order, those that it names (weathering cuts)."""
         document, stated = self._document, self._document.site.order
         over = over_map(document.surfaces())
@@ -90,7 +90,7 @@ class Ordering(QObject):
     def separate(self, minimum: float = 0.0) -> None:
         """Push the horizons apart where they cross; exact points stay."""
         parts = self._document.state.parts
-        strata = self._strata()
+        strata = self.strata()
         blocks = [name for name in strata if name in parts]
         if blocks:
             names = ", ".join(blocks)

@@ -36,7 +36,7 @@ class Session(QObject):
         super().__init__(parent)
         self.document = Document()
         self.stack = QUndoStack(self)
-        self._folder = folder
+        self.folder = folder
         self._journal: Journal | None = None
 
     def begin(
@@ -52,7 +52,7 @@ class Session(QObject):
         self.stack.clear()
         self.document.open(site, site_file, state, project_file, data)
         try:
-            self._journal = Journal(self._folder, self.document.state, site_file, project_file)
+            self._journal = Journal(self.folder, self.document.state, site_file, project_file)
         except OSError as error:
             _LOG.warning(
                 message(

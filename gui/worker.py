@@ -148,7 +148,7 @@ class _Bridge(QObject):
 
 _NUMBERS = itertools.count()
 _RUNNING: dict[int, Task] = {}
-_HELPERS: list[_Helper] = []
+_HELPERS: list[Helper] = []
 _POOL: QThreadPool | None = None
 _BRIDGE: _Bridge | None = None
 
@@ -187,7 +187,7 @@ def run_in_process(parent: QObject, function: Callable[..., Any], *args: Any, **
 
 def warm(function: Callable[..., Any]) -> None:
     """Have a process ready before it is needed; it calls ``function``, which loads what will be needed there."""
-    _pool().start(lambda: _HELPERS.append(_Helper(function)))
+    _pool().start(lambda: _HELPERS.append(Helper(function)))
 
 
 def tasks() -> tuple[Task, ...]:
@@ -225,7 +225,7 @@ def _bridge() -> _Bridge:
     return _BRIDGE
 
 
-class _Helper:
+class Helper:
     """A process that runs one function after another; it has loaded OpenCASCADE when the second comes."""
 
     def __init__(self, first: Callable[..., Any] | None = None) -> None:
@@ -324,20 +324,20 @@ def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: C
         helper.end()
         if helper.first is not None:
             # Another one gets ready meanwhile: to begin afresh takes seconds.
-            _HELPERS.append(_Helper(helper.first))
+            _HELPERS.append(Helper(helper.first))
         raise
     _HELPERS.append(helper)
     return result
 
 
-def _ready() -> tuple[_Helper, bool]:
+def _ready() -> tuple[Helper, bool]:
     """Return a process that has waited for work, or a new one; and whether it has waited."""
     while _HELPERS:
         helper = _HELPERS.pop()
         if helper.alive:
             return helper, True
         helper.end()
-    return _Helper(), False
+    return Helper(), False
 
 
 def _serve(pipe: Connection, first: Callable[..., Any] | None) -> None:

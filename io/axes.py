@@ -105,7 +105,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
 
 
 def _crowd(x: Floats, y: Floats) -> Region | None:
-    if x.size < 4 or _spread_out(x, y):
+    if x.size < 4 or spread_out(x, y):
         return None
     cx, cy = float(np.median(x)), float(np.median(y))
     away = x - cx
@@ -114,7 +114,7 @@ def _crowd(x: Floats, y: Floats) -> Region | None:
     return (cx - reach, cx + reach, cy - reach, cy + reach)
 
 
-def _spread_out(x: Floats, y: Floats) -> bool:
+def spread_out(x: Floats, y: Floats) -> bool:
     """Return whether places are so evenly spread that none can be far off, whatever their middle.
 
     Where no band of width 2 w across the longer side L = 20 w holds half of them, the median distance from any place is

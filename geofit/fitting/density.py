@@ -61,13 +61,13 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         )
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
     # The points of the box, not of the cluster: the edges may be drawn in to one section.
-    length, width = _extents(plane[cluster][within(plane[cluster], (low[0], high[0], low[1], high[1]))])
+    length, width = extents(plane[cluster][within(plane[cluster], (low[0], high[0], low[1], high[1]))])
     if width < LINE * length and drawn is not None and drawn.sum() >= FEWEST:
         # A few sections near to each other; the others are farther apart, and part of the core all the same.
         cluster = np.flatnonzero(drawn)
         limit = float(spacing[cluster].max())
         low, high = plane[cluster].min(axis=0), plane[cluster].max(axis=0)
-        length, width = _extents(plane[cluster])
+        length, width = extents(plane[cluster])
     if width < LINE * length:
         return split_none(
             plane,
@@ -151,7 +151,7 @@ def _largest_cluster(plane: Floats, reach: float) -> NDArray[np.bool_]:
     return largest
 
 
-def _extents(plane: Floats) -> tuple[float, float]:
+def extents(plane: Floats) -> tuple[float, float]:
     """Return the length and width of a cluster along its principal directions, but for a tenth of outliers."""
     centred = plane - np.median(plane, axis=0)
     turned = centred @ np.linalg.svd(centred, full_matrices=False)[2].T

@@ -198,18 +198,22 @@ class CurveTube(_Distance):
         object.__setattr__(self, "radius", _positive(self.radius))
 
     @cached_property
-    def _spline(self) -> tuple[CubicSpline, CubicSpline, CubicSpline]:
+    def curve(self) -> CubicSpline:
+        """The centre line, by the length of the chords from its first point."""
         from scipy.interpolate import CubicSpline
 
         chord = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        curve = CubicSpline(np.append(0.0, np.cumsum(chord)), self.points, bc_type="natural")
-        return curve, curve.derivative(), curve.derivative(2)
+        return CubicSpline(np.append(0.0, np.cumsum(chord)), self.points, bc_type="natural")
+
+    @cached_property
+    def _derivatives(self) -> tuple[CubicSpline, CubicSpline]:
+        return self.curve.derivative(), self.curve.derivative(2)
 
     @cached_property
     def _seeds(self) -> tuple[Floats, KDTree]:
         from scipy.spatial import KDTree
 
-        curve = self._spline[0]
+        curve = self.curve
         inner = curve.x[:-1, None] + np.diff(curve.x)[:, None] * np.arange(SEEDS) / SEEDS
         s = np.append(inner.ravel(), curve.x[-1])
         return s, KDTree(curve(s))
@@ -223,7 +227,7 @@ class CurveTube(_Distance):
         return _directions(xyz - self._foot(xyz))
 
     def _foot(self, xyz: Floats) -> Floats:
-        curve, first, second = self._spline
+        curve, (first, second) = self.curve, self._derivatives
         seeds, tree = self._seeds
         s = seeds[tree.query(xyz)[1]]
         step = np.diff(seeds).max()

@@ -248,14 +248,14 @@ def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
 
 def require_opengl() -> None:
     """Raise a :class:`MissingDependencyError` if there is no OpenGL library; choose EGL where there is no screen."""
-    if not _opengl():
+    if not opengl_found():
         raise MissingDependencyError(NO_OPENGL)
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         # VTK would try the X server first, and complain.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 
-def _opengl() -> bool:
+def opengl_found() -> bool:
     """Whether VTK will find a way to draw: it aborts the process where it does not."""
     if not sys.platform.startswith("linux"):
         return True

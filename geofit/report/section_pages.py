@@ -132,7 +132,7 @@ def _pages(
     views: Sequence[SectionView], block: SheetTitle, paper: str, scale: int, exaggeration: float, t: Language
 ) -> list[Callable[[], Figure]]:
     return [
-        partial(_page, views, view, number, block, paper, scale, exaggeration, t)
+        partial(sheet_page, views, view, number, block, paper, scale, exaggeration, t)
         for number, view in enumerate(views, 1)
     ]
 
@@ -180,7 +180,7 @@ def _size(view: SectionView, scale: int, exaggeration: float) -> tuple[float, fl
     return 1000 * view.length / scale, 1000 * exaggeration * (high - low) / scale
 
 
-def _page(
+def sheet_page(
     views: Sequence[SectionView],
     view: SectionView,
     number: int,

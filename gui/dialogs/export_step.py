@@ -163,9 +163,10 @@ class ExportDialog(TaskDialog):
         self.say(self.tr("Writing, and reading back what was written…"))
         work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked())
         paths = list(step_paths(names, work[1], separate=work[3]))
-        self.begin(write_step_files, *work, on_done=self._written, on_stopped=partial(self._stopped, paths))
+        self.begin(write_step_files, *work, on_done=self.show_files, on_stopped=partial(self._stopped, paths))
 
-    def _written(self, files: list[StepFile]) -> None:
+    def show_files(self, files: list[StepFile]) -> None:
+        """Show what was written, and what reading it back gave."""
         self.files = files
         QSettings().setValue(_FOLDER, str(files[0].path.parent))
         found = {name: back for file in files for name, back in file.read_back.items()}
