@@ -83,15 +83,13 @@ def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
         if ended == _TOO_LONG:
             raise refused(
                 source,
-                message(
-                    "cad.reading-file-takes", "Reading the file takes longer than {seconds:.0f} s", seconds=seconds
-                ),
+                message("cad.reading-too-long", "Reading the file takes longer than {seconds:.0f} s", seconds=seconds),
             )
         if ended != 0 or not result.is_file():
             raise refused(
                 source,
                 message(
-                    "cad.file-damaged-reading",
+                    "cad.reading-crashed",
                     "The file is damaged: reading it ends OpenCASCADE (exit code {code})",
                     code=ended,
                 ),

@@ -33,7 +33,7 @@ def refused(source: Path, reason: Message) -> InputError:
     """Return the error of a file that cannot be read."""
     return InputError(
         reason,
-        message("cad.open-cad-program", "Open it in a CAD program and export the surface as STEP again."),
+        message("cad.export-step-from-cad", "Open it in a CAD program and export the surface as STEP again."),
         file=str(source),
     )
 
