@@ -25,7 +25,7 @@ class Centring(QObject):
         super().__init__(middle)
         self._middle, self._docks, self._layout = middle, docks, layout
         self.name: str | None = None
-        self._frame: _Frame | None = None
+        self.frame: _Frame | None = None
         for dock in docks.values():
             dock.installEventFilter(self)
 
@@ -52,7 +52,7 @@ class Centring(QObject):
         inner = dock.widget()
         frame = _Frame(dock.windowTitle(), inner)
         frame.left.connect(self.back)
-        self.name, self._frame = name, frame
+        self.name, self.frame = name, frame
         if name in BOTTOM:
             # The others below give their room, too; a click on their strip unfolds them.
             self._layout.fold()
@@ -67,10 +67,10 @@ class Centring(QObject):
 
     def back(self) -> None:
         """Put the panel back into its dock."""
-        if self.name is None or self._frame is None:
+        if self.name is None or self.frame is None:
             return
-        name, frame = self.name, self._frame
-        self.name = self._frame = None
+        name, frame = self.name, self.frame
+        self.name = self.frame = None
         self._layout.away.discard(name)
         dock = self._docks[name]
         dock.setWidget(frame.inner)

@@ -134,7 +134,7 @@ class Delivering(QObject):
         surfaces = self._surfaces()
         if surfaces:
             site, provenances = self._document.site_in_use(), dict(self._document.state.provenances)
-            results = [self._result(name, surface) for name, surface in surfaces.items()]
+            results = [self.result(name, surface) for name, surface in surfaces.items()]
             bodies = {name: body for name, body in self._document.made_bodies().items() if body.fitted is not None}
             dialog = ReportDialog(site, results, self._window, self._document.blocks(), self._folder(), bodies)
             dialog.written.connect(self.list_report)
@@ -143,7 +143,7 @@ class Delivering(QObject):
             )
             dialog.exec()
 
-    def _result(self, name: str, surface: HorizonFit) -> HorizonResult:
+    def result(self, name: str, surface: HorizonFit) -> HorizonResult:
         """Return what a report says of a surface; of a STEP file only if one was written of this very surface."""
         site, prediction = self._document.site_in_use(), self._document.prediction(name)
         change = self._document.comparison(name)
@@ -166,7 +166,7 @@ class Delivering(QObject):
     def list_report(self, path: object) -> None:
         """List a report in the project tree."""
         self._reports.append(str(path))
-        _LOG.info(message("log.wrote", "Wrote {file}", file=str(Path(str(path)).resolve())))
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(Path(str(path)).resolve())))
         self.reported.emit(self.tr("Wrote {names}.").format(names=Path(str(path)).resolve()))
         self._panels.tree.show_reports(self._reports)
 
@@ -191,7 +191,7 @@ class Delivering(QObject):
         surfaces = self._document.surfaces()
         if not surfaces:
             self.refused.emit(
-                GeofitError(message("window.no-surface-to-write", "There is no surface to write yet. Press Fit first."))
+                GeofitError(message("gui.no-surface-to-write", "There is no surface to write yet. Press Fit first."))
             )
         return surfaces
 
@@ -203,4 +203,4 @@ class Delivering(QObject):
         names = ", ".join(str(file.resolve()) for file in files)
         self.reported.emit(self.tr("Wrote {names}.").format(names=names))
         for file in files:
-            _LOG.info(message("log.wrote", "Wrote {file}", file=str(file.resolve())))
+            _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(file.resolve())))

@@ -78,6 +78,11 @@ class Morphing(QObject):
         self._later.stop()
         self._document.site_changed.disconnect(self._on_site)
 
+    @property
+    def idle(self) -> bool:
+        """Whether the frame that was asked for last is shown."""
+        return self._frame is None and not self._later.isActive()
+
     def run(self) -> None:
         """Join the bodies that are checked: first the preview, which tells what is never reached."""
         panel, state = self._panel, self._document.state
@@ -253,7 +258,7 @@ class Morphing(QObject):
 
     def _exported(self, done: MorphRun) -> None:
         folder = done.files[0].resolve().parent
-        _LOG.info(message("log.wrote", "Wrote {file}", file=str(folder)))
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(folder)))
         self.reported.emit(
             self.tr("Wrote {n} files to {folder}. {note}").format(
                 n=len(done.files), folder=folder, note=self._panel.note.text()

@@ -59,7 +59,7 @@ class Ordering(QObject):
     def check(self) -> None:
         """Compare the strata available, in the document's order."""
         # The model behind the patches is not needed there, and is much to send to another process.
-        surfaces = {name: one.with_(model=None) for name, one in self._strata().items()}
+        surfaces = {name: one.with_(model=None) for name, one in self.strata().items()}
         document = self._document
         pairs = comparable(tuple(surfaces), document.state.parts)
         if not pairs:
@@ -70,7 +70,7 @@ class Ordering(QObject):
             title, all_orders, surfaces, pairs, document.site.ground, on_done=self._found, in_process=True
         )
 
-    def _strata(self) -> dict[str, HorizonFit]:
+    def strata(self) -> dict[str, HorizonFit]:
         """Return the surfaces over the map; where the site states an order, those that it names (weathering cuts)."""
         document, stated = self._document, self._document.site.order
         over = over_map(document.surfaces())
@@ -90,7 +90,7 @@ class Ordering(QObject):
     def separate(self, minimum: float = 0.0) -> None:
         """Push the horizons apart where they cross; exact points stay."""
         parts = self._document.state.parts
-        strata = self._strata()
+        strata = self.strata()
         blocks = [name for name in strata if name in parts]
         if blocks:
             names = ", ".join(blocks)
@@ -100,13 +100,13 @@ class Ordering(QObject):
         if len(surfaces) < 2 or unready:
             text = (
                 message(
-                    "window.horizon-not-fitted-here",
+                    "gui.horizon-not-fitted-here",
                     "'{name}' was read from a file and not fitted here. Fit it again, then separate the horizons.",
                     name=Untranslated(unready[0]),
                 )
                 if unready
                 else message(
-                    "window.two-fitted-horizons-needed",
+                    "gui.two-horizons-needed",
                     "Two fitted horizons are needed to separate them. Press Fit all first.",
                 )
             )
@@ -129,7 +129,7 @@ class Ordering(QObject):
         for order in crossing:
             _LOG.warning(
                 plural_message(
-                    "log.horizons-cross",
+                    "gui.log-horizons-cross",
                     "{upper} and {lower} cross at {count} place",
                     "{upper} and {lower} cross at {count} places",
                     count=len(order.crossings),
@@ -139,7 +139,7 @@ class Ordering(QObject):
             )
         if crossing:
             text = plural_message(
-                "order.pairs-cross",
+                "gui.pairs-cross",
                 "{count} of {total} pairs of horizons crosses; see Checks.",
                 "{count} of {total} pairs of horizons cross; see Checks.",
                 count=len(crossing),
@@ -155,7 +155,7 @@ class Ordering(QObject):
             self.refused.emit(
                 DocumentError(
                     message(
-                        "window.surface-changed-meanwhile",
+                        "gui.surface-changed-meanwhile",
                         "A surface has changed since. Separate the horizons again.",
                     )
                 )

@@ -106,7 +106,7 @@ class _Job(QRunnable):
         """Run the function; whatever happens is raised in the window's thread."""
         try:
             if self._line.stop.is_set():
-                raise Cancelled(message("window.stopped-began", "Stopped before it began."))
+                raise Cancelled(message("gui.stopped-before-start", "Stopped before it began."))
             result = self._function(*self._args, progress=self._line.listen)
         except Cancelled as stop:
             outcome: tuple[str, object] = ("cancelled", stop)
@@ -115,7 +115,9 @@ class _Job(QRunnable):
         except Exception as error:  # the last frame of this thread: the window must hear of any failure
             _LOG.exception(
                 message(
-                    "log.task-failed", "{task} failed", task=self._title or getattr(self._function, "__name__", "task")
+                    "gui.log-task-failed",
+                    "{task} failed",
+                    task=self._title or getattr(self._function, "__name__", "task"),
                 )
             )
             outcome = ("failed", error)
@@ -148,7 +150,7 @@ class _Bridge(QObject):
 
 _NUMBERS = itertools.count()
 _RUNNING: dict[int, Task] = {}
-_HELPERS: list[_Helper] = []
+_HELPERS: list[Helper] = []
 _POOL: QThreadPool | None = None
 _BRIDGE: _Bridge | None = None
 
@@ -187,7 +189,7 @@ def run_in_process(parent: QObject, function: Callable[..., Any], *args: Any, **
 
 def warm(function: Callable[..., Any]) -> None:
     """Have a process ready before it is needed; it calls ``function``, which loads what will be needed there."""
-    _pool().start(lambda: _HELPERS.append(_Helper(function)))
+    _pool().start(lambda: _HELPERS.append(Helper(function)))
 
 
 def tasks() -> tuple[Task, ...]:
@@ -225,7 +227,7 @@ def _bridge() -> _Bridge:
     return _BRIDGE
 
 
-class _Helper:
+class Helper:
     """A process that runs one function after another; it has loaded OpenCASCADE when the second comes."""
 
     def __init__(self, first: Callable[..., Any] | None = None) -> None:
@@ -251,7 +253,7 @@ class _Helper:
         name, fraction, begun = "start", 0.0, False
         while True:
             if progress(name, fraction) is False:
-                raise Cancelled(message("window.stopped-caller", "Stopped by the caller."))
+                raise Cancelled(message("gui.stopped-by-caller", "Stopped by the caller."))
             if not self.pipe.poll(_LOOK):
                 continue
             try:
@@ -260,7 +262,7 @@ class _Helper:
                 self._process.join(5)
                 ended = GeofitError(
                     message(
-                        "window.process-work-ended-exit",
+                        "gui.worker-ended",
                         "The worker process ended unexpectedly (exit code {code}). Memory may have run out: "
                         "close other programs and try again.",
                         code=self._process.exitcode,
@@ -324,20 +326,20 @@ def _in_process(function: Callable[..., Any], args: tuple[Any, ...], progress: C
         helper.end()
         if helper.first is not None:
             # Another one gets ready meanwhile: to begin afresh takes seconds.
-            _HELPERS.append(_Helper(helper.first))
+            _HELPERS.append(Helper(helper.first))
         raise
     _HELPERS.append(helper)
     return result
 
 
-def _ready() -> tuple[_Helper, bool]:
+def _ready() -> tuple[Helper, bool]:
     """Return a process that has waited for work, or a new one; and whether it has waited."""
     while _HELPERS:
         helper = _HELPERS.pop()
         if helper.alive:
             return helper, True
         helper.end()
-    return _Helper(), False
+    return Helper(), False
 
 
 def _serve(pipe: Connection, first: Callable[..., Any] | None) -> None:

@@ -1,4 +1,4 @@
-"""What is given for a text table and is none: models, meshes, drawings, documents, told by how they begin."""
+"""Models, meshes, drawings and documents given for a text table: told by how they begin, and refused."""
 
 from __future__ import annotations
 
@@ -13,27 +13,27 @@ __all__ = ["require_table"]
 _HEAD = 4096
 _NUMBER = rb"\s+[-+.\deE]+"
 _KINDS = (
-    (message("import.a-step-model", "a STEP model"), rb"\s*ISO-10303-21\s*;"),
-    (message("import.an-iges-model", "an IGES model"), rb"([^\r\n]{72}[SGDP][ 0-9]{6}\d\s*[\r\n]+){2}"),
-    (message("import.an-opencascade-shape", "an OpenCASCADE shape"), rb"\s*(DBRep_DrawableShape|CASCADE Topology)"),
-    (message("import.an-stl-mesh", "an STL mesh"), rb"\s*solid\b[^\n]*\n\s*facet\s+normal"),
-    (message("import.a-ply-mesh", "a PLY mesh"), rb"ply\r?\n"),
+    (message("io.kind-step-model", "a STEP model"), rb"\s*ISO-10303-21\s*;"),
+    (message("io.kind-iges-model", "an IGES model"), rb"([^\r\n]{72}[SGDP][ 0-9]{6}\d\s*[\r\n]+){2}"),
+    (message("io.kind-opencascade-shape", "an OpenCASCADE shape"), rb"\s*(DBRep_DrawableShape|CASCADE Topology)"),
+    (message("io.kind-stl-mesh", "an STL mesh"), rb"\s*solid\b[^\n]*\n\s*facet\s+normal"),
+    (message("io.kind-ply-mesh", "a PLY mesh"), rb"ply\r?\n"),
     (
-        message("import.an-obj-mesh", "an OBJ mesh"),
+        message("io.kind-obj-mesh", "an OBJ mesh"),
         rb"(\s*(#|o |g |s |mtllib )[^\n]*\n)*\s*v" + 3 * _NUMBER + rb"\s*\n\s*v[nt]?\s",
     ),
-    (message("import.a-gocad-object", "a GOCAD object"), rb"\s*GOCAD\s+\w+\s+\d"),
-    (message("import.a-vtk-file", "a VTK file"), rb"# vtk DataFile"),
-    (message("import.a-dxf-drawing", "a DXF drawing"), rb"(\s*999\r?\n[^\n]*\n)*\s*0\r?\n\s*SECTION\s"),
-    (message("import.an-xml-document", "an XML or HTML document"), rb"\s*<(\?xml|!DOCTYPE|html|VTKFile|svg|kml)\b"),
-    (message("import.a-json-document", "a JSON document"), rb"\s*\{\s*\"[^\"]*\"\s*:"),
-    (message("import.a-pdf-document", "a PDF document"), rb"%PDF-"),
-    (message("import.a-picture", "a picture"), rb"\x89PNG|\xff\xd8\xff|GIF8|II\*\0|MM\0\*"),
+    (message("io.kind-gocad-object", "a GOCAD object"), rb"\s*GOCAD\s+\w+\s+\d"),
+    (message("io.kind-vtk-file", "a VTK file"), rb"# vtk DataFile"),
+    (message("io.kind-dxf-drawing", "a DXF drawing"), rb"(\s*999\r?\n[^\n]*\n)*\s*0\r?\n\s*SECTION\s"),
+    (message("io.kind-xml-document", "an XML or HTML document"), rb"\s*<(\?xml|!DOCTYPE|html|VTKFile|svg|kml)\b"),
+    (message("io.kind-json-document", "a JSON document"), rb"\s*\{\s*\"[^\"]*\"\s*:"),
+    (message("io.kind-pdf-document", "a PDF document"), rb"%PDF-"),
+    (message("io.kind-picture", "a picture"), rb"\x89PNG|\xff\xd8\xff|GIF8|II\*\0|MM\0\*"),
 )
 
 
 def require_table(data: bytes, name: str) -> None:
-    """Refuse a file that is a model, a mesh, a drawing or a document: its numbers are no table of points.
+    """Refuse a file that is a model, a mesh, a drawing or a document: its numbers are not a table of points.
 
     Raises
     ------
@@ -44,9 +44,9 @@ def require_table(data: bytes, name: str) -> None:
     for what, pattern in _KINDS:
         if re.match(pattern, head, re.IGNORECASE):
             raise InputError(
-                message("import.file-is-no-table", "The file is {what}, not a table", what=what),
+                message("io.file-not-table", "The file is {what}, not a table", what=what),
                 message(
-                    "import.give-table-of-points",
+                    "io.give-table",
                     "Give a table of points or holes (CSV, XLSX); geofit info reads models and meshes.",
                 ),
                 file=name,

@@ -17,6 +17,8 @@ from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, Outlier, PredictionResult, Suggestion, Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.view3d.item import Item
+from geofit.gui.view3d.view import SceneView
 from geofit.io.site_file import read_site
 
 SITE = Path(__file__).parent.parent / "sample_data" / "site.toml"
@@ -43,6 +45,11 @@ def failing(surface: HorizonFit) -> HorizonFit:
     """The same surface with a check that does not pass."""
     assert surface.accuracy is not None
     return surface.with_(accuracy=replace(surface.accuracy, sigma=0.61, passed=False))
+
+
+def item_of(view: SceneView, key: str) -> Item:
+    """Return what a visible layer has put into the scene."""
+    return next(item for layer, item in view.contents.stage.items() if layer.key == key)
 
 
 def cloud(n: int) -> HorizonFit:

@@ -116,7 +116,7 @@ def core_without_area(monkeypatch):
     def planted(plane):
         return 1.0, 1.0
 
-    monkeypatch.setattr(density, "_extents", planted)
+    monkeypatch.setattr(density, "extents", planted)
 
 
 def called_exact(monkeypatch):

@@ -61,10 +61,10 @@ def test_a_rejected_phrase_is_found_in_code_messages_and_pages(tmp_path, text):
 
 
 def test_every_phrase_has_an_example():
-    for pattern in prose._PHRASES:
+    for pattern in prose.COMPILED:
         assert sum(bool(pattern.search(text)) for text in EXAMPLES) == 1, pattern.pattern
 
 
 def test_the_glossary_of_the_project_retires_no_word_that_it_uses():
     text = (ROOT / "docs" / "glossary.md").read_text(encoding="utf-8")
-    assert not [pattern.pattern for pattern in prose._PHRASES if pattern.search(text)]
+    assert not [pattern.pattern for pattern in prose.COMPILED if pattern.search(text)]

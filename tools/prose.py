@@ -81,7 +81,7 @@ PHRASES = {
     r"\b(?:tells?|told|says|said) (?:whether|why|how many|that it)\b": "shows, states, reports",
     r"\bas it lay\b": "as it was",
 }
-_PHRASES = {re.compile(pattern): cure for pattern, cure in PHRASES.items()}
+COMPILED = {re.compile(pattern): cure for pattern, cure in PHRASES.items()}
 
 
 def names(root: Path = ROOT) -> Iterator[str]:
@@ -137,7 +137,7 @@ def _prose(source: str) -> Iterator[tuple[int, str]]:
 
 
 def _faults(text: str, where: str) -> Iterator[str]:
-    for pattern, cure in _PHRASES.items():
+    for pattern, cure in COMPILED.items():
         for found in pattern.finditer(text):
             yield f"{where}: '{' '.join(found[0].split())}'; write: {cure}"
 

@@ -64,12 +64,12 @@ class Draws:
 
 
 def simulate(body: BodyFit) -> BodyVolumes:
-    """Return the volumes of ``settings.realizations`` conditional simulations of a body."""
+    """Return the volumes of ``data.setting-realizations`` conditional simulations of a body."""
     return volumes_of(body.overview.volume, draws(body).changes.sum(axis=0))
 
 
 def draws(body: BodyFit) -> Draws:
-    """Return ``settings.realizations`` conditional simulations of a body."""
+    """Return ``data.setting-realizations`` conditional simulations of a body."""
     posterior = Posterior(body)
     rng = np.random.default_rng(body.settings.seed)
     nodes, spacing = _nodes(body)

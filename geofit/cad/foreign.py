@@ -2,38 +2,31 @@
 
 A damaged STEP, IGES or BREP file may end the process that reads it (a segmentation fault), eat all memory, or never
 come to an end. So a child reads it, ``python -m geofit.cad.foreign``, under limits of time and memory, and leaves plain
-arrays: whatever becomes of it, the caller gets surfaces or an :class:`~geofit.data.errors.InputError`.
-
-The result is a ``.npz`` without pickled objects: arrays ``a0``, ``a1``, ... and ``meta``, JSON text that refers to
-them by number.
+arrays (:mod:`geofit.cad.handover`): whatever becomes of it, the caller gets surfaces or an
+:class:`~geofit.data.errors.InputError`.
 """
 
 from __future__ import annotations
 
 import importlib
-import json
 import os
 import shutil
 import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from os import PathLike
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from geofit.cad.handover import load_surfaces, refused, save_reason, save_surfaces
 from geofit.cad.imported import existing
 from geofit.data.errors import GeofitError, InputError, MissingDependencyError
 from geofit.data.legible import legible
-from geofit.data.messages import Message, Untranslated, message
-from geofit.implicit.mesh import TriangleMesh
-from geofit.splines.patch import Patch
-from geofit.surfaces.patch_surface import PatchSurface
-from geofit.surfaces.trimmed import TrimmedSurface
+from geofit.data.messages import message
 
 __all__ = ["read_in_child"]
 
@@ -88,30 +81,20 @@ def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
         except subprocess.TimeoutExpired:
             ended = _TOO_LONG
         if ended == _TOO_LONG:
-            raise _refused(
+            raise refused(
                 source,
-                message(
-                    "cad.reading-file-takes", "Reading the file takes longer than {seconds:.0f} s", seconds=seconds
-                ),
+                message("cad.reading-too-long", "Reading the file takes longer than {seconds:.0f} s", seconds=seconds),
             )
         if ended != 0 or not result.is_file():
-            raise _refused(
+            raise refused(
                 source,
                 message(
-                    "cad.file-damaged-reading",
+                    "cad.reading-crashed",
                     "The file is damaged: reading it ends OpenCASCADE (exit code {code})",
                     code=ended,
                 ),
             )
-        return _load(result, source)
-
-
-def _refused(source: Path, reason: Message) -> InputError:
-    return InputError(
-        reason,
-        message("cad.open-cad-program", "Open it in a CAD program and export the surface as STEP again."),
-        file=str(source),
-    )
+        return load_surfaces(result, source)
 
 
 def child(arguments: Sequence[str]) -> int:
@@ -121,18 +104,17 @@ def child(arguments: Sequence[str]) -> int:
     module, function = READERS[reader]
     try:
         source = _readable(Path(path), Path(result).parent)
-        _save(Path(result), getattr(importlib.import_module(module), function)(source))
+        save_surfaces(Path(result), getattr(importlib.import_module(module), function)(source))
     except InputError as error:
-        _write(Path(result), {"reason": _stored(error.reason), "remedy": _stored(error.remedy)}, [])
+        save_reason(Path(result), reason=error.reason, remedy=error.remedy)
     except GeofitError as error:
         key = "missing" if isinstance(error, MissingDependencyError) else "reason"
-        _write(Path(result), {key: _stored(error.message)}, [])
+        save_reason(Path(result), **{key: error.message})
     except MemoryError:
-        reason = message("cad.too-much-memory", "Reading the file needs too much memory")
-        _write(Path(result), {"reason": _stored(reason)}, [])
+        save_reason(Path(result), reason=message("cad.too-much-memory", "Reading the file needs too much memory"))
     except Exception as error:  # whatever OpenCASCADE raises about damaged geometry
         reason = message("cad.damaged", "The file is damaged ({kind})", kind=type(error).__name__)
-        _write(Path(result), {"reason": _stored(reason)}, [])
+        save_reason(Path(result), reason=reason)
     return 0
 
 
@@ -155,106 +137,6 @@ def _limit(seconds: int, memory: int) -> None:
         soft, hard = resource.getrlimit(kind)
         limits = [most if limit == resource.RLIM_INFINITY else min(most, limit) for limit in (soft, hard)]
         resource.setrlimit(kind, (limits[0], limits[1]))
-
-
-def _save(target: Path, surfaces: Mapping[str, PatchSurface | TriangleMesh]) -> None:
-    arrays: list[NDArray[Any]] = []
-
-    def kept(array: Any) -> int | None:
-        """Return the number of an array in the file."""
-        if array is None:
-            return None
-        arrays.append(np.asarray(array, dtype=np.float64))
-        return len(arrays) - 1
-
-    found: list[dict[str, Any]] = []
-    for name, surface in surfaces.items():
-        if isinstance(surface, TriangleMesh):
-            found.append({"name": name, "vertices": kept(surface.vertices), "triangles": kept(surface.triangles)})
-            continue
-        patches = [
-            {
-                "name": patch.name,
-                "degree": list(patch.degree),
-                **{key: kept(getattr(patch, key)) for key in ("knots_u", "knots_v", "control", "weights")},
-            }
-            for patch in surface.patches
-        ]
-        loops = [[kept(loop) for loop in one] for one in surface.loops] if any(surface.loops) else None
-        found.append(
-            {"name": name, "origin": kept(surface.origin), "outline": kept(surface.outline), "patches": patches}
-            | {"loops": loops}
-        )
-    if not all(np.isfinite(array).all() for array in arrays):
-        reason = message("cad.not-finite", "The file has coordinates that are not finite numbers")
-        _write(target, {"reason": _stored(reason)}, [])
-        return
-    _write(target, {"surfaces": found}, arrays)
-
-
-def _stored(value: Any) -> Any:
-    """Return what JSON can hold of a message and its parameters."""
-    if isinstance(value, Message):
-        params = {name: _stored(param) for name, param in value.params.items()}
-        return {"code": value.code, "template": value.template, "params": params, "plural": value.plural}
-    if isinstance(value, tuple):
-        return [_stored(item) for item in value]
-    if isinstance(value, Untranslated):
-        return {"untranslated": str(value)}
-    return value if isinstance(value, (str, int, float)) else str(value)
-
-
-def _restored(value: Any) -> Any:
-    """Return what :func:`_stored` made JSON of."""
-    if isinstance(value, list):
-        return tuple(_restored(item) for item in value)
-    if isinstance(value, dict):
-        if "untranslated" in value:
-            return Untranslated(value["untranslated"])
-        params = {name: _restored(param) for name, param in value["params"].items()}
-        return Message(value["code"], value["template"], params, value["plural"])
-    return value
-
-
-def _write(target: Path, meta: Mapping[str, Any], arrays: Sequence[NDArray[Any]]) -> None:
-    text = np.frombuffer(json.dumps(meta).encode(), dtype=np.uint8)
-    with target.open("wb") as stream:
-        np.savez(stream, allow_pickle=False, meta=text, **{f"a{k}": array for k, array in enumerate(arrays)})
-
-
-def _load(result: Path, source: Path) -> dict[str, Any]:
-    with np.load(result, allow_pickle=False) as file:
-        meta = json.loads(file["meta"].tobytes())
-        arrays = {name: file[name] for name in file.files if name != "meta"}
-    if "missing" in meta:
-        raise MissingDependencyError(_restored(meta["missing"]))
-    if "reason" in meta:
-        if "remedy" in meta:
-            raise InputError(_restored(meta["reason"]), _restored(meta["remedy"]), file=str(source))
-        raise _refused(source, _restored(meta["reason"]))
-
-    def array(number: int | None) -> Any:
-        return None if number is None else arrays[f"a{number}"]
-
-    surfaces: dict[str, Any] = {}
-    for one in meta["surfaces"]:
-        if "vertices" in one:
-            surfaces[one["name"]] = TriangleMesh(array(one["vertices"]), array(one["triangles"]).astype(np.int64))
-            continue
-        patches = tuple(
-            Patch(
-                patch["name"],
-                (patch["degree"][0], patch["degree"][1]),
-                *(array(patch[key]) for key in ("knots_u", "knots_v", "control", "weights")),
-            )
-            for patch in one["patches"]
-        )
-        surface = PatchSurface(patches, array(one["origin"]), one["name"], array(one["outline"]))
-        if one["loops"] is not None:
-            loops = tuple(tuple(array(loop) for loop in loops) for loops in one["loops"])
-            surface = TrimmedSurface(patches, surface.origin, surface.name, surface.outline, trim_loops=loops)
-        surfaces[surface.name] = surface
-    return surfaces
 
 
 if __name__ == "__main__":

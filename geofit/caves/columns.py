@@ -24,7 +24,7 @@ __all__ = ["Columns", "columns"]
 Floats = NDArray[np.float64]
 
 #: Nodes of a slab at most: four arrays of this size are held.
-_NODES = 8_000_000
+NODES = 8_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,11 +62,11 @@ def columns(body: PassageBody, spacing: float) -> Columns:
     origin = low - 1.5 * spacing
     nx, ny, nz = (np.ceil((high - origin) / spacing) + 2).astype(int).tolist()
     # Slabs overlap by two layers: a cell needs its neighbours.
-    thick = max(1, _NODES // (ny * nz) - 2)
+    thick = max(1, NODES // (ny * nz) - 2)
     found: list[tuple[Floats, ...]] = []
     for first in range(1, nx - 1, thick):
         # Tall and wide caves: a slab of one layer is cut along y as well.
-        wide = max(1, _NODES // (3 * nz) - 2)
+        wide = max(1, NODES // (3 * nz) - 2)
         for side in range(1, ny - 1, wide):
             start = origin + spacing * np.array([first - 1.0, side - 1.0, 0.0])
             shape = (min(thick, nx - 1 - first) + 2, min(wide, ny - 1 - side) + 2, nz)

@@ -52,7 +52,7 @@ class Message:
     Parameters
     ----------
     code : str
-        Stable identifier, "room.what": "points.not-finite".
+        Stable identifier, "room.subject-predicate": "data.points-not-finite" (docs/architecture.md).
     template : str
         English text with ``str.format`` fields; it is the key of the translations.
     params : mapping of str to object
@@ -112,9 +112,9 @@ def message(code: str, template: str, /, **params: Any) -> Message:
 
     Examples
     --------
-    >>> found = message("points.selected", "{count} of {total} points", count=3, total=40)
+    >>> found = message("data.points-selected", "{count} of {total} points", count=3, total=40)
     >>> str(found), found.code, found.params["count"]
-    ('3 of 40 points', 'points.selected', 3)
+    ('3 of 40 points', 'data.points-selected', 3)
     """
     return Message(code, template, _kept(params))
 
@@ -124,7 +124,7 @@ def plural_message(code: str, singular: str, plural: str, /, *, count: int, **pa
 
     Examples
     --------
-    >>> [str(plural_message("points.given", "{count} point", "{count} points", count=n)) for n in (1, 2)]
+    >>> [str(plural_message("data.points-given", "{count} point", "{count} points", count=n)) for n in (1, 2)]
     ['1 point', '2 points']
     """
     return Message(code, singular, {"count": count, **_kept(params)}, plural)

@@ -54,7 +54,7 @@ def fit_horizon(
     Raises
     ------
     ArgumentError
-        If ``points`` is no set of points, or ``settings`` are none.
+        If ``points`` or ``settings`` are of another type.
     PointsError
         If fewer than three points are given.
     FitError

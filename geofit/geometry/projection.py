@@ -70,11 +70,11 @@ def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
     found = foot_points_over_plan(patches, target)
     rest = np.flatnonzero(~found.converged)
     if len(rest):
-        found.fill(rest, _searched(patches, target[rest]))
+        found.fill(rest, foot_points_by_search(patches, target[rest]))
     return found
 
 
-def _searched(patches: Sequence[Patch], target: Floats) -> Projection:
+def foot_points_by_search(patches: Sequence[Patch], target: Floats) -> Projection:
     """Find the nearest places by walks from all places that may lead to them."""
     surface = Patches.of(patches).prepared(_prepare)
     feet = Place.join([_nearest(surface, target[k : k + CHUNK]) for k in range(0, max(len(target), 1), CHUNK)])

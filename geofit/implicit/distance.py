@@ -37,7 +37,7 @@ class _Distance:
 def _positive(radius: float) -> float:
     if not (np.isfinite(radius) and radius > 0):
         raise SettingsError(
-            message("implicit.radius-positive-length", "the radius {radius} must be a positive length", radius=radius)
+            message("implicit.radius-not-positive", "the radius {radius} must be a positive length", radius=radius)
         )
     return float(radius)
 
@@ -48,7 +48,7 @@ def _unit(direction: Floats) -> Floats:
     if vector.shape != (3,) or not length > 0:
         raise SettingsError(
             message(
-                "implicit.direction-not-zero", "the direction {direction} must not be zero", direction=vector.tolist()
+                "implicit.direction-is-zero", "the direction {direction} must not be zero", direction=vector.tolist()
             )
         )
     return np.asarray(vector / length)
@@ -198,18 +198,22 @@ class CurveTube(_Distance):
         object.__setattr__(self, "radius", _positive(self.radius))
 
     @cached_property
-    def _spline(self) -> tuple[CubicSpline, CubicSpline, CubicSpline]:
+    def curve(self) -> CubicSpline:
+        """The centre line, by the length of the chords from its first point."""
         from scipy.interpolate import CubicSpline
 
         chord = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
-        curve = CubicSpline(np.append(0.0, np.cumsum(chord)), self.points, bc_type="natural")
-        return curve, curve.derivative(), curve.derivative(2)
+        return CubicSpline(np.append(0.0, np.cumsum(chord)), self.points, bc_type="natural")
+
+    @cached_property
+    def _derivatives(self) -> tuple[CubicSpline, CubicSpline]:
+        return self.curve.derivative(), self.curve.derivative(2)
 
     @cached_property
     def _seeds(self) -> tuple[Floats, KDTree]:
         from scipy.spatial import KDTree
 
-        curve = self._spline[0]
+        curve = self.curve
         inner = curve.x[:-1, None] + np.diff(curve.x)[:, None] * np.arange(SEEDS) / SEEDS
         s = np.append(inner.ravel(), curve.x[-1])
         return s, KDTree(curve(s))
@@ -223,7 +227,7 @@ class CurveTube(_Distance):
         return _directions(xyz - self._foot(xyz))
 
     def _foot(self, xyz: Floats) -> Floats:
-        curve, first, second = self._spline
+        curve, (first, second) = self.curve, self._derivatives
         seeds, tree = self._seeds
         s = seeds[tree.query(xyz)[1]]
         step = np.diff(seeds).max()
@@ -267,7 +271,7 @@ class RoundCones(_Distance):
         if not (np.isfinite(radii) & (radii > 0)).all():
             raise SettingsError(
                 message(
-                    "implicit.smallest-radius-positive",
+                    "implicit.radius-not-positive-ball",
                     "the smallest radius, {radius}, must be positive",
                     radius=float(np.min(radii)),
                 )
@@ -299,7 +303,7 @@ def _centre_line(points: Floats) -> Floats:
     if line.ndim != 2 or line.shape[1] != 3 or len(line) < 2 or not np.isfinite(line).all():
         raise SettingsError(
             message(
-                "implicit.centre-line-points",
+                "implicit.centre-line-too-short",
                 "a centre line needs two or more points x, y, z, not an array of shape {shape}",
                 shape=line.shape,
             )
@@ -308,7 +312,7 @@ def _centre_line(points: Floats) -> Floats:
     if len(same):
         raise SettingsError(
             message(
-                "implicit.points-centre-line",
+                "implicit.centre-line-points-coincide",
                 "points {first} and {second} of the centre line coincide: leave one out",
                 first=int(same[0]),
                 second=int(same[0]) + 1,

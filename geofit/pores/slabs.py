@@ -21,7 +21,7 @@ __all__ = ["VOXELS", "Slices", "distance_slabs", "packed_distances"]
 #: Voxels whose distances are held at a time.
 VOXELS = 100_000_000
 #: Slices on both sides of the first slab.
-_HALO = 16
+HALO = 16
 
 
 class Slices(Protocol):
@@ -70,7 +70,7 @@ def distance_slabs(
     ``reach`` slices on both sides of a slab (fewer at the ends of the volume) are part of the distances, and exact too.
     """
     n0, n1, n2 = volume.shape
-    halo, first = _HALO, 0
+    halo, first = HALO, 0
     whole = n0 * n1 * n2 <= VOXELS
     while first < n0:
         tell(progress, "distance", 0.2 * first / n0)

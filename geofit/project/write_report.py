@@ -60,7 +60,7 @@ def write_report(
     Raises
     ------
     ArgumentError
-        If what is given is no fit.
+        If what is given is not a fit.
     SettingsError
         If a form is unknown.
     InputError
@@ -89,7 +89,7 @@ def write_report(
         if form not in get_args(Form):
             raise SettingsError(
                 message(
-                    "report.form-unknown",
+                    "project.report-form-unknown",
                     "A report as '{form}' is unknown; choose {names}.",
                     form=Untranslated(form),
                     names=", ".join(get_args(Form)),
@@ -97,8 +97,8 @@ def write_report(
             )
     if not given:
         raise InputError(
-            message("run.no-fit", "There is no fit to report"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("project.nothing-to-report", "There is no fit to report"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(folder),
         )
     place = site or Site(name=", ".join(fit.name for fit in given), horizons={fit.name: fit.points for fit in given})

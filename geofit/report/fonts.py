@@ -22,19 +22,19 @@ CHINESE = (
     "SimHei", "SimSun", "Droid Sans Fallback", "Arial Unicode MS", "Noto Serif CJK SC", "AR PL UMing CN",
 )  # fmt: skip
 _INSTALL = message(
-    "report.install-debian-ubuntu-apt",
+    "report.install-font",
     "Install one (Debian and Ubuntu: apt-get install fonts-noto-cjk; Windows has Microsoft YaHei among its optional "
     "features) and run again.",
 )
 NO_CHINESE_FONT = message(
-    "report.chinese-report-needs-font",
+    "report.chinese-font-missing",
     "A Chinese report needs a font with Chinese characters, and this machine has none. {install}",
     install=_INSTALL,
 )
 
 
 @lru_cache(maxsize=1)
-def _chinese() -> str | None:
+def chinese_family() -> str | None:
     from matplotlib import font_manager
 
     # The list is kept in matplotlib's cache; a font installed since then is found among the files.
@@ -54,17 +54,17 @@ def _chinese() -> str | None:
 
 def families() -> list[str]:
     """Return the font families for matplotlib, in the order in which a character is looked for: as in the PDF."""
-    chinese = _chinese()
+    chinese = chinese_family()
     return [*([chinese] if chinese else []), "DejaVu Sans"]
 
 
 def missing_font(texts: Iterable[str]) -> Message | None:
     """Say what to install if a text has Chinese characters and no font has them; None if all is well."""
     wide = next((t for t in texts if any(unicodedata.east_asian_width(c) in "WF" for c in t)), None)
-    if wide is None or _chinese() is not None:
+    if wide is None or chinese_family() is not None:
         return None
     return message(
-        "report.no-font-machine-characters",
+        "report.characters-missing",
         "No font on this machine has the characters of '{text}': pictures and PDF show boxes in their place. {install} "
         "Tables and text of the HTML and the JSON are complete.",
         text=wide,
@@ -102,7 +102,7 @@ def pdf_fonts(chinese: bool) -> PdfFonts:
     """
     signs, signs_bold = _shipped("DejaVu Sans", "normal"), _shipped("DejaVu Sans", "bold")
     mono = _shipped("DejaVu Sans Mono", "normal")
-    family = _chinese()
+    family = chinese_family()
     if family is None:
         if chinese:
             raise MissingDependencyError(NO_CHINESE_FONT)

@@ -34,7 +34,7 @@ def plain_text(cell: Cell) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 1] + "…"
 
 
-class _Laid:
+class LaidTable:
     """A table whose cells are broken into lines: widths of the columns, lines and height of each row."""
 
     def __init__(self, table: Table, room: float, type_: Typesetter) -> None:
@@ -58,7 +58,7 @@ class _Laid:
 
 def table_height(table: Table, room: float, type_: Typesetter) -> float:
     """Return the height of a table over a width, mm."""
-    laid = _Laid(table, room, type_)
+    laid = LaidTable(table, room, type_)
     return laid.head_height + sum(laid.heights)
 
 
@@ -82,9 +82,9 @@ def draw_table(
     page : float
         Height of an empty page, mm.
     """
-    laid = _Laid(table, pdf.epw, type_)
+    laid = LaidTable(table, pdf.epw, type_)
     first = 0
-    for last in _parts(laid, bottom() - pdf.y, page):
+    for last in page_ends(laid, bottom() - pdf.y, page):
         if last == 0 or first > 0:
             turn()
         if last > first or not laid.rows:
@@ -92,7 +92,7 @@ def draw_table(
         first = last
 
 
-def _parts(laid: _Laid, room: float, page: float) -> list[int]:
+def page_ends(laid: LaidTable, room: float, page: float) -> list[int]:
     """Return the rows at which pages end; a leading 0 turns the page before the first row."""
     total = laid.head_height + sum(laid.heights)
     if total <= room:
@@ -111,7 +111,7 @@ def _parts(laid: _Laid, room: float, page: float) -> list[int]:
     return ends or [0]
 
 
-def _fitting(laid: _Laid, first: int, room: float) -> int:
+def _fitting(laid: LaidTable, first: int, room: float) -> int:
     height, last = laid.head_height, first
     while last < len(laid.rows) and height + laid.heights[last] <= room:
         height += laid.heights[last]
@@ -119,7 +119,7 @@ def _fitting(laid: _Laid, first: int, room: float) -> int:
     return last
 
 
-def _draw_part(pdf: FPDF, type_: Typesetter, laid: _Laid, first: int, last: int) -> None:
+def _draw_part(pdf: FPDF, type_: Typesetter, laid: LaidTable, first: int, last: int) -> None:
     x, y = pdf.l_margin, pdf.y
     pdf.set_draw_color(*rgb(RULE))
     pdf.set_line_width(0.15)
@@ -143,7 +143,7 @@ def _draw_part(pdf: FPDF, type_: Typesetter, laid: _Laid, first: int, last: int)
 
 
 def _draw_row(
-    type_: Typesetter, x: float, y: float, laid: _Laid, row: Sequence[Sequence[str]], pens: Sequence[Pen],
+    type_: Typesetter, x: float, y: float, laid: LaidTable, row: Sequence[Sequence[str]], pens: Sequence[Pen],
     height: float, *, foot: bool = False,
 ) -> None:  # fmt: skip
     for column, lines, wide, pen in zip(laid.table.columns, row, laid.widths, pens, strict=True):

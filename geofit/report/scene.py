@@ -37,7 +37,7 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 NO_OPENGL = message(
-    "report.3d-picture-missing-machine",
+    "report.picture-without-opengl",
     "The 3D picture is missing: this machine has no OpenGL library. "
     "Install one (Debian and Ubuntu: apt-get install libgl1 libegl1 libxrender1) and run again.",
 )
@@ -77,10 +77,8 @@ class Scene:
     def caption(self) -> Message:
         """Direction and scale in words."""
         if self.raised == 1:
-            return message("report.seen-south-west-true", "Seen from the south-west, true scale.")
-        return message(
-            "report.seen-south-west-heights", "Seen from the south-west, heights × {times}.", times=self.raised
-        )
+            return message("report.seen-true-scale", "Seen from the south-west, true scale.")
+        return message("report.seen-exaggerated", "Seen from the south-west, heights × {times}.", times=self.raised)
 
 
 def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -> Scene:
@@ -248,14 +246,14 @@ def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
 
 def require_opengl() -> None:
     """Raise a :class:`MissingDependencyError` if there is no OpenGL library; choose EGL where there is no screen."""
-    if not _opengl():
+    if not opengl_found():
         raise MissingDependencyError(NO_OPENGL)
     if sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
         # VTK would try the X server first, and complain.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
 
 
-def _opengl() -> bool:
+def opengl_found() -> bool:
     """Whether VTK will find a way to draw: it aborts the process where it does not."""
     if not sys.platform.startswith("linux"):
         return True

@@ -163,9 +163,10 @@ class ExportDialog(TaskDialog):
         self.say(self.tr("Writing, and reading back what was written…"))
         work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked())
         paths = list(step_paths(names, work[1], separate=work[3]))
-        self.begin(write_step_files, *work, on_done=self._written, on_stopped=partial(self._stopped, paths))
+        self.begin(write_step_files, *work, on_done=self.show_files, on_stopped=partial(self._stopped, paths))
 
-    def _written(self, files: list[StepFile]) -> None:
+    def show_files(self, files: list[StepFile]) -> None:
+        """Show what was written, and what reading it back gave."""
         self.files = files
         QSettings().setValue(_FOLDER, str(files[0].path.parent))
         found = {name: back for file in files for name, back in file.read_back.items()}
@@ -190,7 +191,7 @@ class ExportDialog(TaskDialog):
         first = Check(
             "σ", None if sigma is None else back.sigma < sigma.epsilon, back.sigma, sigma.epsilon if sigma else np.nan,
             "m", message(
-                "check.sigma-in-file", "{faces} faces; σ of all points from the surface in the file", faces=back.faces
+                "gui.sigma-in-file", "{faces} faces; σ of all points from the surface in the file", faces=back.faces
             ),
         )  # fmt: skip
         return [first, *back.checks]

@@ -31,24 +31,24 @@ class PreferencesDialog(QDialog):
             self._language.addItem(text, code)
         self._theme.setCurrentIndex(self._theme.findData(preferences.theme))
         self._language.setCurrentIndex(self._language.findData(preferences.language))
-        self._mouse, self._mouse_words = QComboBox(), QLabel()
+        self.mouse_box, self._mouse_words = QComboBox(), QLabel()
         for scheme, text in (
             ("geofit", self.tr("geofit")),
             ("cad", self.tr("CAD")),
             ("leapfrog", self.tr("Leapfrog")),
             ("paraview", self.tr("ParaView")),
         ):
-            self._mouse.addItem(text, scheme)
-        self._mouse.setCurrentIndex(self._mouse.findData(preferences.mouse))
+            self.mouse_box.addItem(text, scheme)
+        self.mouse_box.setCurrentIndex(self.mouse_box.findData(preferences.mouse))
         self._mouse_words.setWordWrap(True)
-        self._mouse.currentIndexChanged.connect(self._explain)
+        self.mouse_box.currentIndexChanged.connect(self._explain)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
         form.addRow(self.tr("&Theme"), self._theme)
         form.addRow(self.tr("&Language"), self._language)
-        form.addRow(self.tr("&Mouse in 3D"), self._mouse)
+        form.addRow(self.tr("&Mouse in 3D"), self.mouse_box)
         form.addRow("", self._mouse_words)
         self._explain()
         if missing_chinese():
@@ -75,7 +75,7 @@ class PreferencesDialog(QDialog):
     @property
     def mouse(self) -> Scheme:
         """The chosen scheme of the mouse."""
-        return cast("Scheme", self._mouse.currentData())
+        return cast("Scheme", self.mouse_box.currentData())
 
     @property
     def theme(self) -> str:

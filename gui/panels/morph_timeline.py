@@ -68,7 +68,7 @@ class MorphTimeline(QWidget):
         font.setPointSizeF(font.pointSizeF() * 0.88)
         painter.setFont(font)
         text, dim = palette.color(QPalette.ColorRole.WindowText), palette.color(QPalette.ColorRole.Mid)
-        plot, rail = self._plot(), ABOVE / 2
+        plot, rail = self.plot(), ABOVE / 2
         blue, red, amber = (readable(colour, palette) for colour in (CORE, FAIL, WARNING))
         painter.setPen(QPen(dim, 1))
         painter.drawRect(plot)
@@ -130,15 +130,16 @@ class MorphTimeline(QWidget):
         self.moved.emit(self.tau)
         self.rested.emit(self.tau)
 
-    def _plot(self) -> QRectF:
+    def plot(self) -> QRectF:
+        """Return where tau 0 to 1 runs from the left to the right edge, and the curves are drawn, logical pixels."""
         return QRectF(LEFT, ABOVE, max(self.width() - LEFT - RIGHT, 10.0), max(self.height() - ABOVE - BELOW, 10.0))
 
     def _x(self, tau: float) -> float:
-        plot = self._plot()
+        plot = self.plot()
         return plot.left() + tau * plot.width()
 
     def _drag(self, x: float) -> None:
-        plot = self._plot()
+        plot = self.plot()
         self.put((x - plot.left()) / plot.width())
         self.moved.emit(self.tau)
 
@@ -148,7 +149,7 @@ class MorphTimeline(QWidget):
         """Draw a curve with its least and largest number at its side of the plot."""
         if not len(values):
             return
-        plot = self._plot().adjusted(0, 6, 0, -6)
+        plot = self.plot().adjusted(0, 6, 0, -6)
         low, high = float(values.min()), float(values.max())
         room = (high - low) or 1.0
         y = plot.bottom() - (values - low) / room * plot.height()

@@ -44,12 +44,12 @@ class SceneList(QWidget):
         self.tree.setAccessibleName(self.tr("What the scene shows"))
         self.tree.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
         self.tree.setMinimumHeight(120)
-        self._place = Placeholder(self.tree)
+        self.placeholder = Placeholder(self.tree)
         self.form = _LayerForm(layers)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(8, 8, 8, 8)
         layout.setSpacing(6)
-        layout.addLayout(self._place, 1)
+        layout.addLayout(self.placeholder, 1)
         layout.addWidget(self.form)
         self.setMinimumWidth(200)
         self.tree.itemChanged.connect(self._checked)
@@ -71,6 +71,10 @@ class SceneList(QWidget):
         """Choose a layer."""
         if key in self._rows:
             self.tree.setCurrentItem(self._rows[key])
+
+    def row(self, key: str) -> QTreeWidgetItem:
+        """Return the row of a layer; KeyError where the list has none of this key."""
+        return self._rows[key]
 
     def menu_for(self, key: str) -> QMenu:
         """Return the menu of a layer."""
@@ -143,9 +147,9 @@ class SceneList(QWidget):
 
     def _choose(self) -> None:
         if self._rows:
-            self._place.reveal()
+            self.placeholder.reveal()
         else:
-            self._place.say(self.tr("Nothing to show yet: open or import a site."))
+            self.placeholder.say(self.tr("Nothing to show yet: open or import a site."))
         key = self.chosen()
         self.form.show_layer(self.layers[key] if key is not None else None)
         if key is not None:

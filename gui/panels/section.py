@@ -92,9 +92,9 @@ class SectionPanel(QWidget):
         column.addWidget(self.state)
         self.pages = Placeholder(content)
         self.setLayout(self.pages)
-        self._data: SectionData | None = None
+        self.data: SectionData | None = None
         self._surfaces: Mapping[str, HorizonFit] = {}
-        self._meshes: Meshes = {}
+        self.meshes: Meshes = {}
         self._bodies: tuple[SectionBody, ...] = ()
         self._task: Task | None = None
         self._again = self._due = False
@@ -126,18 +126,18 @@ class SectionPanel(QWidget):
     ) -> None:
         """Show a section of a site; without a line, one through its middle. Nothing is emitted."""
         if site is None:
-            self._data = None
+            self.data = None
             self.pages.say(self.tr("No site open: open one to cut a section through it."))
             return
-        new = self._data is None or self._data.site is not site
+        new = self.data is None or self.data.site is not site
         box = extent(site, surfaces)
         curtain = Curtain.straight(90.0, 0.0, box) if line is None else Curtain.along(line)
-        self._moved &= self._data is not None and np.array_equal(curtain.line, self._data.curtain.line)
+        self._moved &= self.data is not None and np.array_equal(curtain.line, self.data.curtain.line)
         self._surfaces = surfaces
-        for gone in self._meshes.keys() - surfaces.keys():
-            del self._meshes[gone]
-        kept = {} if self._data is None else {n: t for n, t in self._data.traces.items() if n in surfaces}
-        self._data = SectionData(site, curtain, thickness, kept, uncertainty or {}, faded)
+        for gone in self.meshes.keys() - surfaces.keys():
+            del self.meshes[gone]
+        kept = {} if self.data is None else {n: t for n, t in self.data.traces.items() if n in surfaces}
+        self.data = SectionData(site, curtain, thickness, kept, uncertainty or {}, faded)
         if new:
             self.along.clear()
             self.along.addItem(self.tr("Own line"))
@@ -149,7 +149,7 @@ class SectionPanel(QWidget):
     def show_bodies(self, bodies: Sequence[SectionBody]) -> None:
         """Cut other bodies, too."""
         self._bodies = tuple(bodies)
-        if self._data is not None:
+        if self.data is not None:
             self.canvas.repaint_figure()
 
     def paintEvent(self, event: QPaintEvent) -> None:  # noqa: N802
@@ -160,9 +160,14 @@ class SectionPanel(QWidget):
             QTimer.singleShot(0, self, self._cut)
 
     @property
+    def idle(self) -> bool:
+        """Whether no cut is under way, and none about to begin."""
+        return self._task is None and not self._pause.isActive()
+
+    @property
     def line(self) -> object:
         """The line that is shown, (k, 2); None without a site."""
-        return None if self._data is None else self._data.curtain.line
+        return None if self.data is None else self.data.curtain.line
 
     def _show_inputs(self, curtain: Curtain, thickness: float, box: np.ndarray) -> None:
         values = (
@@ -172,28 +177,28 @@ class SectionPanel(QWidget):
             spin.blockSignals(True)
             spin.setValue(value)
             spin.blockSignals(False)
-        assert self._data is not None
+        assert self.data is not None
         own = [
-            s.line.shape == curtain.line.shape and np.allclose(s.line, curtain.line) for s in self._data.site.sections
+            s.line.shape == curtain.line.shape and np.allclose(s.line, curtain.line) for s in self.data.site.sections
         ]
         self.along.setCurrentIndex(own.index(True) + 1 if True in own else 0)
 
     def _edit_line(self) -> None:
-        if self._data is None:
+        if self.data is None:
             return
-        box = extent(self._data.site, self._surfaces)
+        box = extent(self.data.site, self._surfaces)
         self._take(Curtain.straight(self.azimuth.value(), self.position.value(), box))
         self.along.setCurrentIndex(0)
 
     def _choose_section(self, index: int) -> None:
-        if self._data is None or index == 0:
+        if self.data is None or index == 0:
             return
-        curtain = Curtain.along(self._data.site.sections[index - 1].line)
-        self._show_inputs(curtain, self._data.thickness, extent(self._data.site, self._surfaces))
+        curtain = Curtain.along(self.data.site.sections[index - 1].line)
+        self._show_inputs(curtain, self.data.thickness, extent(self.data.site, self._surfaces))
         self._take(curtain)
 
     def _rescale(self) -> None:
-        if self._data is not None:
+        if self.data is not None:
             self._show_all()
 
     def _show_all(self) -> None:
@@ -201,28 +206,28 @@ class SectionPanel(QWidget):
         self.canvas.repaint_figure()
 
     def _take(self, curtain: Curtain) -> None:
-        assert self._data is not None
+        assert self.data is not None
         self._moved = False
-        self._data = replace(self._data, curtain=curtain)
+        self.data = replace(self.data, curtain=curtain)
         self._pause.start()
 
     def _tell_line(self) -> None:
-        if self._data is not None:
+        if self.data is not None:
             self._cut()
-            self.line_changed.emit(self._data.curtain.line)
+            self.line_changed.emit(self.data.curtain.line)
 
     def _edit_thickness(self, value: float) -> None:
-        if self._data is None:
+        if self.data is None:
             return
-        self._data = replace(self._data, thickness=value)
+        self.data = replace(self.data, thickness=value)
         self.canvas.repaint_figure()
         self.thickness_changed.emit(value)
 
     def _cut(self) -> None:
         """Cut beside the window; while a cut is under way only the last wish is kept."""
         # A dock behind others counts as visible, but nothing of it is seen.
-        self._due = self._data is not None and self.visibleRegion().isEmpty()
-        if self._data is None or self._due:
+        self._due = self.data is not None and self.visibleRegion().isEmpty()
+        if self.data is None or self._due:
             return
         if self._task is not None:
             self._again = True
@@ -234,17 +239,17 @@ class SectionPanel(QWidget):
         self.canvas.repaint_figure()
         if not self._surfaces:
             return
-        curtain = self._data.curtain
+        curtain = self.data.curtain
         self._task = run(
-            self, trace, dict(self._surfaces), curtain.line, self._meshes,
+            self, trace, dict(self._surfaces), curtain.line, self.meshes,
             on_done=lambda found: self._show_traces(curtain, found), on_failed=self._tell_failure,
             title=self.tr("Section"),
         )  # fmt: skip
         self._task.ended.connect(self._ended)
 
     def _show_traces(self, curtain: Curtain, found: Traces) -> None:
-        if self._data is not None and self._data.curtain is curtain:
-            self._data = replace(self._data, traces=found)
+        if self.data is not None and self.data.curtain is curtain:
+            self.data = replace(self.data, traces=found)
             self._say_line()
             self.canvas.repaint_figure()
 
@@ -259,16 +264,16 @@ class SectionPanel(QWidget):
             self._cut()
 
     def _say_line(self) -> None:
-        assert self._data is not None
-        (x0, y0), (x1, y1) = self._data.curtain.line[[0, -1]]
+        assert self.data is not None
+        (x0, y0), (x1, y1) = self.data.curtain.line[[0, -1]]
         self.state.setText(
             self.tr("From ({x0:.1f}, {y0:.1f}) to ({x1:.1f}, {y1:.1f}), {length:.0f} m").format(
-                x0=x0, y0=y0, x1=x1, y1=y1, length=self._data.curtain.length
+                x0=x0, y0=y0, x1=x1, y1=y1, length=self.data.curtain.length
             )
         )
 
     def _paint(self, colours: PlotColours) -> None:
-        if self._data is None:
+        if self.data is None:
             return
         words = {
             "ground": self.tr("ground", "SectionPanel"),
@@ -276,12 +281,12 @@ class SectionPanel(QWidget):
             "elevation": self.tr("Elevation, m"),
         }
         axes = self.canvas.axes(1)[0]
-        draw_section(axes, self._data, colours, words)
-        draw_bodies(axes, self._bodies, self._data.curtain, self._data.thickness, colours)
+        draw_section(axes, self.data, colours, words)
+        draw_bodies(axes, self._bodies, self.data.curtain, self.data.thickness, colours)
 
     def _arrange(self, colours: PlotColours) -> None:
         """Put the drawing beside or above its legend, with all of the section in it unless somebody moved it."""
-        assert self._data is not None
+        assert self.data is not None
         axes = self.canvas.figure.axes[0]
         note, room = explain(self.canvas.figure, colours, narrow=self.canvas.narrow)
         # Other limits have other numbers, which may leave more or less room.
@@ -290,7 +295,7 @@ class SectionPanel(QWidget):
             if self._moved:
                 beside, levels = grown(*self._edges, self._size, size)
             else:
-                seen, chosen = seen_in(axes, self._data.curtain), self.factor.currentData()
+                seen, chosen = seen_in(axes, self.data.curtain), self.factor.currentData()
                 self._shown = automatic(seen, size) if chosen is None else float(chosen)
                 beside, levels = window(seen, size, self._shown)
             self._size = size
@@ -313,10 +318,10 @@ class SectionPanel(QWidget):
         axes.set_ylim(levels)
         thin_names(axes)
 
-    def _look_at(self, axes: Axes, beside: tuple[float, float], levels: tuple[float, float]) -> None:
-        """Show another part, as somebody wishes."""
+    def look_at(self, beside: tuple[float, float], levels: tuple[float, float]) -> None:
+        """Show distances and elevations of the section (metres) from edge to edge, until another line is shown."""
         self._moved = True
-        self._look(axes, beside, levels)
+        self._look(self.canvas.figure.axes[0], beside, levels)
         self.canvas.refresh()
 
     def _zoom(self, event: MouseEvent) -> None:
@@ -325,7 +330,7 @@ class SectionPanel(QWidget):
         factor, axes = 0.83 if event.step > 0 else 1.2, event.inaxes
         beside = [event.xdata + factor * (x - event.xdata) for x in axes.get_xlim()]
         levels = [event.ydata + factor * (z - event.ydata) for z in axes.get_ylim()]
-        self._look_at(axes, (beside[0], beside[1]), (levels[0], levels[1]))
+        self.look_at((beside[0], beside[1]), (levels[0], levels[1]))
 
     def _press(self, event: MouseEvent) -> None:
         if event.dblclick:
@@ -342,28 +347,28 @@ class SectionPanel(QWidget):
             return
         beside = [x + self._grasped[0] - event.xdata for x in axes.get_xlim()]
         levels = [z + self._grasped[1] - event.ydata for z in axes.get_ylim()]
-        self._look_at(axes, (beside[0], beside[1]), (levels[0], levels[1]))
+        self.look_at((beside[0], beside[1]), (levels[0], levels[1]))
 
     def _release(self, event: MouseEvent) -> None:
         held, self._grasped = self._grasped, None
-        if held is None or event.inaxes is None or self._data is None:
+        if held is None or event.inaxes is None or self.data is None:
             return
         if np.hypot(event.x - self._pressed[0], event.y - self._pressed[1]) < 4:
             self._pick(event)
 
     def _pick(self, event: MouseEvent) -> None:
-        assert self._data is not None
+        assert self.data is not None
         assert event.inaxes is not None
         best, least = None, float(NEAR * self.canvas.device_pixel_ratio)
-        for name in self._data.site.horizons:
-            places, index = near_points(self._data, name)
+        for name in self.data.site.horizons:
+            places, index = near_points(self.data, name)
             if len(index):
                 away = np.hypot(*(event.inaxes.transData.transform(places) - [event.x, event.y]).T)
                 if away.min() < least:
                     best, least = (name, int(index[away.argmin()])), float(away.min())
         if best is not None:
             name, chosen = best
-            self.point_chosen.emit(name, Row.of(self._data.site.horizons[name], chosen))
+            self.point_chosen.emit(name, Row.of(self.data.site.horizons[name], chosen))
 
 
 def _spin(low: float, high: float, step: float, unit: str, longest: str) -> QDoubleSpinBox:

@@ -39,7 +39,7 @@ class VerdictBadge(QFrame):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._mark, self._word, self._more, self._old = _Mark(26), QLabel(), QLabel(), QLabel()
+        self.mark, self._word, self._more, self._old = _Mark(26), QLabel(), QLabel(), QLabel()
         self.lamps = [(_Mark(18), QLabel()) for _ in range(3)]
         font = self._word.font()
         font.setPointSizeF(font.pointSizeF() * 1.3)
@@ -56,7 +56,7 @@ class VerdictBadge(QFrame):
         grid.setContentsMargins(12, 6, 8, 6)
         grid.setHorizontalSpacing(8)
         grid.setVerticalSpacing(3)
-        grid.addWidget(self._mark, 0, 0, Qt.AlignmentFlag.AlignHCenter)
+        grid.addWidget(self.mark, 0, 0, Qt.AlignmentFlag.AlignHCenter)
         grid.addWidget(self._word, 0, 1)
         for row, (mark, label) in enumerate(self.lamps, 1):
             grid.addWidget(mark, row, 0, Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignHCenter)
@@ -85,7 +85,7 @@ class VerdictBadge(QFrame):
         self._stale = stale and accuracy is not None
         judged = verdict_of(accuracy) if verdict is None and accuracy is not None else verdict
         self._level = "none" if judged is None else judged.level
-        self._mark.name = level_mark(self._level)
+        self.mark.name = level_mark(self._level)
         none = self.tr("Reading the surface…") if waiting else self.tr("No surface yet")
         self._word.setText(none if judged is None else verdict_word(judged))
         self._show_lamps(() if judged is None else judged.lamps)

@@ -37,8 +37,8 @@ class Contents:
         self.points: dict[str, PointSet] = {}
         self.surfaces: dict[str, HorizonFit] = {}
         self.control: dict[str, list[tuple[str, int, int]]] = {}
-        self._drawn: dict[str, Drawn] = {}
-        self._listed: dict[str, Listing] = {}
+        self.drawn: dict[str, Drawn] = {}
+        self.listed: dict[str, Listing] = {}
         self.faded = True
 
     def set_faded(self, on: bool) -> None:
@@ -50,8 +50,8 @@ class Contents:
 
     def show_listing(self, name: str, listing: Listing) -> None:
         """Show all points of a horizon, excluded ones as ghosts, with their residuals."""
-        if self._listed.get(name) is not listing:
-            self._listed[name] = listing
+        if self.listed.get(name) is not listing:
+            self.listed[name] = listing
             self._show_points(name)
 
     def show_site(self, site: Site) -> None:
@@ -106,7 +106,7 @@ class Contents:
         """Show a surface, or its new fit; ``drawn`` if it was made ready already."""
         name, layers = surface.name, self.stage.layers
         drawn = drawn or drawn_of(surface, uncertainty, None if self.site is None else self.site.ground)
-        self.surfaces[name], self._drawn[name] = surface, drawn
+        self.surfaces[name], self.drawn[name] = surface, drawn
         self.points.setdefault(name, surface.points)
         colour = self.colour(name)
         choices = ["plain", "elevation", "dip", "thickness"] + ["standard deviation"] * (drawn.sd is not None)
@@ -138,19 +138,19 @@ class Contents:
         """Take away a surface with all that belongs to it; its points stay if they are of the site."""
         for kind in ("surface", "upper", "lower", "seams", "control", "suggestions"):
             self.stage.layers.remove(f"{kind}:{name}")
-        for known in (self.surfaces, self._drawn, self.control):
+        for known in (self.surfaces, self.drawn, self.control):
             known.pop(name, None)
         if self.site is not None and name in self.site.horizons:
             self._show_points(name)
         else:
             self.points.pop(name, None)
-            self._listed.pop(name, None)
+            self.listed.pop(name, None)
             self.stage.layers.remove(f"points:{name}")
 
     def clear(self) -> None:
         """Take everything away."""
         self.site = None
-        for known in (self.points, self.surfaces, self._drawn, self.control, self._listed):
+        for known in (self.points, self.surfaces, self.drawn, self.control, self.listed):
             known.clear()
         self.stage.layers.clear()
 
@@ -205,7 +205,7 @@ class Contents:
 
     def residuals(self, name: str) -> Floats | None:
         """Return the residuals of a horizon's points, None where it has no checked surface of these points."""
-        listed, surface = self._listed.get(name), self.surfaces.get(name)
+        listed, surface = self.listed.get(name), self.surfaces.get(name)
         if listed is not None and listed.points is self.points.get(name):
             return listed.residual if np.isfinite(listed.residual).any() else None
         accuracy = surface.accuracy if surface is not None else None
@@ -216,7 +216,7 @@ class Contents:
     def everything(self) -> Floats:
         """Return the corners of all that is known, (n, 3) map coordinates; empty if nothing is."""
         found = [np.stack([p.xyz.min(axis=0), p.xyz.max(axis=0)]) for p in self.points.values() if len(p)]
-        found += [drawn.shape.xyz for drawn in self._drawn.values()]
+        found += [drawn.shape.xyz for drawn in self.drawn.values()]
         if self.site is not None:
             found += [hole.xyz for hole in self.site.holes]
             if (ground := self.site.ground) is not None:
@@ -230,7 +230,7 @@ class Contents:
         return float(known[:, 2].max()) if len(known) else 0.0
 
     def _show_points(self, name: str) -> None:
-        listed = self._listed.get(name)
+        listed = self.listed.get(name)
         points = self.points[name] if listed is None else listed.points
         self.points[name] = points
         if not len(points):
@@ -248,14 +248,14 @@ class Contents:
 
     def _values(self, name: str, by: str) -> tuple[Floats, Floats] | None:
         """Return what a surface is coloured by, at the vertices of its fine and coarse triangles."""
-        fine = self._drawn[name].shape
+        fine = self.drawn[name].shape
         coarse = fine.coarse or fine
         if by == "elevation":
             return fine.xyz[:, 2], coarse.xyz[:, 2]
         if by == "dip":
             return fine.dip, coarse.dip
         if by == "standard deviation":
-            return self._drawn[name].sd
+            return self.drawn[name].sd
         if by == "thickness":
             below = next_below(self.surfaces[name], coarse, list(self.surfaces.values()))
             if below is not None:

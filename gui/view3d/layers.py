@@ -79,7 +79,7 @@ class Layers:
 
     def __init__(self) -> None:
         self._layers: dict[str, Layer] = {}
-        self._listeners: list[Listener] = []
+        self.listeners: list[Listener] = []
 
     def __iter__(self) -> Iterator[Layer]:
         return iter(tuple(self._layers.values()))
@@ -95,8 +95,8 @@ class Layers:
 
     def subscribe(self, listener: Listener) -> Callable[[], None]:
         """Call ``listener(what, key)`` after every change; returns the function that ends it."""
-        self._listeners.append(listener)
-        return lambda: self._listeners.remove(listener)
+        self.listeners.append(listener)
+        return lambda: self.listeners.remove(listener)
 
     def add(self, layer: Layer) -> Layer:
         """Add a layer, or renew one of the same key, which keeps what a person has chosen for it."""
@@ -151,5 +151,5 @@ class Layers:
             self.change(layer.key, visible=layer.key == key)
 
     def _tell(self, what: str, key: str) -> None:
-        for listener in tuple(self._listeners):
+        for listener in tuple(self.listeners):
             listener(what, key)

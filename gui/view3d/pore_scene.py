@@ -45,7 +45,7 @@ class PoreScene(QWidget):
         layout.addWidget(self.canvas)
         self.setFocusProxy(self.canvas)
         self._view: PoreView | None = None
-        self._actors: dict[str, Any] = {}
+        self.actors: dict[str, Any] = {}
         self._frame: Any = None
         self._visible = {"network": True, "surface": True}
         self.colour: Colour = "radius"
@@ -56,15 +56,15 @@ class PoreScene(QWidget):
     @property
     def shown(self) -> tuple[str, ...]:
         """What is drawn and seen: "pores", "throats", "surface"."""
-        return tuple(name for name, actor in self._actors.items() if actor.GetVisibility())
+        return tuple(name for name, actor in self.actors.items() if actor.GetVisibility())
 
     def show_view(self, view: PoreView) -> None:
         """Draw another network and surface, and move the camera so that all is seen."""
         import pyvista as pv
 
-        for actor in self._actors.values():
+        for actor in self.actors.values():
             self.canvas.renderer.RemoveActor(actor)
-        self._actors.clear()
+        self.actors.clear()
         self._view = view
         network = view.network
         centre = (network.pores.centre + 0.5) * network.edges
@@ -93,7 +93,7 @@ class PoreScene(QWidget):
     def set_visible(self, part: str, visible: bool) -> None:
         """Show or hide the "network" or the "surface"."""
         self._visible[part] = visible
-        for name, actor in self._actors.items():
+        for name, actor in self.actors.items():
             actor.SetVisibility(self._visible["surface" if name == "surface" else "network"])
         self.canvas.render()
 
@@ -115,7 +115,7 @@ class PoreScene(QWidget):
         actor.prop.opacity = opacity
         actor.SetVisibility(self._visible["surface" if name == "surface" else "network"])
         self.canvas.renderer.AddActor(actor)
-        self._actors[name] = actor
+        self.actors[name] = actor
 
     def _outline(self, box: Floats) -> None:
         """Draw the edges of the sample."""
@@ -135,7 +135,7 @@ class PoreScene(QWidget):
         values = self.values()
         self.limits = (0.0, 3.0) if self.colour == "connection" else (float(values.min()), float(values.max()))
         low, high = self.limits
-        for actor in self._actors.values():
+        for actor in self.actors.values():
             mesh = actor.mapper.dataset
             of_pore = values[np.asarray(mesh["pore"]).astype(np.int64)]
             if self.colour == "radius":

@@ -83,7 +83,7 @@ class SceneView(QWidget):
         self._section, self._clip = SectionPlane(self._section_moved), ClipBox(self._clip_moved)
         self.pointer = Pointer(self.canvas, self._stage, self.contents, self._clip, self)
         self._step, self._framed, self._closed = 0.0, False, False
-        self._annotations = Annotations(self, self.canvas.projector, self._content)
+        self._annotations = Annotations(self, self.canvas.projector, self.content)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self.canvas)
@@ -97,7 +97,7 @@ class SceneView(QWidget):
 
     def _connect(self) -> None:
         canvas = self.canvas
-        canvas.handle = Handles(self._handles, canvas.projector, self._tell_section)
+        canvas.handle = Handles(self.handles, canvas.projector, self._tell_section)
         canvas.viewpoint_changed.connect(self._viewpoint_moved)
         canvas.detail_changed.connect(self._set_detail)
         canvas.pixels_changed.connect(self._stage.set_pixels)
@@ -330,7 +330,8 @@ class SceneView(QWidget):
                 parts = [Part(lines(data, self._stage.look.text, 0.0), width=1.0, opacity=0.16)]
             self._stage.set_extra("axes", parts)
 
-    def _content(self, view: Projector) -> Content:
+    def content(self, view: Projector) -> Content:
+        """Return what is written over the scene: names, scales, legends, and what was measured."""
         viewpoint = self.canvas.viewpoint
         box = self._stage.box()
         seen, pointer = list(self._stage.items()), self.pointer
@@ -339,7 +340,7 @@ class SceneView(QWidget):
             rings=[pointer.ring] if pointer.ring is not None else [],
             path=np.array(pointer.measure.places) if pointer.measure.places else None,
             path_text=pointer.measure_text(),
-            handles=[handle.xyz for handle in self._handles()],
+            handles=[handle.xyz for handle in self.handles()],
             legends=merged([(layer.horizon, layer.legend) for layer, _ in seen if layer.legend is not None]),
             marks=marks(self._padded(box), self._step, view) if box is not None and self._step else [],
             note=self.tr("Vertical {factor}×").format(factor=f"{self.canvas.stretch:g}"),
@@ -347,7 +348,8 @@ class SceneView(QWidget):
             metres=self.canvas.metres() if viewpoint.parallel else None,
         )
 
-    def _handles(self) -> list[Handle]:
+    def handles(self) -> list[Handle]:
+        """Return what can be dragged: the ends of the section first, then the sides of the clip box."""
         box = self._stage.box()
         return [] if box is None else [*self._section.handles(box), *self._clip.handles()]
 
@@ -364,6 +366,11 @@ class SceneView(QWidget):
     def _clip_moved(self) -> None:
         self._stage.set_clip(self._clip.planes(self.canvas.origin, self.canvas.stretch))
         self._changed()
+
+    @property
+    def idle(self) -> bool:
+        """Whether the scene shows all that has changed, at full detail."""
+        return self.canvas.full and not self._changes.isActive()
 
     # Small things --------------------------------------------------------------------------------------------
 

@@ -56,7 +56,7 @@ class ImportWizard(TaskDialog):
         self.site_file = free_name(folder)
         self._memory = Memory(memory_file())
         self._drafts: list[Draft] = []
-        self._found: Import | None = None
+        self.found: Import | None = None
         #: Files that this wizard wrote where there were none.
         self._made: set[Path] = set()
         self.list = QListWidget()
@@ -133,9 +133,9 @@ class ImportWizard(TaskDialog):
         self.add_files([Path(url.toLocalFile()) for url in event.mimeData().urls() if url.isLocalFile()])
 
     def _first_page(self) -> QWidget:
-        add, remove = QPushButton(self.tr("&Add files…")), QPushButton(self.tr("Re&move"))
+        add, self.remove = QPushButton(self.tr("&Add files…")), QPushButton(self.tr("Re&move"))
         add.clicked.connect(self._ask_files)
-        remove.clicked.connect(self._remove)
+        self.remove.clicked.connect(self._remove)
         browse = QPushButton(self.tr("Bro&wse…"))
         browse.clicked.connect(self._browse)
         left, first = QWidget(), QWidget()
@@ -144,7 +144,7 @@ class ImportWizard(TaskDialog):
         tables.addWidget(self.list, 1)
         tables.addLayout(row)
         row.addWidget(add)
-        row.addWidget(remove)
+        row.addWidget(self.remove)
         place.addWidget(self.target, 1)
         place.addWidget(browse)
         split = QSplitter(Qt.Orientation.Horizontal)
@@ -181,7 +181,7 @@ class ImportWizard(TaskDialog):
 
     @property
     def _sound(self) -> bool:
-        return self._found is not None and bool(self._found.site.horizons)
+        return self.found is not None and bool(self.found.site.horizons)
 
     def _unsettled(self, draft: Draft) -> bool:
         return not draft.kind or bool(draft.missing(ground=self._ground))
@@ -288,7 +288,7 @@ class ImportWizard(TaskDialog):
         )  # fmt: skip
 
     def _imported(self, was_there: bool, found: Import) -> None:
-        self._found = found
+        self.found = found
         if not was_there:
             self._made |= {found.site_file, found.mapping_file, found.issue_file}
         self._memory.keep(self._drafts)

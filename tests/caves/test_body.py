@@ -120,7 +120,7 @@ def test_slabs_of_any_size_add_up_to_the_same_volume(monkeypatch):
     body = centreline_body(branching(3)[0])
     whole = body.volume(0.5)
     for nodes in (3_000, 200_000):
-        monkeypatch.setattr("geofit.caves.columns._NODES", nodes)
+        monkeypatch.setattr("geofit.caves.columns.NODES", nodes)
         assert body.volume(0.5) == pytest.approx(whole, rel=1e-12)
 
 

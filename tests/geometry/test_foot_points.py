@@ -21,7 +21,7 @@ def beside(patch, n, spread, seed=0):
 def test_proven_feet_are_those_of_the_search(spread, turn):
     patch = height_field(turn=turn)
     xyz = beside(patch, 3000, spread)
-    found, searched = foot_points_over_plan([patch], xyz), distance._searched([patch], xyz)
+    found, searched = foot_points_over_plan([patch], xyz), distance.foot_points_by_search([patch], xyz)
     sure = found.converged
     assert sure.mean() > 0.9
     np.testing.assert_allclose(found.distance[sure], searched.distance[sure], atol=1e-10)
@@ -32,7 +32,7 @@ def test_proven_feet_are_those_of_the_search(spread, turn):
 def test_every_patch_of_a_surface_has_its_own_feet():
     _, patches = nine()
     xyz = np.concatenate([beside(patch, 200, 0.1, seed) for seed, patch in enumerate(patches)])
-    found, searched = foot_points_over_plan(patches, xyz), distance._searched(patches, xyz)
+    found, searched = foot_points_over_plan(patches, xyz), distance.foot_points_by_search(patches, xyz)
     sure = found.converged
     assert sure.mean() > 0.9
     assert np.unique(found.patch[sure]).tolist() == list(range(len(patches)))

@@ -235,7 +235,7 @@ def test_the_section_cuts_bodies_with_contacts_and_intervals(with_ore):
     with_ore.window.showing.line = middle[:2] + np.array([[-300.0, 0.0], [300.0, 0.0]])
     with_ore.trigger("section")
     with_ore.window.showing.show_section()
-    with_ore.qtbot.waitUntil(lambda: with_ore.panels.section._task is None)
+    with_ore.qtbot.waitUntil(lambda: with_ore.panels.section.idle)
     panel = with_ore.panels.section
     panel.canvas.draw()
     axes = panel.canvas.figure.axes[0]
@@ -264,7 +264,7 @@ def test_violations_and_holes_find_each_other(with_ore):
     document, figures, view = with_ore.document, with_ore.panels.body_figures, with_ore.panels.view
     result, provenance = document.body("ORE"), document.state.bodies["ORE"].provenance
     data = result.fitted.data
-    words = message("bodies.logged-in-lies-out", "logged inside, lies outside")
+    words = message("bodies.logged-inside-lies-outside", "logged inside, lies outside")
     found = tuple(
         Violation("sample", str(data.inside_hole[i]), tuple(data.inside[i].tolist()), 0.5, 2.0, words) for i in (0, 40)
     )
@@ -384,12 +384,8 @@ def test_bodies_whose_data_changed_stay_as_they_were_saved_and_say_so(app, tmp_p
 
 
 def test_a_session_that_was_cut_off_brings_its_bodies_back(with_ore, tmp_path):
-    session = with_ore.desktop.session
     state = with_ore.document.state
-    # Let go of the journal as a killed process does.
-    session._journal._stream.close()
-    session._journal = None
-    (cut,) = unfinished(with_ore.desktop.journals)
+    (cut,) = unfinished(with_ore.killed(tmp_path / "killed"))
     assert cut.final == state
     with_ore.window.files.recover(cut)
     with_ore.idle()

@@ -33,7 +33,7 @@ def hit_of(shown, kind, name=NAME):
     """What lies where a thing of a kind is drawn in front."""
     view = shown.window.panels.view
     projector, size = view.canvas.projector(), view.canvas.size()
-    for layer, item in view._stage.items():
+    for layer, item in view.contents.stage.items():
         if layer.kind != kind or (layer.horizon and layer.horizon != name):
             continue
         if kind in ("points", "surface"):
@@ -88,7 +88,7 @@ def test_resting_shows_a_tool_tip_and_the_right_button_a_menu(shown):
     hit = hit_of(shown, "points")
     x, y, _ = view.canvas.projector().screen(hit.xyz[None])[0]
     at = QPointF(x, y)
-    view.pointer._hover(at)
+    view.canvas.hovered.emit(at)
     shown.qtbot.waitUntil(lambda: NAME in QToolTip.text(), timeout=3000)
     globally = QPointF(view.canvas.mapToGlobal(at.toPoint()))
     for kind in (QEvent.Type.MouseButtonPress, QEvent.Type.MouseButtonRelease):
@@ -191,7 +191,7 @@ def test_a_double_click_on_a_title_makes_a_panel_the_centre_and_puts_it_back(sho
     assert panels.section.width() * panels.section.height() > 1.3 * before
     panels.reveal("section")
     assert dock.isHidden(), "an empty dock must not come"
-    double_click(panels.centring._frame.head, QPointF(30, 5))
+    double_click(panels.centring.frame.head, QPointF(30, 5))
     shown.idle()
     assert panels.centring.name is None
     assert dock.widget() is panels.section

@@ -103,7 +103,7 @@ def test_a_check_that_fails_is_named_above_the_table(qtbot, tmp_path):
     (file,) = dialog.files
     bad = Check("read-back seam gap", False, 0.02, 1e-6, "m", "a gap")
     back = replace(file.read_back[FAULT], checks=(bad,))
-    dialog._written([replace(file, read_back={FAULT: back})])
+    dialog.show_files([replace(file, read_back={FAULT: back})])
     assert f"fails its checks for: {FAULT}" in dialog.message.text()
     assert column(dialog, "Result").count("failed") == 1
 

@@ -106,7 +106,7 @@ def report(qtbot, dialog, folder):
 def test_the_sample_site_is_one_button_away(app, qtbot, tmp_path, monkeypatch):
     from geofit.gui import files
 
-    monkeypatch.setattr(files, "_documents", lambda: str(tmp_path))
+    monkeypatch.setattr(files, "documents", lambda: str(tmp_path))
     qtbot.mouseClick(app.window.panels.start.sample, Qt.MouseButton.LeftButton)
     app.idle()
     assert app.document.horizons == ("T3-T2", "T2-T1", "W", "F1", "M1")
@@ -186,7 +186,7 @@ def test_the_way_of_a_first_user(app, qtbot, tmp_path, monkeypatch):
     panels.seams.seam_chosen.emit(0)
     assert "seams:T2-T1" in panels.view.layers
     window.actions_["section"].setChecked(True)
-    qtbot.waitUntil(lambda: "T2-T1" in panels.section._data.traces and panels.section._task is None, timeout=60_000)
+    qtbot.waitUntil(lambda: "T2-T1" in panels.section.data.traces and panels.section.idle, timeout=60_000)
 
     # STEP, read back; a report in Chinese.
     monkeypatch.setattr(ExportDialog, "exec", lambda dialog: export(qtbot, dialog, tmp_path / "dam.step"))

@@ -52,10 +52,10 @@ def test_codes_are_grouped_the_picks_shown_and_the_horizon_added(opened, monkeyp
         dialog.thinner.setValue(5.0)
         seen.append(len(dialog.picks.points))
         dialog.name.setText("T2-T1")
-        dialog._name_edited()
+        dialog.name.textEdited.emit(dialog.name.text())
         assert not dialog.add.isEnabled(), "the name is taken"
         dialog.name.setText("overburden")
-        dialog._name_edited()
+        dialog.name.textEdited.emit(dialog.name.text())
         dialog.add.click()
 
     drive(monkeypatch, act)

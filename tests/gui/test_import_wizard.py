@@ -116,7 +116,7 @@ def test_a_log_of_lower_limits_is_read_and_said_so(qtbot, tmp_path):
     assert not wizard.go.isEnabled(), "a code is still needed"
     name_column(wizard, 2, "code")
     press(qtbot, wizard, wizard.go)
-    assert wizard._found.site.horizons["base of Q"].xyz[:, 2].tolist() == [890.25 - 2 * i for i in range(8)]
+    assert wizard.found.site.horizons["base of Q"].xyz[:, 2].tolist() == [890.25 - 2 * i for i in range(8)]
 
 
 def test_several_columns_are_horizons(qtbot, tmp_path):
@@ -136,7 +136,7 @@ def test_several_columns_are_horizons(qtbot, tmp_path):
     name_column(wizard, 3, "z")
     assert wizard.page.table.item(3, 4).background().color().name() in BAD.values()
     press(qtbot, wizard, wizard.go)
-    horizons = wizard._found.site.horizons
+    horizons = wizard.found.site.horizons
     assert {name: points.xyz[:, 2].tolist() for name, points in horizons.items()} == {
         "T1": [39, 38, 36],
         "T2": [29, 28, 27, 26],
@@ -249,8 +249,8 @@ def test_files_that_cannot_be_read_do_not_hide_the_others_and_are_listed(qtbot, 
     assert "The file is empty" in wizard.page.message.text()
     assert "left out" in wizard.page.message.text()
     press(qtbot, wizard, wizard.go)
-    assert list(wizard._found.site.horizons) == ["points"]
-    assert "tables/empty.csv" in [issue.file for issue in wizard._found.issues]
+    assert list(wizard.found.site.horizons) == ["points"]
+    assert "tables/empty.csv" in [issue.file for issue in wizard.found.issues]
 
 
 def test_axes_that_look_exchanged_are_told_and_one_button_mends_them(qtbot, tmp_path):
@@ -265,9 +265,9 @@ def test_axes_that_look_exchanged_are_told_and_one_button_mends_them(qtbot, tmp_
     assert roles_shown(wizard)[1:3] == ["y", "x"]
     assert not wizard.page.exchange.isVisible()
     wizard.list.setCurrentRow(1)
-    wizard._remove()
+    wizard.remove.click()
     press(qtbot, wizard, wizard.go)
-    assert wizard._found.site.holes[0].xyz[0, :2].tolist() == [500000.5, 3100000.5]
+    assert wizard.found.site.holes[0].xyz[0, :2].tolist() == [500000.5, 3100000.5]
 
 
 def test_collars_without_elevation_may_stand_on_a_ground(qtbot, tmp_path):
@@ -308,7 +308,7 @@ def test_several_tables_are_removed_at_once(qtbot, tmp_path):
     assert "… (6)" in wizard.message.text()
     for row in range(6):
         wizard.list.item(row).setSelected(True)
-    wizard._remove()
+    wizard.remove.click()
     assert [draft.title for draft in wizard.drafts()] == ["points.csv"]
     assert wizard.go.isEnabled()
 

@@ -129,13 +129,7 @@ def test_the_project_and_a_crash_keep_the_earlier_state(app, qtbot, opened, tmp_
     app.idle()
     before = document.comparison(NAME)
     state = document.state
-    # A session that was cut off: its journal is read by another one.
-    journal = app.desktop.session._journal
-    copy = tmp_path / "crash"
-    import shutil
-
-    shutil.copytree(journal.path.parent, copy)
-    (cut,) = unfinished(copy)
+    (cut,) = unfinished(app.killed(tmp_path / "killed"))
     window.files.recover(cut)
     app.idle()
     assert document.state == state
@@ -168,7 +162,7 @@ def test_the_report_tells_what_moved(app, opened):
     app.idle()
     from geofit.report.gather import horizon_report
 
-    result = window.delivering._result(NAME, document.surface(NAME))
+    result = window.delivering.result(NAME, document.surface(NAME))
     found = horizon_report(result)
     assert found.change.too_narrow
     assert len(found.change.contacts) == 20

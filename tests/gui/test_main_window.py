@@ -106,11 +106,15 @@ def test_another_language_keeps_the_work(app, small):
     app.idle()
 
 
+def choose_theme(window, theme):
+    next(action for action in window.actions_.themes.actions() if action.data() == theme).trigger()
+
+
 def test_a_theme_reaches_the_palette_and_is_remembered(app, qapp):
-    app.window._set_theme("dark")
+    choose_theme(app.window, "dark")
     assert is_dark(qapp.palette())
     assert Preferences().theme == "dark"
-    app.window._set_theme("light")
+    choose_theme(app.window, "light")
     assert not is_dark(qapp.palette())
 
 
@@ -169,7 +173,7 @@ def test_the_log_hears_geofit_and_qt_but_not_the_chatter_of_others(app):
 
 def test_the_error_dialog_says_what_to_do(qtbot):
     error = InputError(
-        message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+        message("io.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
     )
     dialog = ErrorDialog("Open a.csv", error)
     qtbot.addWidget(dialog)
@@ -200,7 +204,7 @@ def test_rows_not_used_are_listed(qtbot):
             "z",
             "abc",
             "error",
-            message("import.no-number", "This is not a number"),
+            message("io.not-a-number", "This is not a number"),
             message("test.text", "Correct it."),
         ),
         ImportIssue("a.csv", 0, "", "", "note", message("test.text", "Taken as picks")),
@@ -220,16 +224,14 @@ def test_shortcuts_are_listed_by_menu(app):
     dialog.deleteLater()
 
 
-def test_unsaved_work_is_brought_back(app, small, monkeypatch):
+def test_unsaved_work_is_brought_back(app, small, tmp_path, monkeypatch):
     app.window.files.open(small)
     app.idle()
     app.window.fitting.fit("low")
     app.idle()
     app.desktop.session.push(RenameSite("Brought back"))
     before, state = app.document.surface("low"), app.document.state
-    # The end of the process frees the journal and leaves it behind.
-    app.desktop.session._journal._stream.close()
-    app.desktop.session._journal = None
+    killed = app.killed(tmp_path / "killed")
 
     def choose(dialog):
         assert "Small" in dialog.list.item(0).text()
@@ -238,7 +240,7 @@ def test_unsaved_work_is_brought_back(app, small, monkeypatch):
         return QDialog.DialogCode.Accepted
 
     monkeypatch.setattr(RecoveryDialog, "exec", choose)
-    assert app.window.files.offer_recovery(app.desktop.journals)
+    assert app.window.files.offer_recovery(killed)
     app.idle()
     assert app.document.state == state
     assert app.document.dirty
@@ -247,6 +249,7 @@ def test_unsaved_work_is_brought_back(app, small, monkeypatch):
     for new, old in zip(after.patches, before.patches, strict=True):
         assert (new.control == old.control).all()
     assert app.desktop.session.stack.undoText() == "Rename the site to Brought back"
+    assert not list(killed.glob("*.journal"))
     assert len(list(app.desktop.journals.glob("*.journal"))) == 1
 
 

@@ -64,7 +64,7 @@ def join(app, *names):
 
 
 def rested(app):
-    app.qtbot.waitUntil(lambda: app.morphing._frame is None and not app.morphing._later.isActive(), timeout=60_000)
+    app.qtbot.waitUntil(lambda: app.morphing.idle, timeout=60_000)
 
 
 def test_a_ball_becomes_a_ring_under_the_slider(bodies, tmp_path, monkeypatch):
@@ -85,7 +85,7 @@ def test_a_ball_becomes_a_ring_under_the_slider(bodies, tmp_path, monkeypatch):
     panel.skin.setChecked(False)
     assert not [layer for layer in layers if layer.kind == "morph end"]
     # Dragged, the preview is shown; let go, the full grid.
-    timeline, plot = panel.timeline, panel.timeline._plot()
+    timeline, plot = panel.timeline, panel.timeline.plot()
     at = QPoint(round(plot.left() + 0.5 * plot.width()), 12)
     QTest.mousePress(timeline, Qt.MouseButton.LeftButton, pos=at)
     assert timeline.tau == pytest.approx(0.5, abs=0.01)

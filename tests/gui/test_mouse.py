@@ -50,7 +50,7 @@ def test_each_scheme(app, monkeypatch, scheme, left, shift_left, middle, shift_m
     app.idle()
 
     def accept(dialog):
-        dialog._mouse.setCurrentIndex(dialog._mouse.findData(scheme))
+        dialog.mouse_box.setCurrentIndex(dialog.mouse_box.findData(scheme))
         return QDialog.DialogCode.Accepted
 
     monkeypatch.setattr(PreferencesDialog, "exec", accept)

@@ -49,7 +49,7 @@ def only(view, *keys):
 def settle(app):
     app.view.canvas.land()
     app.idle()
-    app.qtbot.waitUntil(lambda: app.view.canvas.full and not app.view._changes.isActive(), timeout=10_000)
+    app.qtbot.waitUntil(lambda: app.view.idle, timeout=10_000)
 
 
 def pixel(view, xyz):
@@ -135,7 +135,7 @@ def test_05_the_scene_list_hides_fades_colours_and_zooms(shown):
     scene.form.colour_by.setCurrentIndex(scene.form.colour_by.findData("dip"))
     scene.form.colour_by.activated.emit(scene.form.colour_by.currentIndex())
     assert layers[key].legend.unit == "°"
-    scene._rows[key].setCheckState(0, Qt.CheckState.Unchecked)
+    scene.row(key).setCheckState(0, Qt.CheckState.Unchecked)
     assert not layers[key].visible
     before = shown.view.canvas.target
     scene.zoom_requested.emit("points:F1")
@@ -219,12 +219,9 @@ def test_11_the_project_is_versioned_text_and_the_title_says_what_is_unsaved(sho
 
 
 def test_12_what_was_done_is_in_the_journal_before_the_next_thing(shown):
-    from geofit.project.journal import Journal
-
-    journal = shown.window.session._journal
-    assert isinstance(journal, Journal)
+    (journal,) = shown.window.session.folder.glob("*.journal")
     shown.window.fitting.set_core(NAME, "all")
-    last = journal.path.read_bytes().splitlines()[-1].partition(b" ")[2]
+    last = journal.read_bytes().splitlines()[-1].partition(b" ")[2]
     assert json.loads(last)["do"] == {"kind": "core", "horizon": NAME, "core": "all"}
 
 
@@ -236,10 +233,10 @@ def test_13_exaggeration_is_in_the_corner_and_in_no_number(shown, qtbot):
         shown.view.set_exaggeration(factor)
         index, place = seen_point(shown)
         click(shown.view, place)
-        shown.view.pointer._hover(_float(place))
+        shown.view.canvas.hovered.emit(_float(place))
         qtbot.wait(80)
         told.append((shown.view.pointer.ring.text, shown.window.selecting.index(), shown.view.pointer.place_at(*place)))
-        assert f"{factor:g}×" in shown.view._content(shown.view.canvas.projector()).note
+        assert f"{factor:g}×" in shown.view.content(shown.view.canvas.projector()).note
     assert told[0][:2] == told[1][:2]
     assert f"{xyz[2]:.2f} m" in told[0][0]
     np.testing.assert_allclose(told[0][2], told[1][2], atol=0.5)
@@ -258,12 +255,12 @@ def test_14_the_slicer_cuts_at_any_azimuth(shown, qtbot):
     panel = shown.panels.section
     panel.azimuth.setValue(37.0)
     panel.thickness.setValue(80.0)
-    qtbot.waitUntil(lambda: panel._data.traces.get(NAME) is not None and panel._task is None, timeout=60_000)
+    qtbot.waitUntil(lambda: panel.data.traces.get(NAME) is not None and panel.idle, timeout=60_000)
     line = np.asarray(panel.line)
     east, north = line[-1] - line[0]
     assert np.degrees(np.arctan2(east, north)) % 180 == pytest.approx(37.0, abs=0.1)
     assert shown.window.showing.thickness == 80.0
-    assert shown.view._section.line is not None
+    assert shown.view.handles()
 
 
 def test_15_coordinates_of_millions_of_metres_are_exact(shown):
@@ -347,7 +344,7 @@ def test_20_errors_say_what_to_do_and_the_dark_theme_reaches_the_view(shown, qtb
     dialog = ErrorDialog(
         "Open a.csv",
         InputError(
-            message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+            message("io.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
         ),
     )
     qtbot.addWidget(dialog)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from panel_samples import FAULT, WITH_PERIPHERY, fitted, sample_site
+from panel_samples import FAULT, WITH_PERIPHERY, fitted, item_of, sample_site
 from PySide6.QtGui import QColor, QPalette
 
 from geofit.gui import worker
@@ -57,13 +57,13 @@ def test_one_horizon_has_one_colour(qtbot, palette):
     view.show_surface(surfaces[FAULT])
     section.show_section(site, surfaces, LINE, 80.0)
     tree.show_site(site, surfaces)
-    qtbot.waitUntil(lambda: section._task is None, timeout=20_000)
+    qtbot.waitUntil(lambda: section.idle, timeout=20_000)
     section.canvas.draw()
     drawn = {line.get_label(): to_hex(line.get_color()) for line in section.canvas.figure.axes[0].lines}
     for name in NAMES:
-        (part, *_) = view._stage._items[f"surface:{name}"].parts
+        (part, *_) = item_of(view, f"surface:{name}").parts
         assert QColor.fromRgbF(*part.actor.GetProperty().GetColor()).name() == wanted[name]
-        assert shades(scene._rows[f"surface:{name}"].icon(0)) == [wanted[name]]
+        assert shades(scene.row(f"surface:{name}").icon(0)) == [wanted[name]]
         assert drawn[name] == wanted[name]
         plan.show_surface(site, name, surfaces[name], surfaces[name].settings)
         assert plan.view.data.colour == wanted[name]

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from panel_samples import SITE, fitted, prediction, sample_site
+from panel_samples import SITE, fitted, item_of, prediction, sample_site
 from PySide6.QtCore import Qt
 
 from geofit.data.accuracy import Check
@@ -51,7 +51,7 @@ def test_a_failed_check_is_amber_everywhere_and_in_the_same_words(shown, qtbot, 
     assert "failed: trend" in said
     badge = shown.panels.verdict
     assert badge.text.splitlines()[0] == "WARNING"
-    assert badge._mark.name == "warning"
+    assert badge.mark.name == "warning"
     assert said in badge.text.splitlines()
     row = tree_row(shown)
     assert "WARNING" in row.aloud
@@ -59,7 +59,7 @@ def test_a_failed_check_is_amber_everywhere_and_in_the_same_words(shown, qtbot, 
     dialog = ExportDialog(shown.document.surfaces(), None, {NAME: verdict})
     qtbot.addWidget(dialog)
     assert dialog.horizons.item(0).text() == f"{NAME}   {verdict.text}"
-    result = shown.window.delivering._result(NAME, shown.document.surface(NAME))
+    result = shown.window.delivering.result(NAME, shown.document.surface(NAME))
     assert result.verdict == verdict
     print_results([result])
     printed = capsys.readouterr()
@@ -118,8 +118,8 @@ def test_all_selected_rows_are_excluded_and_the_ring_stays(shown):
     np.testing.assert_array_equal(view.pointer.ring.xyz, place)
     assert shown.window.selecting.index() == 40
     assert set(table.selected) == {3, 40, 71}
-    assert view.contents._listed[NAME].excluded.sum() == 3
-    item = {layer.key: item for layer, item in view._stage.items()}[f"points:{NAME}"]
+    assert view.contents.listed[NAME].excluded.sum() == 3
+    item = item_of(view, f"points:{NAME}")
     assert min(part.opacity for part in item.parts) < 0.5, "ghosts"
     shown.trigger("exclude")
     shown.idle()
@@ -225,17 +225,17 @@ def test_one_switch_fades_what_no_data_support_in_view_and_section(shown, qtbot)
 
     def styles():
         axes = panels.section.canvas.figure.axes
-        colour = panels.section._data.colour(NAME)
+        colour = panels.section.data.colour(NAME)
         return {line.get_linestyle() for line in (axes[0].lines if axes else ()) if line.get_color() == colour}
 
     def opacities():
-        item = {layer.key: item for layer, item in view._stage.items()}[f"surface:{NAME}"]
+        item = item_of(view, f"surface:{NAME}")
         return [part.opacity for part in item.parts]
 
     qtbot.waitUntil(lambda: "--" in styles() and "-" in styles(), timeout=60_000)
     assert switch.isChecked()
     assert min(opacities()) < 0.5 < max(opacities())
-    held = view.contents._drawn[NAME].supported[0]
+    held = view.contents.drawn[NAME].supported[0]
     assert 0 < held.sum() < len(held)
     switch.trigger()
     qtbot.waitUntil(lambda: "--" not in styles(), timeout=60_000)
@@ -261,7 +261,7 @@ def test_holes_show_their_lithology_in_view_and_section_in_the_same_colours(show
     every = sorted({str(code) for one in site.boreholes for log in one.logs for code in np.unique(log.code)})
     styles = lithology_style(every)
     assert [swatch.colour for swatch in legend.swatches] == [styles[code][0] for code in codes]
-    item = {layer.key: item for layer, item in shown.view._stage.items()}["holes"]
+    item = item_of(shown.view, "holes")
     drawn = [tuple(round(255 * c) for c in part.actor.GetProperty().GetColor()) for part in item.parts[2:]]
     assert drawn == [rgb(styles[code][0]) for code in codes]
     layers.change("holes", colour_by="plain")

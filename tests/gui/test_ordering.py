@@ -106,4 +106,4 @@ def test_a_surface_that_cuts_the_strata_is_left_out_where_the_site_states_an_ord
     app.desktop.session.begin(site, None)
     app.window.fitting.fit_all()
     app.idle()
-    assert list(app.window.ordering._strata()) == ["up", "low"]
+    assert list(app.window.ordering.strata()) == ["up", "low"]

@@ -65,7 +65,7 @@ def test_choosing_a_point_selects_its_row_and_tells_nobody(panel, qtbot):
 
 def test_sorting_keeps_the_chosen_point(panel):
     panel.show_surface(fitted())
-    panel.choose(Row.of(panel._shown.listing.points, 123))
+    panel.choose(Row.of(fitted().points, 123))
     panel.table.sortByColumn(HOLE, Qt.SortOrder.AscendingOrder)
     assert panel.table.current == 123
 
@@ -90,11 +90,12 @@ def test_the_filters_keep_what_they_name(panel, qtbot):
 
 
 def test_a_point_that_the_filter_hides_is_said_to_be_hidden(panel, qtbot):
-    panel.show_surface(cloud(100))
+    surface = cloud(100)
+    panel.show_surface(surface)
     panel.search.setText("ZK99")
     qtbot.waitUntil(lambda: panel.table.rows.rowCount() == 1)
     assert panel.count.text() == "Points: 1 of 100"
-    panel.choose(Row.of(panel._shown.listing.points, 4))
+    panel.choose(Row.of(surface.points, 4))
     assert "hidden" in panel.count.text()
     assert panel.table.current is None
 

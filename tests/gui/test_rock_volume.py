@@ -121,7 +121,7 @@ def test_colours_are_those_of_radius_and_connection(qtbot, dialog, tmp_path, her
     assert f"{radius.max() * 2:.2f}" in dialog.key.text()
     dialog.colour.setCurrentIndex(1)
     np.testing.assert_array_equal(dialog.scene.values(), [1, 1])
-    mesh = dialog.scene._actors["pores"].mapper.dataset
+    mesh = dialog.scene.actors["pores"].mapper.dataset
     one = tuple(int(CONNECTED[1][i : i + 2], 16) for i in (1, 3, 5))
     assert {tuple(colour) for colour in mesh["colour"].tolist()} == {one}
     assert CONNECTED[3] in dialog.key.text()

@@ -23,7 +23,7 @@ def shown(qtbot):
 
 
 def row(panel, key):
-    return panel._rows[key]
+    return panel.row(key)
 
 
 def test_an_empty_list_says_what_to_do(qtbot):
@@ -31,9 +31,9 @@ def test_an_empty_list_says_what_to_do(qtbot):
 
     panel = SceneList(Layers())
     qtbot.addWidget(panel)
-    assert "open or import a site" in str(panel._place.text)
+    assert "open or import a site" in str(panel.placeholder.text)
     panel.layers.add(Layer("ground", "ground"))
-    assert str(panel._place.text) == ""
+    assert str(panel.placeholder.text) == ""
 
 
 def test_layers_stand_under_their_horizon_and_the_site_first(shown):
@@ -115,7 +115,7 @@ def test_a_destroyed_list_no_longer_listens(qtbot, qapp):
     panel.deleteLater()
     qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     layers.add(Layer("ground", "ground"))
-    assert not layers._listeners
+    assert not layers.listeners
 
 
 def test_it_fits_a_narrow_dock(shown):

@@ -26,7 +26,7 @@ def panel(qtbot):
     panel = SectionPanel()
     qtbot.addWidget(panel)
     panel.resize(800, 400)
-    panel._meshes = MESHES
+    panel.meshes = MESHES
     panel.show()
     yield panel
     assert worker.finish_all()
@@ -39,7 +39,7 @@ def show(panel, qtbot, surfaces=None, **more):
 
 
 def wait(panel, qtbot):
-    qtbot.waitUntil(lambda: panel._task is None and not panel._pause.isActive(), timeout=20_000)
+    qtbot.waitUntil(lambda: panel.idle, timeout=20_000)
     panel.canvas.draw()
 
 
@@ -73,7 +73,7 @@ def test_before_a_fit_points_holes_and_ground_are_there(panel, qtbot):
 
 def test_points_within_the_thickness_are_drawn(panel, qtbot):
     show(panel, qtbot, {}, thickness=60.0)
-    places, index = near_points(panel._data, WITH_PERIPHERY)
+    places, index = near_points(panel.data, WITH_PERIPHERY)
     xy = sample_site().horizons[WITH_PERIPHERY].xyz[:, :2]
     way = (LINE[1] - LINE[0]) / np.linalg.norm(LINE[1] - LINE[0])
     off = np.abs((xy - LINE[0]) @ [way[1], -way[0]])
@@ -109,9 +109,8 @@ def test_a_section_of_the_site_is_chosen_by_name(panel, qtbot):
 def test_the_last_of_many_edits_is_cut(panel, qtbot):
     show(panel, qtbot)
     for value in (-100.0, -50.0, 50.0, 120.0):
-        panel.position.setValue(value)
-        panel._pause.stop()
-        panel._tell_line()
+        with qtbot.waitSignal(panel.line_changed):
+            panel.position.setValue(value)
     wait(panel, qtbot)
     start, way = panel.line[0], panel.line[1] - panel.line[0]
     drawn = lines(panel)[WITH_PERIPHERY]
@@ -170,7 +169,7 @@ def test_a_flat_section_is_drawn_higher_by_itself_and_says_so(panel, qtbot):
         (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
         low, high = axes.dataLim.intervaly
         assert left <= 0
-        assert right >= panel._data.curtain.length
+        assert right >= panel.data.curtain.length
         assert bottom <= low
         assert top >= high
     assert factors == pytest.approx([2.0, 10.0], rel=1e-3)
@@ -180,14 +179,15 @@ def test_the_factor_is_told_while_a_section_is_moved_and_magnified(panel, qtbot)
     show(panel, qtbot, {})
     axes = panel.canvas.figure.axes[0]
     before, whole = drawn_factor(panel), axes.get_xlim()
-    panel._look_at(axes, (100.0, 300.0), (1450.0, 1450.0 + 200.0 * np.ptp(axes.get_ylim()) / np.ptp(whole)))
+    panel.look_at((100.0, 300.0), (1450.0, 1450.0 + 200.0 * np.ptp(axes.get_ylim()) / np.ptp(whole)))
     panel.thickness.setValue(30.0)
     panel.resize(900, 500)
     wait(panel, qtbot)
     assert axes.get_xlim() != whole
     assert drawn_factor(panel) == pytest.approx(before, rel=1e-3)
     assert noted(panel) == f"Vertical {before:.0f}×"
-    panel._choose_section(1)
+    panel.along.setCurrentIndex(1)
+    panel.along.activated.emit(1)
     wait(panel, qtbot)
     assert axes.get_xlim()[0] <= 0
 
@@ -235,7 +235,7 @@ def test_names_of_holes_stand_apart(panel, qtbot):
     drawn = sorted(t.get_window_extent(renderer).x0 for t in axes.texts if t.get_visible())
     assert len(drawn) < len(axes.texts)
     assert np.diff(drawn).min() >= 11
-    panel._look_at(axes, (400.0, 500.0), axes.get_ylim())
+    panel.look_at((400.0, 500.0), axes.get_ylim())
     inside = [text for text in axes.texts if 400 < text.xy[0] < 500]
     assert inside
     assert all(text.get_visible() for text in inside)
@@ -257,16 +257,16 @@ def test_axes_are_kept_for_the_next_section(panel, qtbot):
 def test_a_hidden_panel_cuts_when_it_is_shown(panel, qtbot):
     panel.hide()
     panel.show_section(sample_site(), {WITH_PERIPHERY: fitted()}, LINE, 80.0)
-    assert panel._task is None
+    assert panel.idle
     panel.show()
-    qtbot.waitUntil(lambda: panel._task is not None)
+    qtbot.waitUntil(lambda: not panel.idle)
     wait(panel, qtbot)
     assert WITH_PERIPHERY in lines(panel)
 
 
 def test_a_clicked_point_is_told(panel, qtbot):
     show(panel, qtbot, {})
-    places, _ = near_points(panel._data, WITH_PERIPHERY)
+    places, _ = near_points(panel.data, WITH_PERIPHERY)
     x, y = panel.canvas.figure.axes[0].transData.transform(places[0])
     ratio = panel.canvas.device_pixel_ratio
     place = QPoint(round(x / ratio), round(panel.canvas.height() - y / ratio))
@@ -275,7 +275,7 @@ def test_a_clicked_point_is_told(panel, qtbot):
     name, found = told.args
     points = sample_site().horizons[name]
     xyz = points.xyz[found.find(points)]
-    along, _ = panel._data.curtain.project(xyz[None, :2])
+    along, _ = panel.data.curtain.project(xyz[None, :2])
     assert np.hypot(*(panel.canvas.figure.axes[0].transData.transform([along[0], xyz[2]]) - [x, y])) < 8
 
 

@@ -52,7 +52,7 @@ def test_four_states_differ_without_colour(badge):
         (fitted().accuracy, True),
     ):
         badge.show_accuracy(accuracy, stale)
-        mark = badge._mark.grab().toImage()
+        mark = badge.mark.grab().toImage()
         pictures.append((bytes(mark.convertToFormat(mark.Format.Format_Grayscale8).constBits()), grey(badge)))
     assert len({mark for mark, _ in pictures}) == 3
     assert len({whole for _, whole in pictures}) == 4

@@ -7,12 +7,14 @@ import subprocess
 import sys
 from dataclasses import replace
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 # PySide6 is asked for in conftest.
-from PySide6.QtCore import QPoint, QPointF, Qt
+from panel_samples import item_of
+from PySide6.QtCore import QPoint, QPointF, Qt, QTimer
 from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 
@@ -97,7 +99,7 @@ def settle(view, qtbot):
     """Let flights and refreshes end."""
     view.canvas.land()
     qtbot.wait(30)
-    qtbot.waitUntil(lambda: view.canvas.full and not view._changes.isActive(), timeout=5000)
+    qtbot.waitUntil(lambda: view.idle, timeout=5000)
 
 
 def picture(view):
@@ -230,7 +232,7 @@ def test_letting_go_of_a_control_point_leaves_other_rings(shown):
 def test_a_net_is_fainter_from_afar(shown, qtbot):
     shown.set_control_points("W")
     settle(shown, qtbot)
-    dots = shown._stage._items["control:W"].parts[1].actor.GetProperty()
+    dots = item_of(shown, "control:W").parts[1].actor.GetProperty()
     near = dots.GetOpacity()
     shown.canvas.look(replace(shown.canvas.viewpoint, distance=60 * shown.canvas.viewpoint.distance))
     assert 0 < dots.GetOpacity() < 0.5 * near
@@ -302,7 +304,7 @@ def test_the_section_plane_is_moved_by_its_handles(shown, qtbot):
     line = ORIGIN[:2] + np.array([[-100.0, -80.0], [120.0, 60.0]])
     shown.set_section(line, 20.0)
     settle(shown, qtbot)
-    handle = shown._section.handles(shown._stage.box())[0]
+    handle = shown.handles()[0]
     start = QPoint(*drawn_at(shown, handle.xyz).round().astype(int).tolist())
     QTest.mousePress(shown.canvas, Qt.MouseButton.LeftButton, pos=start)
     QTest.mouseMove(shown.canvas, start + QPoint(40, 0))
@@ -313,7 +315,7 @@ def test_the_section_plane_is_moved_by_its_handles(shown, qtbot):
     assert moved[0, 0] > line[0, 0] + 10
     assert moved[0, 1] == pytest.approx(line[0, 1], abs=2.0)
     shown.set_section(None)
-    assert not shown._handles()
+    assert not shown.handles()
 
 
 def test_the_clip_box_hides_what_lies_outside_from_eye_and_pointer(shown, qtbot):
@@ -324,7 +326,7 @@ def test_the_clip_box_hides_what_lies_outside_from_eye_and_pointer(shown, qtbot)
     place = at(-100.0, 30.0, 20.0)
     column, row = drawn_at(shown, place)
     assert picture(shown)[round(row), round(column)].min() < 235
-    shown._clip.handles()[0].moved(ORIGIN - (20.0, 0.0, 0.0))
+    shown.handles()[0].moved(ORIGIN - (20.0, 0.0, 0.0))
     settle(shown, qtbot)
     assert shown.pointer.place_at(column, row) is None
     assert picture(shown)[round(row), round(column)].min() > 235
@@ -352,10 +354,10 @@ def test_colours_follow_the_data(shown, qtbot):
         assert (legend.title, legend.low) == (by, pytest.approx(low, abs=1e-6))
         assert legend.high == pytest.approx(high, abs=2e-3)
     shown.layers.change("surface:W", isolines=True)
-    assert len(shown._stage._items["surface:W"].parts) > 2
+    assert len(item_of(shown, "surface:W").parts) > 2
     assert {"upper:W", "lower:W"} <= {layer.key for layer in shown.layers}
     shown.layers.change("upper:W", visible=True)
-    upper = shown._stage._items["upper:W"].box[1, 2]
+    upper = item_of(shown, "upper:W").box[1, 2]
     assert upper == pytest.approx(1540.0 + 1.6449 * 0.1, abs=1e-3)
 
 
@@ -364,7 +366,7 @@ def test_seams_have_their_places_and_colours(shown):
     steep = replace(surface.accuracy, seams=(Seam("core", "east", 0.0, 5.0),))
     shown.show_surface(surface.with_(accuracy=steep))
     shown.set_seams("W")
-    item = shown._stage._items["seams:W"]
+    item = item_of(shown, "seams:W")
     np.testing.assert_allclose(item.box, ORIGIN + np.array([[0, -HALF, 0], [0, HALF, 0]]), atol=1e-9)
     shown.layers.change("seams:W", colour_by="gap")
     assert shown.layers["seams:W"].legend.title == "gap"
@@ -384,10 +386,10 @@ def test_next_holes_and_a_dark_background_are_drawn(shown, qtbot):
 
 
 def test_the_exaggeration_stands_in_the_corner_and_a_bad_one_is_refused(shown, qtbot):
-    note = shown._content(shown.canvas.projector()).note
+    note = shown.content(shown.canvas.projector()).note
     assert str(note) == "Vertical 1×"
     shown.set_exaggeration(2.5)
-    assert shown._content(shown.canvas.projector()).note == "Vertical 2.5×"
+    assert shown.content(shown.canvas.projector()).note == "Vertical 2.5×"
     settle(shown, qtbot)
     corner = picture(shown)[-45:-8, 10:110]
     assert (corner.max(axis=(0, 1)) - corner.min(axis=(0, 1))).min() > 100
@@ -416,7 +418,7 @@ def test_while_moving_a_large_cloud_is_thinned_and_comes_back(view, qtbot):
     points = PointSet(ORIGIN + rng.uniform(-100, 100, (60_000, 3)))
     view.show_site(Site("cloud", {"W": points}))
     settle(view, qtbot)
-    item = view._stage._items["points:W"]
+    item = item_of(view, "points:W")
     counts = {p.detail: p.actor.GetMapper().GetInput().GetNumberOfPoints() for p in item.parts}
     assert counts["full"] == 60_000
     assert counts["coarse"] <= 10_001
@@ -445,7 +447,7 @@ def test_a_horizon_keeps_the_colour_of_its_place_in_the_site(shown):
         ("T", HORIZONS[0]),
         ("W", HORIZONS[1]),
     }
-    assert shown._stage._items["surface:W"].parts[0].actor.GetProperty().GetColor() == pytest.approx(
+    assert item_of(shown, "surface:W").parts[0].actor.GetProperty().GetColor() == pytest.approx(
         [byte / 255 for byte in rgb(HORIZONS[1])]
     )
 
@@ -483,7 +485,8 @@ def test_a_view_can_be_closed_twice_and_leaves_no_timer(shown, qtbot):
     shown.reset_camera()
     shown.close()
     shown.close()
-    timers = [shown._changes, shown.pointer.timer, shown._telling, shown.canvas._still, shown.canvas._fly]
+    timers = shown.findChildren(QTimer)
+    assert len(timers) >= 5
     assert not any(timer.isActive() for timer in timers)
 
 
@@ -507,7 +510,7 @@ def test_without_opengl_the_view_says_what_is_missing():
 def test_nothing_is_said_on_the_console(tmp_path):
     """VTK writes its warnings past Python."""
     code = (
-        "import sys; sys.path.insert(0, sys.argv[1])\n"
+        "import sys; sys.path[:0] = sys.argv[1:3]\n"
         "from PySide6.QtWidgets import QApplication\n"
         "app = QApplication([])\n"
         "from test_view3d import plane, site\n"
@@ -515,10 +518,10 @@ def test_nothing_is_said_on_the_console(tmp_path):
         "view = SceneView(); view.resize(400, 300); view.show()\n"
         "surface = plane(); view.show_site(site(surface)); view.show_surface(surface); view.set_seams('W')\n"
         "view.layers.change('surface:W', opacity=0.5, isolines=True)\n"
-        "app.processEvents(); view.screenshot(sys.argv[2], 1.5); view.clear(); app.processEvents(); view.close()\n"
+        "app.processEvents(); view.screenshot(sys.argv[3], 1.5); view.clear(); app.processEvents(); view.close()\n"
     )
     done = subprocess.run(
-        [sys.executable, "-W", "error", "-c", code, os.path.dirname(__file__), str(tmp_path / "a.png")],
+        [sys.executable, "-W", "error", "-c", code, *map(str, Path(__file__).parents[:2]), str(tmp_path / "a.png")],
         capture_output=True, text=True, timeout=120, check=True,
     )  # fmt: skip
     assert done.stderr == ""

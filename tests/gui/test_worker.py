@@ -161,7 +161,7 @@ def test_a_process_that_died_while_idle_is_replaced(owner, qtbot):
 def test_a_process_that_dies_as_its_order_comes_is_replaced(owner, qtbot, monkeypatch, wait):
     number = pid_of_the_only_helper(owner, qtbot)
     # It seems alive when it is looked at, and dies before it reads its order.
-    monkeypatch.setattr(worker._Helper, "alive", property(lambda helper: True))
+    monkeypatch.setattr(worker.Helper, "alive", property(lambda helper: True))
     os.kill(number, signal.SIGKILL)
     time.sleep(wait)
     results, errors = [], []

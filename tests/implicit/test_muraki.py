@@ -8,7 +8,7 @@ from scipy.spatial import KDTree
 
 import geofit.implicit as implicit
 from geofit.data.errors import FitError, SettingsError
-from geofit.implicit import muraki
+from geofit.implicit.ball_energy import ELLIPSOID, SPHERE, Balls, Energy, halves_of
 
 
 def blinn(centres: object, a: object, b: object) -> implicit.Metaballs:
@@ -33,18 +33,16 @@ def test_even_samples_are_on_the_surface_and_even() -> None:
     assert nearest.min() > 0.5 * nearest.mean()
 
 
-@pytest.mark.parametrize("width", [muraki.SPHERE, muraki.ELLIPSOID])
+@pytest.mark.parametrize("width", [SPHERE, ELLIPSOID])
 def test_gradient_of_the_energy_is_that_of_differences(width: int) -> None:
     rng = np.random.default_rng(2)
     xyz, normal = rng.normal(size=(80, 3)), rng.normal(size=(80, 3))
     normal /= np.linalg.norm(normal, axis=1)[:, None]
     shapes = np.eye(3) * rng.uniform(0.6, 1.5, 3)[:, None, None]
-    if width == muraki.ELLIPSOID:
+    if width == ELLIPSOID:
         shapes = shapes + np.tril(rng.normal(0, 0.3, (3, 3, 3)), -1)
-    balls = muraki._Balls(rng.normal(size=(3, 3)), shapes, np.array([2.0, -1, 1.5]), width)
-    energy = muraki._Energy(
-        xyz, normal, 1.0, 0.01, 1 / 80, 0.1 * rng.normal(size=80), 0.1 * rng.normal(size=(80, 3)), 0.2
-    )
+    balls = Balls(rng.normal(size=(3, 3)), shapes, np.array([2.0, -1, 1.5]), width)
+    energy = Energy(xyz, normal, 1.0, 0.01, 1 / 80, 0.1 * rng.normal(size=80), 0.1 * rng.normal(size=(80, 3)), 0.2)
     start = balls.pack()
     value, slope = energy.slope(start, width)
     steps = 1e-6 * np.eye(len(start))
@@ -74,12 +72,12 @@ def test_planted_balls_are_found_again(count: int) -> None:
 def test_identical_halves_are_a_saddle_and_those_apart_are_not() -> None:
     xyz, normal = samples(blinn(*PLANTED[2]), 400)
     x = xyz / np.sqrt((xyz**2).sum(axis=1).mean())
-    whole = muraki._Energy(x, normal, 1.0, 1e-4, 1 / len(x), np.zeros(len(x)), np.zeros_like(x))
-    single = whole.minimised(muraki._Balls(np.zeros((1, 3)), np.eye(3)[None], np.array([np.e]), muraki.SPHERE), 200)
+    whole = Energy(x, normal, 1.0, 1e-4, 1 / len(x), np.zeros(len(x)), np.zeros_like(x))
+    single = whole.minimised(Balls(np.zeros((1, 3)), np.eye(3)[None], np.array([np.e]), SPHERE), 200)
     same = single.part([0, 0])
-    same = muraki._Balls(same.centres, same.shapes, same.densities / 2, same.width)
+    same = Balls(same.centres, same.shapes, same.densities / 2, same.width)
     stuck = whole.minimised(same, 200)
-    halves = whole.minimised(next(muraki._halves(single, x, np.ones(len(x)))), 200)
+    halves = whole.minimised(next(halves_of(single, x, np.ones(len(x)))), 200)
     assert whole.of(stuck) > 0.9 * whole.of(single)
     assert whole.of(halves) < 1e-3 * whole.of(single)
 

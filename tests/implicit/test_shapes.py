@@ -97,7 +97,7 @@ def test_curve_tube_is_the_distance_to_a_dense_curve() -> None:
     s = np.linspace(0, 6, 13)
     helix = np.stack([np.cos(s), np.sin(s), 0.4 * s], axis=1)
     tube = implicit.CurveTube(helix, 0.2)
-    dense = tube._spline[0](np.linspace(0, tube._spline[0].x[-1], 40001))
+    dense = tube.curve(np.linspace(0, tube.curve.x[-1], 40001))
     xyz = np.random.default_rng(7).uniform(-2, 3, (300, 3))
     brute = np.array([np.linalg.norm(dense - p, axis=1).min() for p in xyz]) - 0.2
     np.testing.assert_allclose(tube.value(xyz), brute, atol=1e-6)

@@ -32,7 +32,7 @@ def test_a_file_that_is_no_table_is_named(what, start, tmp_path):
     (tmp_path / "points.csv").write_text(start + BEGINNINGS[what], encoding="utf-8")
     with pytest.raises(InputError) as told:
         read_points(tmp_path / "points.csv")
-    assert told.value.code == "import.file-is-no-table"
+    assert told.value.code == "io.file-not-table"
     assert f"The file is {what}, not a table" in str(told.value)
 
 
@@ -44,14 +44,14 @@ def test_what_geofit_writes_is_not_read_back_as_points(suffix, tmp_path):
     write_surface(horizon([height_field()]).surface, path)
     with pytest.raises(InputError) as told:
         read_points(path)
-    assert told.value.code in ("import.file-is-no-table", "import.file-no-text-utf")
+    assert told.value.code in ("io.file-not-table", "io.not-text")
 
 
 @pytest.mark.parametrize("name", ["1003_s.step", "2802_s.igs", "666_s.igs", "4612_s.brep", "4651_s.brep"])
 def test_damaged_models_are_named_too(name, real_data):
     with pytest.raises(InputError) as told:
         read_points(real_data / "hostile" / name)
-    assert told.value.code == "import.file-is-no-table"
+    assert told.value.code == "io.file-not-table"
 
 
 @pytest.mark.parametrize(

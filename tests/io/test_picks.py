@@ -127,11 +127,11 @@ def test_places_spread_out_have_none_far_from_their_middle(seed):
     rng = np.random.default_rng(seed)
     x, y = rng.normal(0, 10.0 ** rng.uniform(-2, 4), 400) ** rng.integers(1, 4), rng.uniform(0, 100, 400)
     x[: rng.integers(0, 300)] *= 10.0 ** rng.uniform(-3, 3)
-    if axes._spread_out(x, y):
+    if axes.spread_out(x, y):
         away = np.hypot(x - np.median(x), y - np.median(y))
         reach = 20 * np.median(away) + 1
         assert np.abs(x - np.median(x)).max() <= reach
         assert np.abs(y - np.median(y)).max() <= reach
     crowded = np.where(np.arange(400) < 300, x / np.abs(x).max(), 1e6 * x)
-    assert axes._spread_out(rng.uniform(0, 1, 400), y)
-    assert not axes._spread_out(crowded, np.zeros(400))
+    assert axes.spread_out(rng.uniform(0, 1, 400), y)
+    assert not axes.spread_out(crowded, np.zeros(400))

@@ -35,7 +35,7 @@ def thin(monkeypatch):
     """Function that sets how many voxels a slab may have."""
     return lambda voxels, halo=2: (
         monkeypatch.setattr(slabs, "VOXELS", voxels),
-        monkeypatch.setattr(slabs, "_HALO", halo),
+        monkeypatch.setattr(slabs, "HALO", halo),
     )
 
 

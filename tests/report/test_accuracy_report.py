@@ -30,7 +30,7 @@ pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it 
 pypdf = pytest.importorskip("pypdf", reason="pypdf reads the PDF's fonts; it comes with the extra 'test'")
 
 DATE = "2026-11-21"
-NO_FONT = fonts._chinese() is None
+NO_FONT = fonts.chinese_family() is None
 LANGUAGES = (
     EN,
     pytest.param(ZH, marks=pytest.mark.skipif(NO_FONT, reason="no font with Chinese characters on this machine")),
@@ -321,7 +321,7 @@ def test_long_names_and_many_rows_stay_on_the_page(tmp_path):
 
 
 def test_without_a_chinese_font_english_works_and_chinese_refuses(report, monkeypatch, tmp_path):
-    monkeypatch.setattr(fonts, "_chinese", lambda: None)
+    monkeypatch.setattr(fonts, "chinese_family", lambda: None)
     fonts.pdf_fonts.cache_clear()
     try:
         write_pdf(document(report, EN), {}, tmp_path / "en.pdf")

@@ -20,7 +20,7 @@ from geofit.report.body_chapter import body_chapter
 from geofit.report.document import Facts, Heading, Mark, Paragraph, Picture, Table
 from geofit.report.style import PASS
 
-NO_FONT = fonts._chinese() is None
+NO_FONT = fonts.chinese_family() is None
 SEMI = np.array([60.0, 45.0, 30.0])
 CENTRE = np.array([500_000.0, 3_100_000.0, 900.0])
 

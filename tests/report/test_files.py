@@ -91,7 +91,7 @@ def test_issues_are_listed_errors_first(result, tmp_path):
     assert (rows[0]["row"], rows[0]["column"], rows[0]["value"]) == ("7", "z", "abc")
 
 
-@pytest.mark.skipif(not scene._opengl(), reason="no OpenGL library on this machine")
+@pytest.mark.skipif(not scene.opengl_found(), reason="no OpenGL library on this machine")
 def test_the_picture_in_space_holds_the_whole_surface_and_no_margin(pictures):
     image = pictures.scene.image
     drawn = (image < 250).any(axis=2)
@@ -152,10 +152,10 @@ def test_tin_and_grid_of_equal_accuracy():
 
 
 def test_font_message_only_where_it_is_needed(monkeypatch):
-    monkeypatch.setattr(fonts, "_chinese", lambda: None)
+    monkeypatch.setattr(fonts, "chinese_family", lambda: None)
     assert fonts.missing_font(["T3/T2", "ΔØ°"]) is None
     assert "强风化" in str(fonts.missing_font(["T3", "强风化"]))
-    monkeypatch.setattr(fonts, "_chinese", lambda: "SimSun")
+    monkeypatch.setattr(fonts, "chinese_family", lambda: "SimSun")
     assert fonts.missing_font(["强风化"]) is None
 
 
@@ -184,7 +184,7 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path):
 
 
 def test_without_opengl_the_pictures_say_what_to_install(result, monkeypatch, tmp_path):
-    monkeypatch.setattr(scene, "_opengl", lambda: False)
+    monkeypatch.setattr(scene, "opengl_found", lambda: False)
     pictures = draw(result)
     assert pictures.scene is None
     assert "libegl1" in str(pictures.missing)

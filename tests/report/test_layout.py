@@ -20,14 +20,14 @@ from geofit.report.furniture import exaggeration_for, scale_for, scale_text
 from geofit.report.gather import accuracy_report
 from geofit.report.html import write_html
 from geofit.report.pdf import write_pdf
-from geofit.report.pdf_table import FEWEST, _Laid, _parts
+from geofit.report.pdf_table import FEWEST, LaidTable, page_ends
 from geofit.report.pictures import draw, draw_sections, draw_site
 from geofit.report.profile import along, profiles, report_sections
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 Image = pytest.importorskip("PIL.Image", reason="Pillow comes with fpdf2")
 
-NO_FONT = fonts._chinese() is None
+NO_FONT = fonts.chinese_family() is None
 TITLE = TitleBlock(
     project="HB-2026", client="River Company", document="GEO-012", status="for review", author="Li Wen",
     checker="Zhang", revisions=(Revision("A", "2026-01-02", "First issue", "Li Wen"), Revision("B", "2026-03-04")),
@@ -179,8 +179,8 @@ class _Ruler:
 @pytest.mark.parametrize("count", [1, 3, 5, 11, 23, 24, 45, 46, 47, 100, 300])
 def test_no_table_is_torn_by_a_row_or_two(count, room):
     table = Table((Column("a"), Column("b", "number")), tuple((f"r{k}", str(k)) for k in range(count)))
-    laid = _Laid(table, 170.0, _Ruler())
-    ends = _parts(laid, room, 250.0)
+    laid = LaidTable(table, 170.0, _Ruler())
+    ends = page_ends(laid, room, 250.0)
     turned, ends = ends[0] == 0, [end for end in ends if end]
     assert ends[-1] == count
     parts = np.diff([0, *ends])

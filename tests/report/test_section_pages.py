@@ -44,7 +44,7 @@ def view(name="A", length=400.0, rise=60.0):
 def test_a_drawing_is_as_long_as_its_scale_says(tmp_path, paper, length, exaggeration):
     shown = view(length=length)
     scale = fitting_scale([shown], paper, exaggeration)
-    figure = section_pages._page([shown], shown, 1, BLOCK, paper, scale, exaggeration, EN)
+    figure = section_pages.sheet_page([shown], shown, 1, BLOCK, paper, scale, exaggeration, EN)
     box, (wide, high) = figure.axes[0].get_position(), PAPERS[paper]
     assert box.width * wide == pytest.approx(1000 * length / scale)
     low, top = figure.axes[0].get_ylim()
