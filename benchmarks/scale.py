@@ -2,7 +2,8 @@
 
 Run ``python benchmarks/scale.py [LARGEST]`` (default 1e7): each row runs in a process of its own, which reports its
 processor time and its peak memory. The figures are kept in build/scale.json, and docs/scale.md is written from them;
-``python benchmarks/scale.py page`` writes it again. 1e8 takes 5 GB of disk.
+``python benchmarks/scale.py page`` writes it again, ``python benchmarks/scale.py streamed 1e8`` measures one row anew.
+1e8 takes 5 GB of disk.
 """
 
 from __future__ import annotations
@@ -276,24 +277,37 @@ def measured(largest: int) -> dict[str, dict[int, Figures]]:
         "streamed": [n for n in decades if n >= 10**6],
         "horizons": [HORIZONS],
     }
-    found: dict[str, dict[int, Figures]] = {}
     for task, counts in rows.items():
         for n in counts:
-            found.setdefault(task, {})[n] = {**apart(task, n), "load": os.getloadavg()[0]}
-            KEPT.parent.mkdir(exist_ok=True)
-            KEPT.write_text(json.dumps(found), encoding="utf-8")
-    return found
+            measure_one(task, n)
+    return kept()
+
+
+def measure_one(task: str, n: int) -> None:
+    """Measure one row, and keep it with the others on the disk: a run of all takes long."""
+    row = {**apart(task, n), "load": os.getloadavg()[0]}
+    found = kept()
+    found.setdefault(task, {})[n] = row
+    KEPT.parent.mkdir(exist_ok=True)
+    KEPT.write_text(json.dumps(found), encoding="utf-8")
 
 
 def kept() -> dict[str, dict[int, Figures]]:
-    """Return the figures of the last run."""
+    """Return the figures that were measured, each the last time."""
+    if not KEPT.exists():
+        return {}
     found = json.loads(KEPT.read_text(encoding="utf-8"))
     return {task: {int(n): row for n, row in rows.items()} for task, rows in found.items()}
 
 
 def main() -> None:
     given = sys.argv[1] if len(sys.argv) > 1 else "1e7"
-    found = kept() if given == "page" else measured(int(float(given)))
+    if given in TASKS:
+        for n in sys.argv[2:]:
+            measure_one(given, int(float(n)))
+    elif given != "page":
+        measured(int(float(given)))
+    found = kept()
     (ROOT / "docs" / "scale.md").write_text(page(found), encoding="utf-8")
 
 
