@@ -2,7 +2,8 @@
 
 Run ``python benchmarks/scale.py [LARGEST]`` (default 1e7): each row runs in a process of its own, which reports its
 processor time and its peak memory. The figures are kept in build/scale.json, and docs/scale.md is written from them;
-``python benchmarks/scale.py page`` writes it again. 1e8 takes 5 GB of disk.
+``python benchmarks/scale.py page`` writes it again, ``python benchmarks/scale.py streamed 1e8`` measures one row anew.
+1e8 takes 5 GB of disk.
 """
 
 from __future__ import annotations
@@ -55,6 +56,12 @@ def used(since: float = 0.0) -> float:
     return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) - since
 
 
+def resident() -> float:
+    """Return the memory that this process takes now, MB."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE") / 1024**2
+
+
 def peak() -> float:
     """Return the largest memory that this process or one of its children took, MB."""
     return max(resource.getrusage(who).ru_maxrss for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)) / 1024
@@ -63,19 +70,29 @@ def peak() -> float:
 def from_arrays(n: int) -> Figures:
     from geofit import FitSettings, PointSet, fit_horizon
 
-    points = PointSet(np.concatenate(list(made(n))))
-    before, start = peak(), used()
+    points = PointSet(_array(n))
+    before, start, wall = resident(), used(), time.perf_counter()
     fit_horizon(points, FitSettings(core="none"))
-    return {"cpu": used(start), "before": before, "peak": peak(), "input": points.xyz.nbytes / 1e6}
+    wall = time.perf_counter() - wall
+    return {"cpu": used(start), "wall": wall, "before": before, "peak": peak(), "input": points.xyz.nbytes / 1024**2}
+
+
+def _array(n: int) -> np.ndarray:
+    """Return n points in one array that was filled in place: nothing larger was in the memory before."""
+    xyz, start = np.empty((n, 3)), 0
+    for part in made(n):
+        xyz[start : start + len(part)] = part
+        start += len(part)
+    return xyz
 
 
 def cloud_in_memory(n: int) -> Figures:
     from geofit.streaming.fit import fit_cloud
 
-    xyz = np.concatenate(list(made(n)))
-    before, start = peak(), used()
+    xyz = _array(n)
+    before, start = resident(), used()
     fit_cloud(xyz)
-    return {"cpu": used(start), "before": before, "peak": peak(), "input": xyz.nbytes / 1e6}
+    return {"cpu": used(start), "before": before, "peak": peak(), "input": xyz.nbytes / 1024**2}
 
 
 def streamed(n: int) -> Figures:
@@ -260,24 +277,37 @@ def measured(largest: int) -> dict[str, dict[int, Figures]]:
         "streamed": [n for n in decades if n >= 10**6],
         "horizons": [HORIZONS],
     }
-    found: dict[str, dict[int, Figures]] = {}
     for task, counts in rows.items():
         for n in counts:
-            found.setdefault(task, {})[n] = {**apart(task, n), "load": os.getloadavg()[0]}
-            KEPT.parent.mkdir(exist_ok=True)
-            KEPT.write_text(json.dumps(found), encoding="utf-8")
-    return found
+            measure_one(task, n)
+    return kept()
+
+
+def measure_one(task: str, n: int) -> None:
+    """Measure one row, and keep it with the others on the disk: a run of all takes long."""
+    row = {**apart(task, n), "load": os.getloadavg()[0]}
+    found = kept()
+    found.setdefault(task, {})[n] = row
+    KEPT.parent.mkdir(exist_ok=True)
+    KEPT.write_text(json.dumps(found), encoding="utf-8")
 
 
 def kept() -> dict[str, dict[int, Figures]]:
-    """Return the figures of the last run."""
+    """Return the figures that were measured, each the last time."""
+    if not KEPT.exists():
+        return {}
     found = json.loads(KEPT.read_text(encoding="utf-8"))
     return {task: {int(n): row for n, row in rows.items()} for task, rows in found.items()}
 
 
 def main() -> None:
     given = sys.argv[1] if len(sys.argv) > 1 else "1e7"
-    found = kept() if given == "page" else measured(int(float(given)))
+    if given in TASKS:
+        for n in sys.argv[2:]:
+            measure_one(given, int(float(n)))
+    elif given != "page":
+        measured(int(float(given)))
+    found = kept()
     (ROOT / "docs" / "scale.md").write_text(page(found), encoding="utf-8")
 
 

@@ -17,6 +17,7 @@ from geofit.checks.trend import trend
 from geofit.data.accuracy import Accuracy, Check, Conflict, Exceedance, Group, Seam
 from geofit.data.guard import guarded
 from geofit.data.labels import Labels
+from geofit.data.long_arrays import blocks, left_rows
 from geofit.data.messages import Message, message
 from geofit.data.threads import one_thread
 from geofit.geometry.projection import Projection, project
@@ -26,6 +27,8 @@ from geofit.surfaces.protocol import FittedSurface
 __all__ = ["check", "judged_by", "sigma"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Codes = NDArray[np.int32]
 
 #: Limits that a sound surface keeps (METHOD, sec. 4 to 7).
 CORE_LIMIT, GAP_LIMIT, ANGLE_LIMIT = 1e-6, 1e-6, 0.1
@@ -35,6 +38,8 @@ RANGE = "elevation range"
 TREND = "trend"
 #: Points with the largest distances that are named.
 WORST = 20
+#: Points that are measured together: their nearest places take more memory than they do.
+STEP = 1 << 17
 
 
 def sigma(residuals: Floats) -> float:
@@ -47,7 +52,8 @@ def sigma(residuals: Floats) -> float:
     """
     if len(residuals) == 0:
         return 0.0
-    return float(np.sqrt(np.square(residuals).sum() / max(len(residuals) - 1, 1)))
+    squares = sum(float(np.square(part).sum()) for (part,) in blocks(residuals))
+    return float(np.sqrt(squares / max(len(residuals) - 1, 1)))
 
 
 def check(
@@ -72,15 +78,12 @@ def check(
         The points' nearest places where they are known already, or are not those of whole patches.
     """
     points, settings = surface.points, surface.settings
-    if projection is None:
-        projection = project(surface.patches, points.xyz - surface.origin)
-    d = projection.distance
-    patch = Labels(projection.patch.astype(np.int32), tuple(one.name for one in surface.patches) or (surface.name,))
+    d, codes, feet_of = _measured(surface) if projection is None else _known(projection)
+    patch = Labels(codes, tuple(one.name for one in surface.patches) or (surface.name,))
     found = seams(surface.patches)
     value = sigma(d)
-    magnitude = np.abs(d)
     over = {
-        name: Exceedance(limit, int((magnitude > limit).sum()))
+        name: Exceedance(limit, _beyond(d, limit))
         for name, limit in (("interior_tolerance", settings.interior_tolerance), ("epsilon", settings.epsilon))
     }
     active = np.ones(len(d), bool)
@@ -91,7 +94,7 @@ def check(
         lambda: _tolerance_checks(surface, d, exact),
         lambda: _seam_checks(surface, found),
         lambda: _residual_checks(surface, d, patch, active & ~exact),
-        *_surface_checks(surface, projection, active),
+        *_surface_checks(surface, feet_of, active),
     )
     checks: list[Check] = []
     missing: list[Message] = []
@@ -110,7 +113,7 @@ def check(
         sigma=value,
         epsilon=settings.epsilon,
         passed=value < settings.epsilon and not _runs_away(surface, checks),
-        max_abs=float(magnitude.max(initial=0.0)),
+        max_abs=_largest(d),
         mean=float(d.mean()) if len(d) else 0.0,
         residuals=d,
         patch=patch.words(),
@@ -119,7 +122,7 @@ def check(
         by_hole=_groups(d, points.labels["hole"]),
         by_section=_groups(d, points.labels["section"]),
         over=over,
-        worst=_worst(magnitude),
+        worst=_worst(d),
         seams=found,
         checks=tuple(checks),
         conflicts=tuple(conflicts),
@@ -141,7 +144,7 @@ def judged_by(surface: FittedSurface, accuracy: Accuracy, epsilon: float) -> Acc
     """
     checks = tuple(_trend_by(surface, accuracy, one) if one.name == TREND else one for one in accuracy.checks)
     passed = accuracy.sigma < epsilon and not _runs_away(surface, checks)
-    beyond = Exceedance(epsilon, int((np.abs(accuracy.residuals) > epsilon).sum()))
+    beyond = Exceedance(epsilon, _beyond(accuracy.residuals, epsilon))
     notes = tuple(note for note in accuracy.notes if not (passed and note.code == "fitting.sigma-above-epsilon"))
     return replace(
         accuracy, epsilon=epsilon, passed=passed, over={**accuracy.over, "epsilon": beyond}, checks=checks, notes=notes
@@ -163,17 +166,54 @@ def _trend_by(surface: FittedSurface, accuracy: Accuracy, former: Check) -> Chec
 
 def _groups(d: Floats, labels: Labels) -> dict[str, Group]:
     return {
-        label: Group(len(part), sigma(part), float(np.abs(part).max()), float(part.mean()))
+        label: Group(len(part), sigma(part), _largest(part), float(part.mean()))
         for label, part in by_label(d, labels).items()
         if label
     }
 
 
-def _worst(magnitude: Floats) -> tuple[int, ...]:
+def _measured(surface: FittedSurface) -> tuple[Floats, Codes, Callable[[Ints], Projection]]:
+    """Return distances, patch numbers and nearest places of a surface's points, of many without holding the places."""
+    xyz, patches = surface.points.xyz, surface.patches
+    if len(xyz) <= STEP:
+        return _known(project(patches, xyz - surface.origin))
+    d, codes = np.empty(len(xyz)), np.zeros(len(xyz), np.int32) if len(patches) > 1 else _zeros(len(xyz))
+    for start in range(0, len(xyz), STEP):
+        part = slice(start, start + STEP)
+        found = project(patches, xyz[part] - surface.origin)
+        d[part] = found.distance
+        if len(patches) > 1:
+            codes[part] = found.patch
+    return d, codes, lambda rows: project(patches, xyz[rows] - surface.origin)
+
+
+def _known(projection: Projection) -> tuple[Floats, Codes, Callable[[Ints], Projection]]:
+    return projection.distance, projection.patch.astype(np.int32), projection.__getitem__
+
+
+def _zeros(n: int) -> Codes:
+    """Return the code of the only patch for n points, held once."""
+    return np.broadcast_to(np.int32(0), (n,))
+
+
+def _largest(d: Floats) -> float:
+    return float(max(d.max(), -d.min())) if len(d) else 0.0
+
+
+def _beyond(d: Floats, limit: float) -> int:
+    return sum(int((np.abs(part) > limit).sum()) for (part,) in blocks(d))
+
+
+def _worst(d: Floats) -> tuple[int, ...]:
     """Return the points with the largest distances, the largest first, equal ones in their order."""
-    least = np.partition(magnitude, -WORST)[-WORST] if len(magnitude) > WORST else 0.0
-    some = np.flatnonzero(magnitude >= least)
-    return tuple(some[np.argsort(-magnitude[some], kind="stable")[:WORST]].tolist())
+    rows, start = np.empty(0, np.int64), 0
+    for (part,) in blocks(d):
+        magnitude = np.abs(part)
+        least = np.partition(magnitude, -WORST)[-WORST] if len(part) > WORST else 0.0
+        some = np.flatnonzero(magnitude >= least)
+        rows = np.concatenate([rows, start + some[np.argsort(-magnitude[some], kind="stable")[:WORST]]])
+        start += len(part)
+    return tuple(rows[np.argsort(-np.abs(d[rows]), kind="stable")[:WORST]].tolist())
 
 
 def _runs_away(surface: FittedSurface, checks: Sequence[Check]) -> bool:
@@ -202,8 +242,9 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
         checks.append(Check("core", worst <= CORE_LIMIT, worst, CORE_LIMIT, "m", text))
     loose = ~exact
     if loose.any():
-        worst = float(np.abs(d[loose]).max())
-        figures = {"count": int((np.abs(d[loose]) > tolerance).sum()), "total": int(loose.sum())}
+        apart = d[loose] if exact.any() else d
+        worst = _largest(apart)
+        figures = {"count": _beyond(apart, tolerance), "total": len(apart)}
         text = message(
             "checks.points-beyond-tolerance",
             "{count} of {total} points beyond the interior tolerance",
@@ -251,13 +292,17 @@ def _residual_checks(surface: FittedSurface, d: Floats, patch: Labels, loose: ND
     """Test the residuals of the approximated points: a core's are zero by construction."""
     if not loose.any():
         return []
-    some = slice(None) if loose.all() else loose
-    xyz = surface.points.xyz[some] - surface.origin
-    return residual_checks(xyz, d[some], patch[some], surface.settings.interior_tolerance)
+    if not loose.all():
+        d, patch = d[loose], patch[loose]
+
+    def places(rows: Ints) -> Floats:
+        return np.asarray(surface.points.xyz[left_rows(loose, rows)] - surface.origin)
+
+    return residual_checks(places, d, patch, surface.settings.interior_tolerance)
 
 
 def _surface_checks(
-    surface: FittedSurface, projection: Projection, active: NDArray[np.bool_]
+    surface: FittedSurface, feet_of: Callable[[Ints], Projection], active: NDArray[np.bool_]
 ) -> tuple[Callable[[], Sequence[Check]], ...]:
     """Return what looks at the surface itself, at and between its points."""
     if not surface.patches:
@@ -270,6 +315,6 @@ def _surface_checks(
     return (
         lambda: shape_checks(surface, parts),
         lambda: asked(self_crossing(surface, parts)),
-        lambda: asked(oscillation(surface, parts, projection, active)),
+        lambda: asked(oscillation(surface, parts, feet_of, active)),
         lambda: asked(trend(surface, parts, active)),
     )

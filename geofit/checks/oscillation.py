@@ -8,7 +8,7 @@ departs from the spline by several times the worst of these errors nearby, it sw
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ from scipy.spatial import cKDTree
 from geofit.checks.lattice import Lattice
 from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
+from geofit.data.long_arrays import left_rows
 from geofit.data.messages import message
 from geofit.geometry.projection import Projection
 from geofit.surfaces.protocol import FittedSurface
@@ -48,7 +49,7 @@ NAMED = 20
 
 
 def oscillation(
-    surface: FittedSurface, parts: Sequence[Lattice], projection: Projection, active: Bools
+    surface: FittedSurface, parts: Sequence[Lattice], feet_of: Callable[[Ints], Projection], active: Bools
 ) -> Check | None:
     """Compare the surface between its points with what the points support.
 
@@ -58,8 +59,8 @@ def oscillation(
         The surface.
     parts : sequence of Lattice
         Its places.
-    projection : Projection
-        Feet of its points.
+    feet_of : callable
+        ``feet_of(rows)`` returns the nearest places of some of its points.
     active : (n,) array of bool
         Points that conflicts left.
 
@@ -68,14 +69,15 @@ def oscillation(
     Check or None
         The largest departure, metres, against what is allowed at that place; None with fewer than 20 points.
     """
-    chosen = np.flatnonzero(active)
-    given = len(chosen)
+    given = int(active.sum())
     if given < FEWEST:
         return None
+    chosen = np.arange(given)
     if given > MOST:
-        chosen = np.sort(np.random.default_rng(0).choice(chosen, MOST, replace=False))
-    points = surface.points.xyz[chosen] - surface.origin
-    feet, normals = projection.foot[chosen], _normals(surface, projection, chosen)
+        chosen = np.sort(np.random.default_rng(0).choice(given, MOST, replace=False))
+    chosen = left_rows(active, chosen)
+    points, projection = surface.points.xyz[chosen] - surface.origin, feet_of(chosen)
+    feet, normals = projection.foot, _normals(surface, projection)
     places, upward, bent = _places(parts)
     tree = cKDTree(points)
     near = np.asarray(tree.query(places, k=NEAR)[1])
@@ -114,12 +116,12 @@ def oscillation(
     return Check("oscillation", False, value, limit, "m", partly(text, len(chosen), given), named)
 
 
-def _normals(surface: FittedSurface, projection: Projection, chosen: Ints) -> Floats:
-    normals = np.zeros((len(chosen), 3))
+def _normals(surface: FittedSurface, projection: Projection) -> Floats:
+    normals = np.zeros((len(projection.patch), 3))
     for index, patch in enumerate(surface.patches):
-        mine = projection.patch[chosen] == index
+        mine = projection.patch == index
         if mine.any():
-            u, v = projection.u[chosen[mine]], projection.v[chosen[mine]]
+            u, v = projection.u[mine], projection.v[mine]
             cross = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1))
             normals[mine] = _unit(cross)
     return normals

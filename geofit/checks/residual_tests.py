@@ -6,6 +6,8 @@ against the interior tolerance as well as against chance, since a pattern of mil
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
@@ -13,11 +15,13 @@ from scipy.special import binom, ndtri
 
 from geofit.data.accuracy import Check
 from geofit.data.labels import Labels
+from geofit.data.long_arrays import spread
 from geofit.data.messages import Message, message
 
 __all__ = ["by_label", "residual_checks"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 #: Fewest points of a patch, and of a surface, that say something about a distribution.
 FEW, FEWEST = 8, 20
@@ -34,13 +38,13 @@ NEIGHBOURS = 6
 CROOKED = 0.1
 
 
-def residual_checks(xyz: Floats, d: Floats, patch: Labels, tolerance: float) -> list[Check]:
+def residual_checks(xyz_of: Callable[[Ints], Floats], d: Floats, patch: Labels, tolerance: float) -> list[Check]:
     """Test the residuals of the approximated points.
 
     Parameters
     ----------
-    xyz : (n, 3) array
-        The points, metres, about a local origin.
+    xyz_of : callable
+        ``xyz_of(rows)`` returns some of the n points, metres, about a local origin.
     d : (n,) array
         Their signed distances from the surface, metres.
     patch : Labels
@@ -55,7 +59,7 @@ def residual_checks(xyz: Floats, d: Floats, patch: Labels, tolerance: float) -> 
     """
     place = _thinned(len(d))
     checks = [_bias(d, patch, tolerance)]
-    for test in (_clustering(xyz[place], d[place], tolerance), _normality(d[place], tolerance)):
+    for test in (_clustering(xyz_of(place), d[place], tolerance), _normality(d[place], tolerance)):
         text = partly(test.text, len(place), len(d))
         checks.append(Check(test.name, test.passed, test.value, test.limit, test.unit, text))
     return checks
@@ -72,6 +76,8 @@ def partly(text: Message, part: int, n: int) -> Message:
 
 def by_label(d: Floats, labels: Labels) -> dict[str, Floats]:
     """Return the distances of each label, labels in the order of their first appearance, distances in theirs."""
+    if len(labels.table) == 1:
+        return {labels.table[0]: d} if len(d) else {}
     codes, first = np.unique(labels.codes, return_index=True)
     parts = np.split(d[np.argsort(labels.codes, kind="stable")], np.cumsum(np.bincount(labels.codes)[codes])[:-1])
     return {labels.table[codes[k]]: parts[k] for k in np.argsort(first)} if len(codes) else {}
@@ -94,7 +100,7 @@ def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
     name = max(rows, key=lambda one: abs(rows[one].mean()) / limits[one])
     mean, limit = float(rows[name].mean()), limits[name]
     passed = abs(mean) <= limit
-    side = float(np.mean(np.sign(rows[name]) == np.sign(mean)))
+    side = float(np.mean(rows[name] > 0 if mean > 0 else rows[name] < 0))
     if passed:
         text = message(
             "checks.no-bias",
@@ -130,7 +136,7 @@ def _bias_limit(d: Floats, tolerance: float) -> float:
     n = len(d)
     fewer = min(int((d > 0).sum()), int((d < 0).sum()))
     chance = 2.0 * float(binom(n, np.arange(fewer + 1)).sum()) / 2.0**n if n <= 1000 else _normal_tail(n, fewer)
-    error = float(d.std(ddof=1)) / np.sqrt(n)
+    error = spread(d) / np.sqrt(n - 1)
     # Student's t of few points has wider tails than the normal distribution.
     beyond = BEYOND * (1 + BEYOND**2 / (2 * n))
     return SHARE * tolerance if chance < CHANCE else max(SHARE * tolerance, beyond * error)

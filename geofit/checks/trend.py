@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 from geofit.checks.lattice import Lattice, places
 from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
+from geofit.data.long_arrays import blocks, left_rows
 from geofit.data.messages import message
 from geofit.surfaces.protocol import FittedSurface
 
@@ -55,17 +56,18 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
         with fewer than ten points or all in a line, for a fold (it has no plane), and where no place is away from
         the points.
     """
-    points = surface.points.xyz[active] - surface.origin
-    if len(points) < FEWEST or surface.frame == "sections":
+    given = int(active.sum())
+    if given < FEWEST or surface.frame == "sections":
         return None
     where, normal = places(parts)
     if not len(where):
         return None
+    chosen = np.arange(given)
+    if given > MOST:
+        chosen = np.sort(np.random.default_rng(0).choice(given, MOST, replace=False))
+    points = surface.points.xyz[left_rows(active, chosen)] - surface.origin
     axes = np.eye(3) if surface.frame == "map" else _plane_axes(points, normal)
-    every, there = points @ axes.T, where @ axes.T
-    local = every
-    if len(every) > MOST:
-        local = every[np.sort(np.random.default_rng(0).choice(len(every), MOST, replace=False))]
+    local, there = points @ axes.T, where @ axes.T
     centre, size = local[:, :2].mean(axis=0), np.maximum(np.ptp(local[:, :2], axis=0), 1e-9)
     along, across = np.linalg.svd(local[:, :2] - centre, compute_uv=False)
     if across <= LINE * along:
@@ -73,7 +75,14 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
     spacing = float(np.sqrt(size.prod() / len(local)))
     design = _design((local[:, :2] - centre) / size)
     plane = _robust_plane(design, local[:, 2])
-    shown = float(np.abs(every[:, 2] - _design((every[:, :2] - centre) / size) @ plane).max())
+    # Over all points, as heights over the plane are linear in their coordinates.
+    slope = plane[1:] / size
+    off_plane = axes[2] - slope @ axes[:2]
+    constant = slope @ centre - plane[0]
+    shown = max(
+        float(np.abs((xyz[some] - surface.origin) @ off_plane + constant).max(initial=0.0))
+        for xyz, some in blocks(surface.points.xyz, active)
+    )
     off = np.abs(there[:, 2] - _design((there[:, :2] - centre) / size) @ plane)
     limit = max(TIMES * shown, surface.settings.epsilon)
     worst = _worst_away(off, there[:, :2], cKDTree(local[:, :2]), AWAY * spacing, limit)
@@ -89,7 +98,7 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
             "{shown:.1f} m",
             **figures,
         )
-        return Check("trend", True, value, limit, "m", partly(text, len(local), len(every)))
+        return Check("trend", True, value, limit, "m", partly(text, len(local), given))
     text = message(
         "checks.surface-runs-away",
         "the surface runs away where no point constrains it: {value:.1f} m from the regional "
@@ -98,7 +107,7 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
         **figures,
     )
     named = tuple((float(a), float(b), float(c)) for a, b, c in place[:NAMED])
-    return Check("trend", False, value, limit, "m", partly(text, len(local), len(every)), named)
+    return Check("trend", False, value, limit, "m", partly(text, len(local), given), named)
 
 
 def _worst_away(off: Floats, plan: Floats, points: cKDTree, reach: float, limit: float) -> Ints:

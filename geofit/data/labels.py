@@ -44,8 +44,8 @@ class Labels:
 
     @classmethod
     def same(cls, word: str, n: int) -> Labels:
-        """Return one word for all of n points."""
-        return cls(np.zeros(n, np.int32), (word,))
+        """Return one word for all of n points: its code is held once."""
+        return cls(np.broadcast_to(np.int32(0), (n,)), (word,))
 
     def __post_init__(self) -> None:
         self.codes.setflags(write=False)
@@ -70,7 +70,9 @@ class Labels:
         return Labels(codes[self.codes], tuple(table)) if len(words) else self
 
     def words(self) -> NDArray[np.str_]:
-        """Return the words themselves, (n,)."""
+        """Return the words themselves, (n,); one word for all is held once."""
+        if len(self.table) <= 1:
+            return np.broadcast_to(np.array(self.table[0] if self.table else "", dtype=np.str_), (len(self),))
         words = np.array(self.table or ("",), dtype=np.str_)[self.codes]
         words.setflags(write=False)
         return words

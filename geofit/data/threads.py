@@ -2,19 +2,36 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import AbstractContextManager
 from functools import cache
 from typing import Any
 
 from threadpoolctl import ThreadpoolController
 
-__all__ = ["one_thread"]
+__all__ = ["one_thread", "side_by_side"]
+
+#: Rows that one thread works on at a time.
+PART = 5_000
 
 
 def one_thread() -> AbstractContextManager[Any]:
     """Return a context in which numpy and scipy use one thread: the last digits do not depend on the machine either."""
     limited: AbstractContextManager[Any] = _libraries().limit(limits=1)
     return limited
+
+
+def side_by_side(work: Callable[[slice], None], n: int) -> None:
+    """Call ``work`` for all parts of n rows, on all processors; what it calls must not hold the interpreter's lock."""
+    parts = [slice(start, min(start + PART, n)) for start in range(0, n, PART)]
+    if len(parts) <= 1 or (os.cpu_count() or 1) == 1:
+        for part in parts:
+            work(part)
+        return
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        list(pool.map(work, parts))
 
 
 @cache

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
+from geofit.fitting.density import CLOUD
 from geofit.fitting.horizon_fit import HorizonFit, fit_of
 from geofit.fitting.model import Model
 from geofit.fitting.net import Net
@@ -38,6 +39,13 @@ def adjust(model: Model, surface: HorizonFit) -> HorizonFit:
                         step=step,
                     ),
                 )
+            break
+        if len(given.points) > CLOUD and not given.settings.strict:
+            words = message(
+                "fitting.sigma-of-cloud",
+                "sigma stays above epsilon: the points of a cloud are not met one by one",
+            )
+            surface = _with_note(surface, words.with_severity("warning"))
             break
         better = pull_to_worst(model.net, given.parametrization, given.kept & ~surface.core, accuracy.residuals)
         tried = None if better is None or step == given.settings.max_iterations else model.with_net(better)

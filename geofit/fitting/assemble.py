@@ -37,7 +37,9 @@ def with_knots(
 
 def _refined(coefficients: Floats, tu: Floats, tv: Floats) -> Floats:
     net = coefficients.reshape(tu.shape[1], tv.shape[1], -1)
-    fine: Floats = np.einsum("ai,ijk,bj->abk", tu, net, tv, optimize=True)
+    # Matrix products: the last digits of einsum's own sums depend on where in the memory the arrays begin.
+    rows = np.tensordot(tu, net, axes=(1, 0))
+    fine: Floats = np.ascontiguousarray(np.tensordot(tv, rows, axes=(1, 1)).swapaxes(0, 1))
     return fine.reshape(len(tu) * len(tv), *coefficients.shape[1:])
 
 

@@ -19,6 +19,8 @@ Ints = NDArray[np.intp]
 ABREAST = 64
 #: Least width of a strip of the sweep, in distances: few places lie next to its borders.
 NARROWEST = 16
+#: Places that are swept together (memory).
+SLAB = 1 << 19
 
 #: Where the sources state no accuracy, the one that was measured nearer to the rock is kept.
 _TRUST = {"borehole": 0, "adit": 1, "outcrop": 2, "point": 3, "map": 4, "section": 5, "geophysics": 6}
@@ -53,13 +55,15 @@ def resolve_conflicts(
         return kept, ()
     met = np.unique(pairs)
     accuracy = np.where(np.isnan(points.accuracy[met]), np.inf, points.accuracy[met])
-    trust = np.array([_TRUST.get(kind, 3) for kind in points.kind[met]])
-    rank = np.empty(len(points), dtype=int)
-    rank[met[np.lexsort((met, trust, accuracy))]] = np.arange(len(met))
-    better = np.where(rank[pairs[:, 0]] < rank[pairs[:, 1]], pairs[:, 0], pairs[:, 1])
+    kinds = points.labels["kind"][met]
+    trust = np.array([_TRUST.get(kind, 3) for kind in kinds.table])[kinds.codes]
+    rank = np.empty(len(met), dtype=int)
+    rank[np.lexsort((met, trust, accuracy))] = np.arange(len(met))
+    own = rank[np.searchsorted(met, pairs)]
+    better = np.where(own[:, 0] < own[:, 1], pairs[:, 0], pairs[:, 1])
     worse = pairs.sum(axis=1) - better
     conflicts = []
-    for i in np.lexsort((worse, rank[better])):
+    for i in np.lexsort((worse, own.min(axis=1))):
         winner, loser = int(better[i]), int(worse[i])
         if kept[winner] and kept[loser]:
             kept[loser] = False
@@ -70,8 +74,33 @@ def resolve_conflicts(
 def near_pairs(place: Floats, distance: float) -> Ints:
     """Return (m, 2) indices, ascending in each row, of the places nearer to each other than a distance.
 
-    A sweep along the longest axis, strip by strip, each so narrow that few places stand abreast. Two places on both
-    sides of a border between strips lie next to it; the few that do are swept once more without strips.
+    Of many places those of one slab of the longest axis at a time, with those of the next one by the border between.
+    """
+    low, high = (np.array([end(column) for column in place.T]) for end in (np.min, np.max))
+    axis = int(np.argmax(high - low))
+    count = min(len(place) // SLAB, 250, int((high - low)[axis] / (NARROWEST * distance)))
+    if count <= 1:
+        return _near_pairs(place, distance)
+    width = (high - low)[axis] / count
+    slab, shared = np.empty(len(place), np.uint8), []
+    for start in range(0, len(place), SLAB):
+        along = place[start : start + SLAB, axis] - low[axis]
+        slab[start : start + SLAB] = own = np.minimum(along / width, count - 1).astype(np.uint8)
+        shared.append(start + np.flatnonzero(np.maximum((along - 1.01 * distance) / width, 0).astype(np.uint8) < own))
+    border = np.concatenate(shared)
+    before = slab[border] - 1
+    pairs = []
+    for k in range(count):
+        rows = np.sort(np.concatenate([np.flatnonzero(slab == k), border[before == k]]))
+        pairs.append(rows[_near_pairs(place[rows], distance)] if len(rows) > 1 else np.empty((0, 2), np.intp))
+    return np.unique(np.concatenate(pairs), axis=0)
+
+
+def _near_pairs(place: Floats, distance: float) -> Ints:
+    """Return the pairs of places by a sweep along the longest axis.
+
+    Strip by strip, each so narrow that few places stand abreast. Two places on both sides of a border between strips
+    lie next to it; the few that do are swept once more without strips.
     """
     columns = np.ascontiguousarray(place.T)
     extent = np.ptp(columns, axis=1)
@@ -119,7 +148,7 @@ def _describe(points: PointSet, winner: int, loser: int, difference: float) -> C
         stated = np.nan_to_num(points.accuracy[[winner, loser]], nan=np.inf)
         if stated[0] < stated[1]:
             reason = message("fitting.conflict-kept-by-accuracy", "the better stated accuracy")
-        elif _TRUST.get(points.kind[winner], 3) < _TRUST.get(points.kind[loser], 3):
+        elif _trust(points, winner) < _trust(points, loser):
             reason = message("fitting.conflict-kept-by-source", "the source nearer to the rock")
         else:
             reason = message("fitting.conflict-kept-first", "the first")
@@ -132,3 +161,7 @@ def _describe(points: PointSet, winner: int, loser: int, difference: float) -> C
             reason=reason,
         ).with_severity("warning")
     return Conflict(winner, loser, difference, text)
+
+
+def _trust(points: PointSet, index: int) -> int:
+    return _TRUST.get(points.labels["kind"].word(index), 3)

@@ -142,13 +142,16 @@ def precision_band(space: TensorSpace, field: Field) -> Floats:
     return field.rho * MaternPrecision(space, field.alpha).band(field.kappa, field.stretch)
 
 
-def drift_of(plane: Rows) -> Floats:
-    """Return (3, r) the combinations of 1, u, v that (n, 2) places determine: no slope across a line of points."""
+def drift_of(plane: Rows, moments: tuple[Floats, Floats] | None = None) -> Floats:
+    """Return (3, r) the combinations of 1, u, v that (n, 2) places determine: no slope across a line of points.
+
+    ``moments`` is their :func:`covariance` where it is known.
+    """
     if len(plane) <= BLOCK:
         centre = plane[:BLOCK].mean(axis=0)
         _, size, axes = np.linalg.svd(plane[:BLOCK] - centre, full_matrices=False)
     else:
-        centre, products = covariance(plane)
+        centre, products = covariance(plane) if moments is None else moments
         squares, columns = np.linalg.eigh(products)
         size, axes = np.sqrt(np.maximum(squares[::-1], 0.0)), columns.T[::-1]
     known = axes[size > _NARROW * math.sqrt(len(plane))]
@@ -160,10 +163,11 @@ def slope_of(plane: Rows, trend: Floats | None) -> Slope:
 
     Without a trend nothing holds it, nor that of coordinates, of which a trend is (3, k).
     """
-    directions = drift_of(plane)
+    moments = covariance(plane)
+    directions = drift_of(plane, moments)
     if trend is None or trend.ndim > 1:
         return Slope(directions, np.zeros(directions.shape[1]), 0.0)
-    extent = float(np.trace(covariance(plane)[1])) / len(plane)
+    extent = float(np.trace(moments[1])) / len(plane)
     return Slope(directions, np.append(0.0, -(directions[1:, 1:].T @ trend[1:])), extent)
 
 

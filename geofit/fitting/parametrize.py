@@ -6,13 +6,13 @@ any frame: its parametrization is fitted through the section curves, and it take
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import FitError
+from geofit.data.long_arrays import covariance
 from geofit.data.messages import Message, message
 from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
@@ -100,7 +100,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
     upright = kind == "best-plane"
     frame = best_plane_frame(points) if upright else map_frame(points, direction_of(section, points, boundary))
     local = frame.to_local(points.xyz)
-    places: Sequence[Floats] = [local[:, :2]]
+    area = box_of(local[:, :2])
     notes = [reason]
     if section is not points.section and (section != "").any():
         lines = len(np.unique(section[section != ""]))
@@ -120,11 +120,10 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
                     count=count,
                 ).with_severity("warning")
             )
-        places = [local[:, :2], corners]
+        ends = [end(axis) for axis in local[:, :2].T for end in (np.min, np.max)]
+        area = box_of(np.concatenate([np.reshape(ends, (2, 2)).T, corners]))
     placed = np.ones(len(points), bool)
-    return Parametrization(
-        frame, local[:, :2], local[:, 2], box_of(np.concatenate(places)), tuple(notes), placed, section
-    )
+    return Parametrization(frame, local[:, :2], local[:, 2], area, tuple(notes), placed, section)
 
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]:
@@ -171,9 +170,9 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
 
 def _dip(points: PointSet, plane: Frame) -> float:
     """Return the mean dip in degrees; of points in one line in plan, the dip along that line."""
-    xyz = points.xyz - points.xyz.mean(axis=0)
-    moments, axes = np.linalg.eigh((xyz.T @ xyz)[:2, :2])
+    moments, axes = np.linalg.eigh(covariance(points.xyz)[1][:2, :2])
     if moments[0] < 0.02**2 * moments[1]:
+        xyz = points.xyz - points.xyz.mean(axis=0)
         along = xyz[:, :2] @ axes[:, 1]
         rise = np.abs(np.diff(xyz[np.argsort(along, kind="stable"), 2])).sum()
         if rise > max(4.0, len(xyz) / 6) * np.ptp(xyz[:, 2]):

@@ -17,7 +17,10 @@ __all__ = ["partition"]
 
 def partition(parametrization: Parametrization, settings: FitSettings, kept: NDArray[np.bool_]) -> Split:
     """Split the points that are active; one that were dropped is in no core."""
-    plane = parametrization.plane[kept]
+    if settings.core == "none" and not parametrization.parametric:
+        note = message("fitting.core-none", "core='none': every point is approximated")
+        return split_none(parametrization.plane, note)
+    plane = parametrization.plane if kept.all() else parametrization.plane[kept]
     if parametrization.parametric:
         found = split_all(
             plane,
@@ -30,8 +33,6 @@ def partition(parametrization: Parametrization, settings: FitSettings, kept: NDA
             parametrization.area,
             message("fitting.core-all", "core='all': every point is interpolated"),
         )
-    elif settings.core == "none":
-        found = split_none(plane, message("fitting.core-none", "core='none': every point is approximated"))
     elif settings.core == "auto":
         found = split_auto(plane, parametrization.area, parametrization.section[kept] != "")
     elif parametrization.frame.kind != "map":

@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.data.threads import side_by_side
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
 
@@ -30,6 +32,8 @@ LAST_STEP = 1e-7
 #: The same for steps that converge linearly (singular or indefinite Hessian).
 LAST_SLOW_STEP = 1e-9
 MAX_STEPS = 80
+#: From this many walks on, compiled loops are worth loading.
+COMPILED = 5_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +57,18 @@ class Cells:
     first: Ints
     shape: tuple[tuple[int, int], ...]
     extent: float
+
+    @property
+    def noise(self) -> float:
+        """Rounding error of a distance, metres."""
+        return 4e-15 * self.extent
+
+    @cached_property
+    def table(self) -> Floats:
+        """Coefficients (cells, q + 1, p + 1, d), those of a cell next to each other."""
+        q, rows, count = self.coefficients.shape
+        whole = self.coefficients.reshape(q, rows // self.dimension, self.dimension, count)
+        return np.ascontiguousarray(np.moveaxis(whole, 3, 0))
 
     def locate(self, patch: int, u: Floats, v: Floats) -> Place:
         """Return the cells and local coordinates of parameters of one patch, clamped to its domain."""
@@ -198,9 +214,25 @@ def refine_foot_points(cells: Cells, start: Place, target: Floats) -> Place:
     Place
         Feet, with ``converged``.
     """
+    if target.shape[1] >= COMPILED:
+        return _compiled_walks(cells, start, target)
     batches = [slice(k, k + BATCH) for k in range(0, max(target.shape[1], 1), BATCH)]
     end = Place.join([_refine_foot_points(cells, start[batch], target[:, batch]) for batch in batches])
     return _look_behind_walls(cells, end, target)
+
+
+def _compiled_walks(cells: Cells, start: Place, target: Floats) -> Place:
+    """Walk by compiled loops, on all processors."""
+    from geofit.geometry.foot_loops import walks
+
+    cell, local = start.cell.astype(np.int64), np.ascontiguousarray(start.local)
+    points, done = np.ascontiguousarray(target.T), np.zeros(len(start.cell), bool)
+
+    def walk(some: slice) -> None:
+        walks(cells.table, cells.neighbour, cells.noise, cell[some], local[:, some], points[some], done[some])
+
+    side_by_side(walk, len(cell))
+    return Place(cell, local, done)
 
 
 def _refine_foot_points(cells: Cells, start: Place, target: Floats) -> Place:
@@ -211,7 +243,7 @@ def _refine_foot_points(cells: Cells, start: Place, target: Floats) -> Place:
     c, x = cell.copy(), local.copy()
     entered = np.zeros(x.shape)
     previous, step, before = x.copy(), np.zeros_like(x), np.full(len(cell), np.inf)
-    noise = 4e-15 * cells.extent
+    noise = cells.noise
     for _ in range(MAX_STEPS):
         s, ds, dt, dss, dst, dtt = cells._jet(Place(c, x), 2)
         r = s - target[:, walking]

@@ -61,6 +61,11 @@ class Projection:
         """Return room for n points."""
         return cls(np.zeros(n), np.zeros((n, 3)), np.zeros(n, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, bool))
 
+    def __getitem__(self, rows: Ints) -> Projection:
+        """Return what was found for some of the points."""
+        some = {name: None if values is None else values[rows] for name, values in vars(self).items()}
+        return Projection(**some)
+
     def fill(self, rows: Ints, other: Projection) -> None:
         """Write what was found for some of the points."""
         for name, values in vars(other).items():

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.data.long_arrays import covariance
+from geofit.data.long_arrays import blocks, covariance
 from geofit.data.points import PointSet
 
 __all__ = ["Frame", "best_plane_frame", "map_frame", "plane_axes", "section_azimuth"]
@@ -35,7 +35,14 @@ class Frame:
 
     def to_local(self, xyz: ArrayLike) -> Floats:
         """Return (n, 3) local coordinates of (n, 3) map coordinates."""
-        return (np.asarray(xyz, float) - self.origin) @ self.axes.T
+        world = np.asarray(xyz, float)
+        local = np.empty(world.shape)
+        for part, rows in blocks(world.reshape(-1, 3), local.reshape(-1, 3)):
+            x, y, z = (part - self.origin).T
+            # Not a matrix product: its last digits depend on how many points there are.
+            for k, (a, b, c) in enumerate(self.axes.tolist()):
+                rows[:, k] = a * x + b * y + c * z
+        return local
 
     def turn_back(self, local: ArrayLike) -> Floats:
         """Return local coordinates (..., 3) turned to the map's axes, still about the origin."""

@@ -12,17 +12,21 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
+from geofit.data.threads import side_by_side
+from geofit.geometry.ball_tree import BallTree
 from geofit.geometry.cells import Cells, Place, refine_foot_points, tabulate
 from geofit.geometry.elevation import plan_map
 from geofit.geometry.foot_points import Projection, foot_points_over_plan
 from geofit.splines.patch import Patch, Patches
 
-__all__ = ["Projection", "project"]
+__all__ = ["COMPILED", "Projection", "Searchable", "project", "searchable"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -35,8 +39,8 @@ PLACES, MOST_STEPS = 16_000, 16
 #: A tree place within so many lattice steps of a known foot belongs to that foot's basin.
 BESIDE = 1.6
 MOST_WALKS = 24
-#: Points that are searched for together (memory).
-CHUNK = 20_000
+#: Points that are searched for together (memory), and from how many on compiled loops are worth loading.
+CHUNK, COMPILED = 20_000, 5_000
 
 
 def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
@@ -76,8 +80,11 @@ def project(patches: Sequence[Patch], xyz: ArrayLike) -> Projection:
 
 def foot_points_by_search(patches: Sequence[Patch], target: Floats) -> Projection:
     """Find the nearest places by walks from all places that may lead to them."""
-    surface = Patches.of(patches).prepared(_prepare)
-    feet = Place.join([_nearest(surface, target[k : k + CHUNK]) for k in range(0, max(len(target), 1), CHUNK)])
+    surface = searchable(patches)
+    if len(target) >= COMPILED:
+        feet = surface.feet(target)
+    else:
+        feet = Place.join([_nearest(surface, target[k : k + CHUNK]) for k in range(0, max(len(target), 1), CHUNK)])
     feet = _no_farther_than_below(patches, surface.cells, target, feet)
     s, ds, dt, *_ = surface.cells.jets(feet)
     normal = np.cross(ds.T, dt.T) * surface.upwards
@@ -123,7 +130,7 @@ def _no_farther_than_below(patches: Sequence[Patch], cells: Cells, target: Float
 
 
 @dataclass(frozen=True, eq=False)
-class _Searchable:
+class Searchable:
     """Patches with a tree of places: their lattice rows and columns, half spacing (m) and curvature (1/m)."""
 
     cells: Cells
@@ -138,15 +145,75 @@ class _Searchable:
     cell_steps: Floats
     upwards: float
 
+    def feet(self, target: Floats) -> Place:
+        """Return the nearest places to (n, 3) points by compiled loops."""
+        apart, done = np.full(len(target), np.inf), np.zeros(len(target), bool)
+        cell, local = np.zeros(len(target), np.int64), np.zeros((2, len(target)))
+        self.explore(target, done.copy(), (apart, cell, local, done), untrimmed(len(self.cells.breaks)), self.balls)
+        return Place(cell, local, done)
 
-def _prepare(patches: Patches) -> _Searchable:
+    def explore(
+        self, target: Floats, known: Bools, found: tuple[Floats, Ints, Floats, Bools], loops: Any, places: Any
+    ) -> None:
+        """Look for nearer feet inside loops; see :func:`geofit.geometry.search_loops.explore`."""
+        from geofit.geometry.search_loops import explore
+
+        points, (apart, cell, local, done) = np.ascontiguousarray(target), found
+
+        def work(some: slice) -> None:
+            part = (apart[some], cell[some], local[:, some], done[some])
+            explore(self.of_cells, *places, loops, points[some], known[some], part)
+
+        side_by_side(work, len(target))
+
+    def place_at(self, cell: Ints, local: Floats) -> Place:
+        """Return places by their cells and local coordinates."""
+        return Place(cell, local)
+
+    @property
+    def of_cells(self) -> tuple[Any, ...]:
+        """The cells as compiled loops take them."""
+        c = self.cells
+        return c.table, c.neighbour, c.noise, c.patch, self.cell_origin, self.cell_steps, c.centre, c.half
+
+    @cached_property
+    def balls(self) -> tuple[Any, Any]:
+        """All places and a ball tree of them as compiled loops take them."""
+        return self.some_places(np.arange(self.tree.n), 1.0)
+
+    def some_places(self, rows: Ints, wider: float) -> tuple[Any, Any]:
+        """Return some places, each for so many times its spacing, and a ball tree of them."""
+        points, spacing, curvature = self.tree.data[rows], wider * self.spacing[rows], self.curvature[rows]
+        tree = BallTree.of(points, np.zeros(len(rows)), spacing, curvature)
+        local, lattice = (np.ascontiguousarray(values[:, rows]) for values in (self.place.local, self.lattice))
+        places = points, self.place.cell[rows], local, self.patch[rows], lattice, spacing, curvature
+        return places, (tree.order, tree.centre, tree.radius, tree.spacing, tree.curvature)
+
+
+def untrimmed(patches: int) -> tuple[Any, ...]:
+    """Return the loops of patches that have none, as compiled loops take them."""
+    return (
+        np.zeros(patches, bool),
+        np.zeros((patches, 4)),
+        np.zeros((patches, 2), np.int64),
+        np.zeros(0, np.int64),
+        np.zeros((0, 4)),
+    )
+
+
+def searchable(patches: Sequence[Patch]) -> Searchable:
+    """Return patches with what a search for foot points needs; it is made once."""
+    return Patches.of(patches).prepared(_prepare)
+
+
+def _prepare(patches: Patches) -> Searchable:
     cells = tabulate(patches)
     parts = [_lattice(cells, index, len(patches)) for index in range(len(patches))]
     place = Place(np.concatenate([p.place.cell for p in parts]), np.concatenate([p.place.local for p in parts], axis=1))
     area = np.sum([p.area for p in parts], axis=0)
     size = np.abs(area).max()
     upwards = next((float(np.sign(c)) for c in (area[2], area[1], area[0]) if abs(c) > 1e-9 * size), 1.0)
-    return _Searchable(
+    return Searchable(
         cells=cells,
         tree=cKDTree(np.concatenate([p.points for p in parts])),
         place=place,
@@ -232,7 +299,7 @@ def _curvature(jets: list[Floats], normal: Floats) -> Floats:
     return np.asarray(np.where(regular, bound, 0.0))
 
 
-def _nearest(surface: _Searchable, target: Floats) -> Place:
+def _nearest(surface: Searchable, target: Floats) -> Place:
     """Feet of the points: the best of all the walks that could lead to the nearest place."""
     count = min(FIRST_LOOK, surface.tree.n)
     reach, near = _look(surface.tree, target, count)
@@ -253,7 +320,7 @@ def _nearest(surface: _Searchable, target: Floats) -> Place:
 
 
 def _explore(
-    surface: _Searchable,
+    surface: Searchable,
     target: Floats,
     best: _Walks,
     known: list[_Basin],
@@ -290,13 +357,13 @@ class _Pairs:
     def __getitem__(self, mask: Bools) -> _Pairs:
         return _Pairs(self.point[mask], self.place[mask], self.reach[mask])
 
-    def within(self, surface: _Searchable, distance: Floats) -> Bools:
+    def within(self, surface: Searchable, distance: Floats) -> Bools:
         """Which places may have a foot beside them that is nearer than ``distance``."""
         d = distance[self.point]
         room = surface.spacing[self.place] ** 2 * (1 + d * surface.curvature[self.place])
         return np.asarray(self.reach**2 <= d**2 + room)
 
-    def beside(self, surface: _Searchable, basin: _Basin, distance: Floats) -> Bools:
+    def beside(self, surface: Searchable, basin: _Basin, distance: Floats) -> Bools:
         """Which places are next to the start or the foot of a walk: they lead to the same foot.
 
         Within the radius of curvature the squared distance is convex around the foot; beyond it two feet
@@ -332,7 +399,7 @@ class _Basin:
         return _Basin(patch, start, foot_patch, foot)
 
 
-def _basin(surface: _Searchable, start: Ints, foot: Place) -> _Basin:
+def _basin(surface: Searchable, start: Ints, foot: Place) -> _Basin:
     cell = foot.cell
     lattice = surface.cell_origin[:, cell] + surface.cell_steps[:, cell] * (foot.local + 1) / 2
     return _Basin(surface.patch[start], surface.lattice[:, start], surface.cells.patch[cell], lattice)
@@ -358,6 +425,6 @@ class _Walks:
         self.distance[rows] = other.distance[wins]
 
 
-def _walk(surface: _Searchable, start: Ints, target: Floats) -> _Walks:
+def _walk(surface: Searchable, start: Ints, target: Floats) -> _Walks:
     place = refine_foot_points(surface.cells, surface.place[start], np.ascontiguousarray(target.T))
     return _Walks(place, np.linalg.norm(surface.cells.points(place).T - target, axis=1))

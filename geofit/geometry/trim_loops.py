@@ -19,7 +19,8 @@ from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.geometry.mesh import WELD, Mesh
 from geofit.geometry.mesh_projection import ASIDE
-from geofit.geometry.projection import Projection, project
+from geofit.geometry.projection import COMPILED, Projection, project, searchable
+from geofit.geometry.trim_search import Pieces, TrimSearch
 from geofit.splines.patch import Patch
 
 __all__ = ["Loops", "beyond_edge", "inside", "nearest", "trim"]
@@ -38,6 +39,8 @@ LATTICE, AROUND = 60, 2000
 STARTS, STEPS = 4, 60
 #: How much longer than its chord half a piece of a loop may be; steps of Newton's method, and the last one, of 0 to 1.
 SLACK, NEWTON, REST = 1.5, 12, 1e-11
+#: How much farther from its chord a piece may be than at three places of it.
+BENT = 2.0
 
 
 def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Projection:
@@ -69,17 +72,40 @@ def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Proj
             within[own] = inside(patches[k], loops[k], found.u[own], found.v[own])
         again = np.flatnonzero(~within)
         if again.size:
-            rim, face = (
-                _rim_foot_points(patches, loops, target[again]),
-                _inner_foot_points(patches, loops, target[again]),
-            )
-            on_rim = rim.distance <= face.distance
-            found.u[again], found.v[again] = np.where(on_rim, rim.u, face.u), np.where(on_rim, rim.v, face.v)
-            found.foot[again] = np.where(on_rim[:, None], rim.foot, face.foot)
-            found.patch[again] = np.where(on_rim, rim.patch, face.patch)
-            found.distance[again] = np.copysign(np.minimum(rim.distance, face.distance), found.distance[again])
+            measured = _measured_again if len(again) < COMPILED else _searched_again
+            better, on_rim = measured(patches, loops, target[again], found[again])
+            found.u[again], found.v[again] = better.u, better.v
+            found.foot[again], found.patch[again] = better.foot, better.patch
+            found.distance[again] = np.copysign(better.distance, found.distance[again])
             found.beyond[again] = on_rim
     return found
+
+
+def _measured_again(patches: Sequence[Patch], loops: Loops, target: Floats, _: Projection) -> tuple[Projection, Bools]:
+    """Return the nearest places on the loops or inside them, and which are on the loops."""
+    rim, face = _rim_foot_points(patches, loops, target), _inner_foot_points(patches, loops, target)
+    on_rim = rim.distance <= face.distance
+    return Projection(
+        np.minimum(rim.distance, face.distance),
+        np.where(on_rim[:, None], rim.foot, face.foot),
+        np.where(on_rim, rim.patch, face.patch),
+        np.where(on_rim, rim.u, face.u),
+        np.where(on_rim, rim.v, face.v),
+        np.ones(len(target), bool),
+    ), on_rim
+
+
+def _searched_again(
+    patches: Sequence[Patch], loops: Loops, target: Floats, beyond: Projection
+) -> tuple[Projection, Bools]:
+    """Return the same for very many points, by compiled loops."""
+    surface = searchable(patches)
+    u, v = surface.cells.parameters(surface.place)
+    on_face = np.zeros(len(u), bool)
+    for k, patch in enumerate(patches):
+        own = surface.patch == k
+        on_face[own] = inside(patch, loops[k], u[own], v[own])
+    return TrimSearch(patches, loops, _pieces(patches, loops), on_face).nearest(np.ascontiguousarray(target), beyond)
 
 
 def beyond_edge(patches: Sequence[Patch], target: Floats, found: Projection) -> Bools:
@@ -130,6 +156,28 @@ def inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Boo
 
 def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> Projection:
     """Return the nearest places on the loops: on the short pieces around the nearest samples."""
+    pieces = _pieces(patches, loops)
+    start, way, part, middle, reach = pieces.start, pieces.way, pieces.patch, pieces.middle, pieces.reach
+    count = min(2 * STARTS, len(start))
+    found = cKDTree(middle).query(target, k=np.arange(1, count + 1))
+    far, near = (np.asarray(values) for values in found)
+    # A piece can hold the nearest place only if it reaches nearer than the middle of the nearest piece.
+    point, column = np.nonzero(far - reach[near] <= far[:, :1])
+    piece = near[point, column]
+    t, distance, foot = np.empty(len(piece)), np.empty(len(piece)), np.empty((len(piece), 3))
+    for k in np.unique(part[piece]):
+        own = np.flatnonzero(part[piece] == k)
+        t[own] = _nearest_along(patches[k], start[piece[own]], way[piece[own]], target[point[own]])
+        foot[own] = patches[k].evaluate(*(start[piece[own]] + t[own, None] * way[piece[own]]).T)
+        distance[own] = np.linalg.norm(foot[own] - target[point[own]], axis=1)
+    order = np.lexsort((distance, point))
+    best = order[np.flatnonzero(np.diff(point[order], prepend=-1))]
+    u, v = (start[piece[best]] + t[best, None] * way[piece[best]]).T
+    return Projection(distance[best], foot[best], part[piece[best]], u, v, np.ones(len(target), bool))
+
+
+def _pieces(patches: Sequence[Patch], loops: Loops) -> Pieces:
+    """Cut loops into short pieces of like length."""
     sides = []
     for k, patch in enumerate(patches):
         for loop in loops[k]:
@@ -149,28 +197,15 @@ def _rim_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -> 
         owner.append(np.full(len(side), k))
     start, way, part = np.concatenate(starts), np.concatenate(ways), np.concatenate(owner)
     middle = np.concatenate(places)
-    count = min(2 * STARTS, len(start))
-    found = cKDTree(middle).query(target, k=np.arange(1, count + 1))
-    far, near = (np.asarray(values) for values in found)
-    # A piece can hold the nearest place only if it reaches nearer than the middle of the nearest piece.
-    reach: Floats = np.zeros(len(start))
+    at = np.empty((5, len(start), 3))
     for k in np.unique(part):
         own = part == k
-        for edge in (0.0, 1.0):
-            end = patches[k].evaluate(*(start[own] + edge * way[own]).T)
-            reach[own] = np.maximum(reach[own], SLACK * np.linalg.norm(end - middle[own], axis=1))
-    point, column = np.nonzero(far - reach[near] <= far[:, :1])
-    piece = near[point, column]
-    t, distance, foot = np.empty(len(piece)), np.empty(len(piece)), np.empty((len(piece), 3))
-    for k in np.unique(part[piece]):
-        own = np.flatnonzero(part[piece] == k)
-        t[own] = _nearest_along(patches[k], start[piece[own]], way[piece[own]], target[point[own]])
-        foot[own] = patches[k].evaluate(*(start[piece[own]] + t[own, None] * way[piece[own]]).T)
-        distance[own] = np.linalg.norm(foot[own] - target[point[own]], axis=1)
-    order = np.lexsort((distance, point))
-    best = order[np.flatnonzero(np.diff(point[order], prepend=-1))]
-    u, v = (start[piece[best]] + t[best, None] * way[piece[best]]).T
-    return Projection(distance[best], foot[best], part[piece[best]], u, v, np.ones(len(target), bool))
+        for edge in range(5):
+            at[edge, own] = patches[k].evaluate(*(start[own] + edge / 4 * way[own]).T)
+    reach = SLACK * np.linalg.norm(at[[0, 4]] - middle, axis=2).max(axis=0)
+    share = np.array([0.25, 0.5, 0.75])[:, None, None]
+    bent = np.linalg.norm(at[1:4] - (1 - share) * at[0] - share * at[4], axis=2).max(axis=0)
+    return Pieces(start, way, part, middle, reach, np.ascontiguousarray(at[[0, 4]].swapaxes(0, 1)), BENT * bent)
 
 
 def _nearest_along(patch: Patch, start: Floats, way: Floats, target: Floats) -> Floats:

@@ -12,7 +12,6 @@ import time
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,7 +19,7 @@ from threadpoolctl import threadpool_limits
 
 from geofit.data.columns import LARGEST
 from geofit.data.errors import FitError, PointsError
-from geofit.data.long_arrays import LongArray, Rows, blocks, covariance, everywhere
+from geofit.data.long_arrays import LongArray, Rows, blocks, covariance, everywhere, without
 from geofit.data.messages import message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
@@ -129,7 +128,7 @@ def _fit_cloud(
     clock = _Clock(progress)
     low, high = _bounds(clock.listened(xyz, "bounds", 0.0, 0.1))
     frame = _frame(clock.listened(xyz, "frame", 0.1, 0.15), low, high, settings, boundary)
-    local = LongArray((len(xyz), 3), lambda start, stop: (xyz[start:stop] - frame.origin) @ frame.axes.T)
+    local = LongArray((len(xyz), 3), lambda start, stop: frame.to_local(xyz[start:stop]))
     places = LongArray((len(xyz), 2), lambda start, stop: local[start:stop][:, :2])
     gone = coincident(clock.listened(places, "conflicts", 0.15, 0.35), settings.coincidence_distance, folder)
     kept = without(local, gone)
@@ -171,20 +170,6 @@ class _Clock:
         if self._stage:
             self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + now - self._since
         self._since = now
-
-
-def without(rows: Rows, gone: Ints) -> LongArray:
-    """Return rows but those of some ascending indices."""
-    before = gone - np.arange(len(gone))
-
-    def read(start: int, stop: int) -> Floats:
-        low, high = (
-            k + int(np.searchsorted(before, k, side="right")) for k in (start, min(stop, len(rows) - len(gone)))
-        )
-        first, last = np.searchsorted(gone, (low, high))
-        return np.delete(rows[low:high], gone[first:last] - low, axis=0)
-
-    return LongArray((len(rows) - len(gone), *rows.shape[1:]), read)
 
 
 def _bounds(xyz: Rows) -> tuple[Floats, Floats]:
@@ -253,8 +238,7 @@ def _gather(local: LongArray, frame: Frame, boundary: Floats | None) -> Data:
     unit = math.sqrt((area[1] - area[0]) * (area[3] - area[2]) / n)
     plane = LongArray((n, 2), lambda start, stop: local[start:stop][:, :2] / unit)
     heights = LongArray((n,), lambda start, stop: local[start:stop][:, 2])
-    ones = LongArray((n,), lambda start, stop: np.ones(min(stop, n) - start))
-    trend = plane_trend(plane, heights, cast(Floats, ones))
+    trend = plane_trend(plane, heights, everywhere(1.0, n))
 
     def read(start: int, stop: int) -> Floats:
         part = local[start:stop]
@@ -263,4 +247,4 @@ def _gather(local: LongArray, frame: Frame, boundary: Floats | None) -> Data:
     value = LongArray((n,), read)
     scaled = (area[0] / unit, area[1] / unit, area[2] / unit, area[3] / unit)
     unknown = everywhere(math.nan, n)
-    return Data(cast(Floats, plane), cast(Floats, value), unknown, scaled, unit, trend)
+    return Data(plane, value, unknown, scaled, unit, trend)

@@ -11,7 +11,7 @@ from truth import EASTING, NORTHING, hills
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.data import long_arrays
 from geofit.data.errors import Cancelled, FitError, InputError, PointsError
-from geofit.data.long_arrays import LongArray
+from geofit.data.long_arrays import LongArray, without
 from geofit.fitting import density
 from geofit.fitting.conflicts import resolve_conflicts
 from geofit.io import clouds
@@ -19,7 +19,7 @@ from geofit.io.clouds import is_cloud, open_cloud
 from geofit.project.cloud_run import run_cloud
 from geofit.streaming import coincident as strips
 from geofit.streaming import residuals
-from geofit.streaming.fit import fit_cloud, without
+from geofit.streaming.fit import fit_cloud
 from geofit.streaming.residuals import measure
 from geofit.streaming.spool import spooled
 
