@@ -55,8 +55,8 @@ def read_body_points(path: str | PathLike[str]) -> PickedPoints:
     rows = read_rows(source, BODY_POINTS, journal)
     (x, y), z = rows.places(), rows.numbers("z", no_data=True)
     normals = np.column_stack([rows.numbers(role, required=False) for role in ("nx", "ny", "nz")])
-    known = np.isfinite(normals).all(axis=1) & ~np.isin(normals, NO_DATA).any(axis=1)
-    normals[~(known & (np.linalg.norm(np.where(known[:, None], normals, 0.0), axis=1) > 0))] = np.nan
+    unknown = ~np.isfinite(normals).all(axis=1) | np.isin(normals, NO_DATA).any(axis=1) | (normals == 0).all(axis=1)
+    normals[unknown] = np.nan
     side = np.array([_side(word) for word in rows.text("side", required=False)])
     for i in np.flatnonzero((side == "?") & rows.ok).tolist():
         rows.reject(
