@@ -75,7 +75,7 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
             raise InputError(
                 message("import.outline-ending", "Outlines are not read from a file that ends in '{ending}'",
                         ending=ending),
-                message("import.give-file-ends", "Give a file that ends in {names}.",
+                message("io.give-known-ending", "Give a file that ends in {names}.",
                         names=", ".join(OUTLINE_ENDINGS)),
                 file=source.name,
             )  # fmt: skip
@@ -86,7 +86,7 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
     if missing:
         raise InputError(
             message("import.no-outline-layer", "No closed line lies on layer '{layer}'", layer=missing[0]),
-            message("import.name-one-of", "Name one of: {names}.", names=", ".join(counts) or "–"),
+            message("io.name-one-of-these", "Name one of: {names}.", names=", ".join(counts) or "–"),
             file=source.name,
         )
     planes = _by_plane([one for one in rings if not layers or one[0] in layers], source, journal)
@@ -169,7 +169,7 @@ def _features(source: Source, journal: Journal) -> list[tuple[str, Floats]]:
         named = [one.get("properties") or {} for one in features]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError, shapely.GEOSException) as error:
         raise InputError(
-            message("import.map-cannot-read", "The map cannot be read: {error}", error=error),
+            message("io.map-unreadable", "The map cannot be read: {error}", error=error),
             message("import.save-geojson-elevations", "Save polygons with elevations as GeoJSON."),
             file=source.name,
         ) from None
