@@ -18,13 +18,13 @@ from geofit.gui.activity import Activity, Work
 from geofit.gui.body_showing import BodyShowing
 from geofit.gui.body_styles import BodyStyles
 from geofit.gui.fitting import Fitting
-from geofit.gui.panels.body_source import MESH
+from geofit.gui.panels.body_source import MESH, OTHER, OUTLINES, POINTS
 from geofit.gui.preferences import Preferences
 from geofit.gui.session import Session
 from geofit.gui.showing import Showing
 from geofit.gui.translate import shown_error, translated
 from geofit.gui.workspace import Workspace
-from geofit.project.body_building import BodyResult, made_body, measured_strata, site_codes
+from geofit.project.body_building import BodyResult, made_body, measured_strata
 from geofit.project.body_commands import SetBody
 from geofit.project.body_export import BLOCK_ENDINGS, TRIANGLE_ENDINGS, BodyExport, export_body
 from geofit.project.body_record import (
@@ -37,6 +37,7 @@ from geofit.project.body_record import (
     next_colour,
 )
 from geofit.project.body_saving import difference
+from geofit.project.body_sources import outline_layers, site_codes
 from geofit.project.provenance import Provenance
 
 __all__ = ["Bodies"]
@@ -123,12 +124,15 @@ class Bodies(QObject):
             title = self.tr("Export {name}").format(name=target.name)
             self._activity.do(title, export_body, result, name, target, on_done=self._exported, in_process=True)
 
-    def read_codes(self, file: Path) -> None:
-        """Offer the codes of another site file."""
+    def read_file(self, kind: str, file: Path) -> None:
+        """Take the file of a source into the panel, with the codes or layers that it offers."""
+        source, relative = self._panels.bodies.source, self._relative(file)
+        if kind not in (OTHER, OUTLINES):
+            source.show_file(kind, relative)
+            return
         title = self.tr("Read {name}").format(name=file.name)
-        relative = self._relative(file)
-        show = self._panels.bodies.source.show_other
-        self._activity.do(title, site_codes, file, on_done=lambda codes: show(relative, codes))
+        offers = site_codes if kind == OTHER else outline_layers
+        self._activity.do(title, offers, file, on_done=lambda names: source.show_file(kind, relative, names))
 
     def _work(self, name: str, source: BodySource, settings: BodySettings) -> Work:
         self._running = True
@@ -270,17 +274,17 @@ class Bodies(QObject):
 
     def _ask_file(self, kind: str) -> None:
         folder = str(self._document.folder or self._preferences.folder)
-        if kind == MESH:
-            words, kinds = self.tr("Open a closed body"), self.tr("Bodies (*.stl *.obj *.ply *.ts *.step *.stp)")
-        else:
-            words, kinds = self.tr("Open another site file"), self.tr("Site files (*.toml)")
-        path, _ = QFileDialog.getOpenFileName(self._window, words, folder, kinds)
-        if not path:
-            return
-        if kind == MESH:
-            self._panels.bodies.source.show_mesh(self._relative(Path(path)))
-        else:
-            self.read_codes(Path(path))
+        words, kinds = {
+            OTHER: (self.tr("Open another site file"), self.tr("Site files (*.toml)")),
+            OUTLINES: (self.tr("Open outlines on sections"), self.tr("Outlines (*.dxf *.geojson *.json)")),
+            POINTS: (self.tr("Open points of a body"), self.tr("Tables of points (*.csv *.txt *.xyz *.xlsx)")),
+            MESH: (self.tr("Open a closed body"), self.tr("Bodies (*.stl *.obj *.ply *.ts *.step *.stp)")),
+        }[kind]
+        path, _ = QFileDialog.getOpenFileName(
+            self._window, words, folder, f"{kinds};;{self.tr('All files (*)')}" if kind == POINTS else kinds
+        )
+        if path:
+            self.read_file(kind, Path(path))
 
     def take_mesh(self, file: Path, name: str = "") -> None:
         """Take a closed body from a file."""

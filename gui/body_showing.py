@@ -17,8 +17,9 @@ from geofit.gui.showing import Showing
 from geofit.gui.translate import translated
 from geofit.gui.workspace import Workspace
 from geofit.implicit.mesh import TriangleMesh
-from geofit.project.body_building import BodyResult, codes_of, given_of_logs, origin_text
-from geofit.project.body_record import BodyProvenance, BodyRecord, Intervals
+from geofit.project.body_building import BodyResult, origin_text
+from geofit.project.body_record import FITTED, BodyProvenance, BodyRecord, Intervals
+from geofit.project.body_sources import codes_of, given_of_logs
 from geofit.project.document import Document
 from geofit.project.provenance import Provenance
 
@@ -81,7 +82,7 @@ class BodyShowing(QObject):
         """Show what has changed."""
         self._later.stop()
         document, panel = self._document, self._panels.bodies
-        if not document.site.horizons and not document.state.bodies:
+        if not document.is_open:
             panel.close_site()
             self._panels.body_figures.show_body("", None)
             self._panels.section.show_bodies(())
@@ -89,6 +90,8 @@ class BodyShowing(QObject):
         if self._site:
             self._site = False
             panel.source.show_own(codes_of(document.site.boreholes))
+            if not document.site.horizons:
+                self._panels.reveal("bodies")
         if self.chosen not in document.state.bodies:
             self.chosen = next(iter(document.state.bodies), "") if self.chosen else ""
         self._show_tree()
@@ -129,7 +132,7 @@ class BodyShowing(QObject):
         result = self._document.body(name)
         accuracy = None if result is None else result.accuracy
         verdict = None if accuracy is None else verdict_of(accuracy)
-        waiting = result is None or (result.origin == "read back" and isinstance(record.provenance.source, Intervals))
+        waiting = result is None or (result.origin == "read back" and isinstance(record.provenance.source, FITTED))
         stale = self.stale(record)
         origin = "" if result is None or result.origin == "fitted" else translated(origin_text(result))
         return BodyShown(
@@ -186,6 +189,8 @@ class BodyShowing(QObject):
 
     def _go_to(self, found: Violation) -> None:
         """Look at a place of disagreement, with a ring about it, and find its hole in the tree."""
+        if not np.isfinite(found.place).all():
+            return
         view = self._panels.view
         view.pointer.surround(np.array(found.place), f"{found.hole} · {translated(found.text)}".lstrip(" ·"))
         view.focus_place(*found.place)

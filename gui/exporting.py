@@ -102,15 +102,16 @@ class Delivering(QObject):
     def section_sheet(self) -> None:
         """Ask for sections and a title block, and write the sections to scale."""
         from geofit.gui.dialogs.section_sheet import SectionSheetDialog
+        from geofit.project.section_sheet import sheet_bodies
 
         self._showing.begin_section()
         if self._showing.line is None:
             return
         site, line = self._document.site_in_use(), np.asarray(self._showing.line, float)
         surfaces = self._document.surfaces()
-        dialog = SectionSheetDialog(
-            site, surfaces, line, self._showing.thickness, self._showing.uncertainties(), self._folder(), self._window
-        )
+        bodies = sheet_bodies(self._document)
+        thickness, uncertain = self._showing.thickness, self._showing.uncertainties()
+        dialog = SectionSheetDialog(site, surfaces, line, thickness, uncertain, bodies, self._folder(), self._window)
         dialog.exec()
         if dialog.files:
             self._written(list(dialog.files))

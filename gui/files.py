@@ -244,7 +244,7 @@ class Files(QObject):
             "gui.site-opened",
             "{name}: {horizons}, {rows} not used.",
             name=Untranslated(site.name),
-            horizons=horizons,
+            horizons=horizons if site.horizons else holes,
             rows=rows,
         )
         self.reported.emit(translated(opened))
@@ -277,9 +277,9 @@ class Files(QObject):
 
 
 def _read_site(path: Path, *, progress: Progress) -> Site:
-    from geofit.io.site_file import read_site
+    from geofit.project.saving import site_for_work
 
-    return read_site(path, progress)
+    return site_for_work(path, progress=progress)
 
 
 def _read_sample(folder: Path, *, progress: Progress) -> tuple[Path, Site]:

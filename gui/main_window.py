@@ -42,6 +42,11 @@ __all__ = ["MainWindow"]
 _ALWAYS = {
     "new", "open", "sample", "quit", "preferences", "tutorial", "shortcuts", "rock_volume", "system_report", "about",
 }  # fmt: skip
+#: What needs a horizon: a site may have bodies alone.
+_OF_HORIZONS = {
+    "fit", "fit_all", "examine", "check_order", "order", "separate", "worst", "exclude", "seams", "control_points",
+    "export_step", "export_other", "plan_sheet", "report", "faded",
+}  # fmt: skip
 
 
 class MainWindow(QMainWindow):
@@ -293,12 +298,13 @@ class MainWindow(QMainWindow):
 
     def _enable(self) -> None:
         """Enable what can be done with what is open."""
-        is_open = bool(self.session.document.site.horizons)
+        document = self.session.document
+        is_open, layered = document.is_open, bool(document.horizons)
         for name, action in self.actions_.all().items():
             if name not in _ALWAYS:
-                action.setEnabled(is_open)
+                action.setEnabled(is_open and (layered or name not in _OF_HORIZONS))
         for name in ("fit", "fit_all"):
-            self.actions_[name].setEnabled(is_open and not self.showing.waiting)
+            self.actions_[name].setEnabled(layered and not self.showing.waiting)
         self.actions_["stop"].setEnabled(self.activity.busy)
         self.actions_.exaggerations.setEnabled(is_open)
         self.menus.panels.setEnabled(is_open)

@@ -95,7 +95,7 @@ class Showing(QObject):
         """Show what has changed since the last time."""
         self._later.stop()
         document, panels = self._document, self._panels
-        is_open = bool(document.site.horizons)
+        is_open = document.is_open
         whole = self._site
         if whole:
             panels.show_scene(is_open)
@@ -126,7 +126,7 @@ class Showing(QObject):
     def show_section(self) -> None:
         """Show the section along the present line."""
         document = self._document
-        site = document.site_in_use() if document.site.horizons else None
+        site = document.site_in_use() if document.is_open else None
         uncertain = self.uncertainties()
         panel = self._panels.section
         panel.show_section(site, document.surfaces(), self.line, self.thickness, uncertain, faded=self.faded)
@@ -183,7 +183,7 @@ class Showing(QObject):
 
     def _show_tree(self) -> None:
         document = self._document
-        site = document.site_in_use() if document.site.horizons else None
+        site = document.site_in_use() if document.is_open else None
         stale = {name for name in document.horizons if document.stale(name)}
         surfaces = document.surfaces()
         verdicts = {name: found for name in surfaces if (found := self.verdict(name)) is not None}

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 __all__ = [
     "ADIT_CONTACTS",
     "ADIT_PATH",
+    "BODY_POINTS",
     "BOUNDARY",
     "COLLAR",
     "COLLAR_ON_GROUND",
@@ -158,6 +159,17 @@ ORIENTATIONS = Schema(
         "ny": _spelled("ny gy orienty normaly poley"),
         "nz": _spelled("nz gz orientz normalz polez"),
         "horizon": _HORIZON,
+    },
+)
+
+BODY_POINTS = Schema(
+    "points of a body",
+    {**_PLACE, "z": _Z},
+    {
+        **{role: ORIENTATIONS.optional[role] for role in ("nx", "ny", "nz")},
+        "side": _spelled("side inside inout position 内外 位置 侧"),
+        "hole": _PICKED_HOLE,
+        "section": _SECTION,
     },
 )
 

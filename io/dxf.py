@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.messages import EMPTY, Message, message
@@ -15,10 +17,12 @@ from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.units import metres_of
 
-__all__ = ["LINES", "Entity", "count_points", "on_layers", "open_drawing", "problem"]
+__all__ = ["LINES", "ClosedLine", "Entity", "closed_lines", "count_points", "on_layers", "open_drawing", "problem"]
 
 #: Types that are read as points in their order; and those whose words name a place.
 LINES, WORDS = ("LWPOLYLINE", "POLYLINE", "LINE", "POINT"), ("TEXT", "MTEXT", "INSERT")
+#: Types that may be closed lines, and how far corners along an arc may lie off it, as a share of the line's size.
+CLOSABLE, ARC = ("LWPOLYLINE", "POLYLINE", "CIRCLE", "ELLIPSE", "SPLINE"), 0.002
 
 #: $INSUNITS of the units that are not metres, and drawing units a metre.
 _UNITS = {1: ("inches", 39.3701), 2: ("feet", 3.28084), 4: ("millimetres", 1000.0), 5: ("centimetres", 100.0)}
@@ -45,6 +49,14 @@ class Entity:
         return max(len(self.vertices), 1)
 
 
+@dataclass(frozen=True, eq=False)
+class ClosedLine:
+    """A closed line: its layer and its corners (k, 3), metres; the last one is not the first again."""
+
+    layer: str
+    xyz: NDArray[np.float64]
+
+
 def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True) -> list[Entity]:
     """Return the entities of the model space in metres of ``source.unit``.
 
@@ -55,11 +67,74 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
     InputError
         If the file is missing, or no drawing that can be read.
     """
-    import ezdxf
-
     journal.read(source)
     factor = 1.0 if source.unit is None else metres_of(source.unit, source.name)
-    # What ezdxf raises on a damaged file is not limited to its own errors.
+    with _readable(source):
+        document = _document(source)
+        entities, first = [], 1
+        for raw in document.modelspace():
+            entity = _entity(raw, first, factor)
+            entities.append(entity)
+            first += entity.size
+        unit = int(document.header.get("$INSUNITS", 0))
+    _warn_of_unit(unit, source, journal, scale_stated)
+    return entities
+
+
+def closed_lines(source: Source, journal: Journal) -> list[ClosedLine]:
+    """Return the closed lines of the model space at their true place; all other entities are listed.
+
+    Polylines of a coordinate system of their own, arcs, circles, ellipses and splines become corners in map
+    coordinates.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, or no drawing that can be read.
+    """
+    from ezdxf.path import make_path
+
+    journal.read(source)
+    found: list[ClosedLine] = []
+    with _readable(source):
+        document = _document(source)
+        unit = int(document.header.get("$INSUNITS", 0))
+        for number, raw in enumerate(document.modelspace(), 1):
+            kind, layer = str(raw.dxftype()), _clean(str(raw.dxf.layer))
+            xyz = np.zeros((0, 3))
+            if kind in CLOSABLE:
+                path = make_path(raw)
+                corners = [tuple(place) for place in path.control_vertices()]
+                size = float(np.ptp(np.array(corners), axis=0).max()) if corners else 0.0
+                if path.is_closed and size > 0:
+                    xyz = np.array([tuple(place) for place in path.flattening(ARC * size)], float)[:-1]
+            if len(xyz) < 3 or not np.isfinite(xyz).all():
+                journal.add(
+                    "note" if kind not in CLOSABLE else "error",
+                    source.name,
+                    message("import.not-closed-line", "A {entity} that is not a closed line is not used", entity=kind),
+                    message("import.close-polyline", "Close the polyline in CAD if it outlines the body."),
+                    row=number,
+                    column=layer,
+                    value=kind,
+                )
+                continue
+            found.append(ClosedLine(layer, xyz))
+    _warn_of_unit(unit, source, journal, False)
+    return found
+
+
+def _document(source: Source) -> Any:
+    import ezdxf
+
+    return ezdxf.readfile(source.path, encoding=source.encoding)
+
+
+@contextmanager
+def _readable(source: Source) -> Iterator[None]:
+    """Turn what ezdxf raises on a damaged file, which is not limited to its own errors, into one of ours."""
+    import ezdxf
+
     failures = (
         ezdxf.DXFError,
         ArithmeticError,
@@ -73,13 +148,7 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
         ValueError,
     )
     try:
-        document = ezdxf.readfile(source.path, encoding=source.encoding)
-        entities, first = [], 1
-        for raw in document.modelspace():
-            entity = _entity(raw, first, factor)
-            entities.append(entity)
-            first += entity.size
-        unit = int(document.header.get("$INSUNITS", 0))
+        yield
     except failures as error:
         raise InputError(
             message(
@@ -90,6 +159,9 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
             message("io.audit-in-cad", "Open it in CAD, audit it and save it as DXF (2007 or later)."),
             file=source.name,
         ) from None
+
+
+def _warn_of_unit(unit: int, source: Source, journal: Journal, scale_stated: bool) -> None:
     if unit in _UNITS and not scale_stated and source.unit is None:
         name, per_metre = _UNITS[unit]
         journal.add(
@@ -106,7 +178,6 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
                 scale=per_metre,
             ),
         )
-    return entities
 
 
 def _entity(raw: Any, first: int, factor: float) -> Entity:

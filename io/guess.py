@@ -21,7 +21,7 @@ from geofit.io.tables import Table, parse_numbers, shown
 __all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as"]
 
 #: Roles whose cells are words; all others hold numbers.
-WORDS = frozenset({"hole", "code", "horizon", "section", "adit", "kind"})
+WORDS = frozenset({"hole", "code", "horizon", "section", "adit", "kind", "side"})
 #: Rows that are looked at, evenly spread over the table.
 SAMPLE = 400
 #: A guess below it is shown but not used.

@@ -27,7 +27,7 @@ class BodyIssue:
     ``used`` is whether the fit uses the data all the same; ``place`` is in map coordinates.
     """
 
-    kind: Literal["coincident", "contradiction", "normal", "interval", "gap"]
+    kind: Literal["coincident", "contradiction", "normal", "interval", "gap", "file"]
     text: Message
     place: tuple[float, float, float] | None = None
     used: bool = True

@@ -113,6 +113,20 @@ class Posterior:
         chance = ndtr(-value / np.maximum(deviation, 1e-12) - SHIFT)
         return np.where(self.open_ground(xyz), chance, value < 0)
 
+    def margin(self, xyz: ArrayLike, chance: float) -> Floats:
+        """Return a smooth function (n,), metres, of (n, 3) places: negative where the probability is above ``chance``.
+
+        Its zero is the line or surface of that chance: the probability itself is too steep for a raster to find it.
+        """
+        from scipy.special import ndtri
+
+        value = self.body.value(xyz)
+        beyond = -float(ndtri(chance)) - SHIFT
+        factor = WITHOUT if beyond > 0 else WITHIN
+        return np.where(
+            (value < 0) | self.open_ground(xyz), value - beyond * factor * self.deviation(xyz), np.abs(value)
+        )
+
     def open_ground(self, xyz: ArrayLike) -> NDArray[np.bool_]:
         """Return which of (n, 3) places in map coordinates a realization of the body may reach.
 

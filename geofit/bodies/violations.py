@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -9,12 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.accuracy import crossed_pairs
+from geofit.bodies.questions import Question
 from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["Violation", "violations"]
+__all__ = ["Violation", "question_rows", "violations"]
 
 Floats = NDArray[np.float64]
 
@@ -24,11 +26,12 @@ class Violation:
     """One place at which a body and its data disagree.
 
     ``kind`` is "contact" (farther from the surface than epsilon), "sample" (on the wrong side), "length" (the surface
-    crosses between two samples of one side) or "data" (not used, because data contradict each other). ``distance`` is
+    crosses between two samples of one side), "data" (not used, because data contradict each other) or "question" (what
+    outlines leave open between two sections, at a place that is nan where the body gives none). ``distance`` is
     the signed distance of the place from the surface and ``length`` what is logged otherwise, metres, nan if unknown.
     """
 
-    kind: Literal["contact", "sample", "length", "data"]
+    kind: Literal["contact", "sample", "length", "data", "question"]
     hole: str
     place: tuple[float, float, float]
     distance: float
@@ -73,6 +76,15 @@ def violations(body: BodyFit) -> tuple[Violation, ...]:
         if not issue.used and issue.place is not None
     ]
     return tuple(found)
+
+
+def question_rows(questions: Sequence[Question]) -> tuple[Violation, ...]:
+    """Return questions of sections in the form of violations: they are listed with them, and are not counted as any."""
+    nowhere = (np.nan, np.nan, np.nan)
+    return tuple(
+        Violation("question", f"{one.first} – {one.second}", one.place or nowhere, np.nan, np.nan, one.text)
+        for one in questions
+    )
 
 
 def _place(xyz: Floats) -> tuple[float, float, float]:

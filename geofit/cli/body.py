@@ -1,4 +1,4 @@
-"""``geofit body``: logged intervals to a closed body."""
+"""``geofit body``: logged intervals, outlines on sections or picked points to a closed body."""
 
 from __future__ import annotations
 
@@ -15,9 +15,11 @@ from geofit.data.errors import InputError
 from geofit.data.messages import Message, message
 
 if TYPE_CHECKING:
+    from geofit.bodies.settings import BodySettings
     from geofit.data.site import Site
     from geofit.io.boreholes import Boreholes
     from geofit.project.body_run import BodyRun
+    from geofit.project.body_sources import SourceData
 
 __all__ = ["body", "print_body"]
 
@@ -26,10 +28,20 @@ __all__ = ["body", "print_body"]
 @guarded
 def body(
     source: Annotated[
-        Path, typer.Argument(metavar="SITE_OR_COLLAR", help="site.toml with [boreholes], or a table of collars.")
+        Path,
+        typer.Argument(
+            metavar="SOURCE",
+            help="site.toml with [boreholes], a table of collars, outlines on sections (DXF, GeoJSON), or a table of "
+            "points on the body.",
+        ),
     ],
-    code: Annotated[list[str], typer.Option(help="Code of the intervals inside the body; may be repeated.")],
     out: Out,
+    code: Annotated[
+        list[str] | None, typer.Option(help="Of boreholes: code of the intervals inside the body; may be repeated.")
+    ] = None,
+    layer: Annotated[
+        list[str] | None, typer.Option(help="Of outlines: their layer, by default all; may be repeated.")
+    ] = None,
     survey: Annotated[Path | None, typer.Option(help="With a collar table: depth, azimuth and dip.")] = None,
     intervals: Annotated[
         list[Path] | None, typer.Option(help="With a collar table: logged intervals; may be repeated.")
@@ -39,21 +51,27 @@ def body(
     lang: Lang = LanguageCode.EN,
     as_json: Json = False,
 ) -> int:
-    """Fit a closed body to logged intervals: STEP, triangles, volumes, residuals."""
+    """Fit a closed body to logged intervals, outlines or points: STEP, triangles, volumes, residuals."""
+    from geofit.bodies.questions import section_questions
     from geofit.bodies.settings import BodySettings
     from geofit.project.body_run import run_body
 
     settings = BodySettings(epsilon=epsilon)
-    holes = _read(source, survey, intervals or [])
-    print_issues(holes.issues)
-    print_counts(holes.counts)
+    title = None
     with listening() as progress:
-        run = run_body(holes, out, codes=code, settings=settings, progress=progress)
+        drawn = _drawn(source, bool(code or survey or intervals), layer or [], settings)
+        if drawn is not None:
+            run = run_body(drawn.data, out, name=source.stem, settings=settings, progress=progress)
+        else:
+            holes = _read(source, survey, intervals or [])
+            print_issues(holes.issues)
+            print_counts(holes.counts)
+            title = getattr(holes, "title", None)
+            run = run_body(holes, out, codes=code or (), settings=settings, progress=progress)
         if report:
             from geofit.data.languages import language
             from geofit.project.single_reports import write_body_report
 
-            title = getattr(holes, "title", None)
             pages = write_body_report(run, out, language(lang.value), title=title, progress=progress)
             run = replace(run, files=(*run.files, *pages))
     if as_json:
@@ -61,10 +79,34 @@ def body(
     else:
         print_body(run)
     _print_issues(run)
+    if drawn is not None and drawn.outlines:
+        for question in section_questions(drawn.outlines, run.body):
+            say(f"question: {question.text}")
     for text in run.failed_checks:
         say(f"Check failed: {text}")
     say(f"Files: {', '.join(file.name for file in run.files)} in {out}")
     return run.exit_code
+
+
+def _drawn(source: Path, of_holes: bool, layers: list[str], settings: BodySettings) -> SourceData | None:
+    """Read outlines or points; None: the source is of boreholes."""
+    from geofit.io.outlines import OUTLINE_ENDINGS
+    from geofit.project.body_record import Outlines, Picks
+    from geofit.project.body_sources import read_source
+
+    ending = source.suffix.casefold()
+    outlined = ending in OUTLINE_ENDINGS
+    if (layers and not outlined) or (of_holes and outlined):
+        raise InputError(
+            message("cli.layer-of-outlines", "--layer is for outlines; --code, --survey and --intervals for boreholes"),
+            message("cli.leave-out-option", "Leave out what does not belong to the source."),
+            file=str(source),
+        )
+    if outlined:
+        return read_source(Outlines(source.name, tuple(layers)), settings, (), source.parent)
+    if of_holes or ending == ".toml":
+        return None
+    return read_source(Picks(source.name), settings, (), source.parent)
 
 
 def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes | Site:

@@ -15,32 +15,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.settings import BodySettings
-from geofit.data.errors import InputError
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite
 from geofit.data.progress import Progress, tell
 from geofit.implicit.mesh import TriangleMesh
-from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Frame, Intervals, Outlines, Picks
+from geofit.project.body_sources import file_digest, read_source
 
 if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy
     from geofit.bodies.body import BodyFit
+    from geofit.bodies.questions import Question
     from geofit.bodies.simulate import BodyVolumes
     from geofit.bodies.strata import StratumVolume
     from geofit.bodies.violations import Violation
-    from geofit.data.site import Site
     from geofit.morphing.body import MorphBody
 
 __all__ = [
     "BodyResult",
     "MeshBody",
-    "codes_of",
-    "given_of_logs",
     "made_body",
     "make_body",
     "measured_strata",
     "origin_text",
-    "site_codes",
 ]
 
 Floats = NDArray[np.float64]
@@ -72,7 +69,8 @@ class MeshBody:
 class BodyResult:
     """A body with what was found out about it.
 
-    ``strata`` are its volumes between horizons, ``divided_by`` the surfaces that were available for them by name.
+    ``strata`` are its volumes between horizons, ``divided_by`` the surfaces that were available for them by name,
+    ``questions`` what outlines on sections leave open.
     ``origin`` is how it came here; ``difference`` the largest distance in metres between a body made again and the
     triangles that the project held, nan where nothing was compared.
     """
@@ -82,6 +80,7 @@ class BodyResult:
     strata: tuple[StratumVolume, ...] = ()
     divided_by: tuple[str, ...] = ()
     violations: tuple[Violation, ...] = ()
+    questions: tuple[Question, ...] = ()
     origin: Origin = "fitted"
     difference: float = np.nan
 
@@ -101,42 +100,6 @@ class BodyResult:
     def mesh(self) -> TriangleMesh:
         """Closed triangles about the local origin."""
         return self.body.overview
-
-
-def codes_of(campaigns: Sequence[Any]) -> dict[str, int]:
-    """Return the codes of interval tables with how often each occurs, the most frequent first."""
-    counts: dict[str, int] = {}
-    for log in (log for campaign in campaigns for log in campaign.logs):
-        for code, count in zip(*np.unique(log.code, return_counts=True), strict=True):
-            if code:
-                counts[str(code)] = counts.get(str(code), 0) + int(count)
-    return dict(sorted(counts.items(), key=lambda item: (-item[1], item[0])))
-
-
-def given_of_logs(campaigns: Sequence[Any]) -> str:
-    """Return a hash of all intervals and paths that a body of logged intervals depends on."""
-    digest = hashlib.sha256()
-    for campaign in campaigns:
-        for hole, path in campaign.paths.items():
-            digest.update(hole.encode())
-            for array in (path.depth, path.xyz):
-                digest.update(np.ascontiguousarray(array, np.float64).tobytes())
-        for log in campaign.logs:
-            digest.update("\n".join([*log.hole.tolist(), *log.code.tolist()]).encode())
-            for array in (log.top, log.base):
-                digest.update(np.ascontiguousarray(array, np.float64).tobytes())
-    return digest.hexdigest()[:16]
-
-
-def site_codes(file: Path, *, progress: Progress) -> dict[str, int]:
-    """Read the site of another file, and return the codes of its interval tables.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read, or its site has no interval tables.
-    """
-    return codes_of(_campaigns(file, progress))
 
 
 def make_body(
@@ -172,20 +135,10 @@ def make_body(
     """
     tell(progress, "read", 0.0)
     match source:
-        case Intervals(codes, file):
-            from geofit.bodies.fit import fit_body
-            from geofit.bodies.intervals import from_intervals
-            from geofit.bodies.violations import violations
-
-            holes = _campaigns(folder / file, progress) if file else campaigns
-            data = from_intervals(holes, codes, settings.step)
-            tell(progress, "fit", 0.1)
-            body = fit_body(data, settings, name=name)
-            tell(progress, "volumes", 0.5)
-            result = BodyResult(body, body.volumes(), violations=violations(body))
-            given = given_of_logs(holes)
+        case Intervals() | Outlines() | Picks():
+            result, given = _fitted(source, settings, name, campaigns, folder, progress)
         case ClosedMesh(file):
-            result, given = BodyResult(read_mesh_body(folder / file, name)), _file_digest(folder / file)
+            result, given = BodyResult(read_mesh_body(folder / file, name)), file_digest(folder / file)
         case Frame():
             made = [
                 make_body(end.source, end.settings, one, campaigns, folder, {}, None)
@@ -196,6 +149,23 @@ def make_body(
             given = hashlib.sha256(" ".join(provenance.given for provenance, _ in made).encode()).hexdigest()[:16]
     tell(progress, "strata", 0.85)
     return BodyProvenance(source, settings, given), measured_strata(result, horizons)
+
+
+def _fitted(
+    source: Intervals | Outlines | Picks, settings: BodySettings, name: str, campaigns: Sequence[Any], folder: Path,
+    progress: Progress | None,
+) -> tuple[BodyResult, str]:  # fmt: skip
+    """Fit a body to what its source holds; return also the hash of it."""
+    from geofit.bodies.fit import fit_body
+    from geofit.bodies.questions import section_questions
+    from geofit.bodies.violations import violations
+
+    read = read_source(source, settings, campaigns, folder, progress)
+    tell(progress, "fit", 0.1)
+    body = fit_body(read.data, settings, name=name)
+    tell(progress, "volumes", 0.5)
+    questions = section_questions(read.outlines, body) if read.outlines else ()
+    return BodyResult(body, body.volumes(), violations=violations(body), questions=questions), read.given
 
 
 def made_body(
@@ -260,24 +230,6 @@ def read_mesh_body(file: Path, name: str) -> MeshBody:
     require_closed(mesh, name)
     origin = np.round((mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2, -1)
     return MeshBody(name, origin, TriangleMesh(mesh.vertices - origin, mesh.triangles))
-
-
-def _campaigns(file: Path, progress: Progress | None) -> Sequence[Any]:
-    from geofit.io.site_file import load_site
-
-    site: Site = load_site(file, progress)
-    if not any(campaign.logs for campaign in site.boreholes):
-        raise InputError(
-            message("project.site-without-logs", "The site has no interval tables"),
-            message("project.give-site-with-logs", "Give a site file whose [boreholes] names interval tables."),
-            file=str(file),
-        )
-    return site.boreholes
-
-
-def _file_digest(file: Path) -> str:
-    with file.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()[:16]
 
 
 def origin_text(result: BodyResult) -> Message:

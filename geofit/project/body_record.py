@@ -9,7 +9,19 @@ from typing import Any
 from geofit.bodies.settings import BodySettings
 from geofit.data.site import COLOURS
 
-__all__ = ["BodyProvenance", "BodyRecord", "BodySource", "BodyStyle", "ClosedMesh", "Frame", "Intervals", "next_colour"]
+__all__ = [
+    "FITTED",
+    "BodyProvenance",
+    "BodyRecord",
+    "BodySource",
+    "BodyStyle",
+    "ClosedMesh",
+    "Frame",
+    "Intervals",
+    "Outlines",
+    "Picks",
+    "next_colour",
+]
 
 #: Colours of bodies in turn: those of horizons from the end, so that the first of both differ.
 BODY_COLOURS = (COLOURS[5], COLOURS[4], COLOURS[6], COLOURS[3], COLOURS[1], COLOURS[2], COLOURS[0], COLOURS[7])
@@ -21,6 +33,21 @@ class Intervals:
 
     codes: tuple[str, ...]
     file: str = ""
+
+
+@dataclass(frozen=True)
+class Outlines:
+    """Closed outlines on sections in ``file``, relative to the folder of the site; ``layers`` empty: all of them."""
+
+    file: str
+    layers: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Picks:
+    """Points on the body, with or without normals, in ``file``, relative to the folder of the site."""
+
+    file: str
 
 
 @dataclass(frozen=True)
@@ -47,7 +74,9 @@ class Frame:
     seeds: bool = False
 
 
-BodySource = Intervals | ClosedMesh | Frame
+BodySource = Intervals | Outlines | Picks | ClosedMesh | Frame
+#: Sources that a body is fitted to, and judged by.
+FITTED = (Intervals, Outlines, Picks)
 
 
 @dataclass(frozen=True)
@@ -105,6 +134,10 @@ def _source_data(source: BodySource) -> dict[str, Any]:
     match source:
         case Intervals(codes, file):
             return {"kind": "intervals", "codes": list(codes), "file": file}
+        case Outlines(file, layers):
+            return {"kind": "outlines", "file": file, "layers": list(layers)}
+        case Picks(file):
+            return {"kind": "points", "file": file}
         case ClosedMesh(file):
             return {"kind": "mesh", "file": file}
         case Frame():
@@ -121,6 +154,10 @@ def _source_from(data: Mapping[str, Any]) -> BodySource:
     match data["kind"]:
         case "intervals":
             return Intervals(tuple(str(code) for code in data["codes"]), str(data["file"]))
+        case "outlines":
+            return Outlines(str(data["file"]), tuple(str(layer) for layer in data["layers"]))
+        case "points":
+            return Picks(str(data["file"]))
         case "mesh":
             return ClosedMesh(str(data["file"]))
         case "frame":

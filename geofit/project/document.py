@@ -115,6 +115,11 @@ class Document:
         return None if file is None else file.resolve().parent
 
     @property
+    def is_open(self) -> bool:
+        """Whether there is a site to work on; one for bodies alone has no horizons."""
+        return self.site_file is not None or bool(self._site.horizons)
+
+    @property
     def site(self) -> Site:
         """The site, blocks in the place of horizons that were is_block at their faults."""
         return self._site

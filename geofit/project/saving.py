@@ -19,7 +19,7 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.implicit.mesh import TriangleMesh
 from geofit.io.project import Edit, Project, ProjectSource, load_surfaces, open_project, save_project
-from geofit.io.site_file import read_site
+from geofit.io.site_file import load_site, read_site
 from geofit.io.snapshot import read_snapshot, write_snapshot
 from geofit.project.body_building import BodyResult
 from geofit.project.body_record import BodyProvenance
@@ -40,6 +40,7 @@ __all__ = [
     "read_surfaces",
     "save_state",
     "saved_data",
+    "site_for_work",
     "state_of",
 ]
 
@@ -87,7 +88,7 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
             message("project.put-site-file-back", "Put it back, or open the site file where it is now."),
             file=str(site_file),
         )
-    site = read_site(site_file, progress, added=_added(project))
+    site = site_for_work(site_file, _added(project), progress=progress)
     state, changed = state_of(project, site), project.changed(path.parent)
     data = saved_data(state, path)
     for digest in earlier_data(state):
@@ -100,7 +101,22 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
 
 def read_again(site_file: Path, added: tuple[str, ...], *, progress: Progress | None = None) -> Site:
     """Read a site file as it is now, with the tables of files that were added to it."""
-    return read_site(site_file, progress, added=added)
+    return site_for_work(site_file, added, progress=progress)
+
+
+def site_for_work(file: Path, added: tuple[str, ...] = (), *, progress: Progress | None = None) -> Site:
+    """Read a site that has something to work on: horizons, or anything that bodies lie in or are made from.
+
+    Raises
+    ------
+    InputError
+        As :func:`geofit.io.read_site`.
+    """
+    site = load_site(file, progress, added=added)
+    if not (site.horizons or site.holes or site.sections) and site.ground is None and site.boundary is None:
+        # The reader of sites with horizons knows what to say.
+        return read_site(file, progress, added=added)
+    return site
 
 
 @dataclass(frozen=True, eq=False)

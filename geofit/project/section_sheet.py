@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,9 +17,14 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.paper import SheetTitle
 from geofit.report.section_pages import fitting_scale, write_sheet_pdf, write_sheet_svg
-from geofit.site.section_view import TOLERANCE, SectionView, section_view
+from geofit.site.section_view import TOLERANCE, BodyTrace, SectionView, section_view
 
-__all__ = ["SheetForm", "SheetOrder", "write_section_sheet"]
+if TYPE_CHECKING:
+    from geofit.bodies.body import BodyFit
+    from geofit.implicit.mesh import TriangleMesh
+    from geofit.project.document import Document
+
+__all__ = ["SheetBody", "SheetForm", "SheetOrder", "sheet_bodies", "write_section_sheet"]
 
 Floats = NDArray[np.float64]
 SheetForm = Literal["pdf", "svg", "dxf"]
@@ -62,15 +67,40 @@ class SheetOrder:
     language: str = "en"
 
 
+@dataclass(frozen=True, eq=False)
+class SheetBody:
+    """A body for a sheet: triangles in map coordinates, its colour, and the body if it was fitted to data."""
+
+    mesh: TriangleMesh
+    colour: str
+    fitted: BodyFit | None = None
+
+
+def sheet_bodies(document: Document) -> dict[str, SheetBody]:
+    """Return the bodies of a document that are shown."""
+    from geofit.implicit.mesh import TriangleMesh
+
+    found = {}
+    for name, record in document.state.bodies.items():
+        result = document.body(name)
+        if result is not None and record.style.visible:
+            mesh = TriangleMesh(result.mesh.vertices + result.body.origin, result.mesh.triangles)
+            found[name] = SheetBody(mesh, record.style.colour, result.fitted)
+    return found
+
+
 def write_section_sheet(
     site: Site,
     surfaces: Mapping[str, HorizonFit],
     uncertainty: Mapping[str, Uncertainty],
     order: SheetOrder,
+    bodies: Mapping[str, SheetBody] | None = None,
     *,
     progress: Progress | None = None,
 ) -> tuple[int, tuple[Path, ...]]:
     """Cut the sections and write the sheet; return its scale, 1 : so many, and the files.
+
+    ``bodies`` are drawn by name with the band of their surface.
 
     Raises
     ------
@@ -87,7 +117,8 @@ def write_section_sheet(
     for k, (name, line) in enumerate(order.lines.items()):
         tell(progress, "sections", 0.5 + 0.3 * k / len(order.lines))
         found = section_view(site, surfaces, line, order.thickness, name=name, uncertainty=uncertainty, meshes=meshes)
-        views.append(found)
+        traces = tuple(_body(called, one, found.line) for called, one in (bodies or {}).items())
+        views.append(replace(found, bodies=tuple(trace for trace in traces if trace.rings)))
     tell(progress, "drawing", 0.8)
     files: list[Path] = []
     scale = order.scale or fitting_scale(views, order.paper, order.exaggeration)
@@ -111,3 +142,12 @@ def write_section_sheet(
             files.append(path)
     tell(progress, "done", 1.0)
     return scale, tuple(files)
+
+
+def _body(name: str, body: SheetBody, line: Floats) -> BodyTrace:
+    """Cut a body along a section; the band only where the section meets it."""
+    from geofit.bodies.section import chance_lines, outline_rings
+
+    rings = outline_rings(body.mesh, line)
+    band = chance_lines(body.fitted, line) if rings and body.fitted is not None else ()
+    return BodyTrace(name, body.colour, rings, band)

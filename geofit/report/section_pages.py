@@ -28,7 +28,9 @@ LEFT, BELOW, LEGEND = 20.0, 14.0, 44.0
 #: Width of a hole's column of lithology, millimetres.
 COLUMN = 2.2
 GROUND = "#6b7d3a"
-DASHES = (0, (5.0, 3.0))
+DASHES, BAND = (0, (5.0, 3.0)), (0, (2.5, 2.0))
+#: How strongly the inside of a body is filled.
+TINT = 0.22
 _SOILS = ("#e8d9a0", "#c9b18a", "#b7c9a8", "#9fb6c4", "#d3a6a0", "#a9a1c6", "#dcc3d8", "#8fb3a2", "#d9cbb6", "#b2b2b2")
 _HATCHES = ("", "....", "////", "\\\\\\\\", "xxxx", "----", "++++", "oo", "||||", "**")
 
@@ -242,6 +244,7 @@ def _draw(
                     label=None if banded else t("90 % band"), zorder=1,
                 )  # fmt: skip
                 banded = True
+    _bodies(axes, view, t)
     half = COLUMN * scale / 2000
     for hole in view.holes:
         _column(axes, hole, half, styles)
@@ -253,6 +256,23 @@ def _draw(
     axes.set_ylabel(t("Elevation, m"))
     axes.yaxis.grid(True, color=LINE, lw=0.5)
     axes.set_axisbelow(True)
+
+
+def _bodies(axes: Axes, view: SectionView, t: Language) -> None:
+    """Draw bodies: their inside tinted, their outline whole, and dashed the lines between which it lies."""
+    from matplotlib.colors import to_rgba
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    for body in view.bodies:
+        whole = Outline.make_compound_path(*(Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in body.rings))
+        name = t("body {name}", name=body.name)
+        tint = to_rgba(body.colour, TINT)
+        axes.add_patch(PathPatch(whole, fc=tint, ec=body.colour, lw=1.4, zorder=1.5, label=name))
+        # Again above the columns of the holes.
+        axes.add_patch(PathPatch(whole, fill=False, ec=body.colour, lw=1.4, zorder=5.2))
+        for line in body.band:
+            axes.plot(*line.T, color=body.colour, lw=0.8, ls=BAND, zorder=5.1)
 
 
 def _column(axes: Axes, hole: HoleTrack, half: float, styles: Mapping[str, tuple[str, str]]) -> None:
@@ -289,6 +309,9 @@ def _legend(
     if any(not one.supported for traces in view.traces.values() for one in traces):
         handles.append(Line2D([], [], color=MUTED, lw=1.0, ls=DASHES))
         labels.append(t("above ground or\nbeyond the data"))
+    if any(body.band for body in view.bodies):
+        handles.append(Line2D([], [], color=MUTED, lw=0.8, ls=BAND))
+        labels.append(t("surface of a body\nlies here with 80 % chance"))
     here = {one.code for hole in view.holes for one in hole.intervals}
     for code, (colour, hatch) in styles.items():
         if code in here:

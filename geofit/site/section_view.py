@@ -19,7 +19,16 @@ from geofit.site.hole_logs import hole_intervals
 from geofit.site.support import support_of
 from geofit.surfaces.protocol import Surface
 
-__all__ = ["HoleTrack", "Interval", "SectionView", "Trace", "lithologies", "parallel_lines", "section_view"]
+__all__ = [
+    "BodyTrace",
+    "HoleTrack",
+    "Interval",
+    "SectionView",
+    "Trace",
+    "lithologies",
+    "parallel_lines",
+    "section_view",
+]
 
 Floats = NDArray[np.float64]
 
@@ -64,6 +73,19 @@ class HoleTrack:
 
 
 @dataclass(frozen=True, eq=False)
+class BodyTrace:
+    """A body on a section: ``rings`` are closed outlines (k, 2) of distance and elevation, metres, holes clockwise.
+
+    ``band`` are the lines (k, 2) between which its surface lies with 80 % chance; empty where that is not known.
+    """
+
+    name: str
+    colour: str
+    rings: tuple[Floats, ...]
+    band: tuple[Floats, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class SectionView:
     """A section along ``line`` (k, 2), map coordinates; everything else over the distance along it, metres.
 
@@ -78,6 +100,7 @@ class SectionView:
     ground: Floats
     holes: tuple[HoleTrack, ...]
     points: Mapping[str, Floats]
+    bodies: tuple[BodyTrace, ...] = ()
 
     @property
     def length(self) -> float:
@@ -92,6 +115,7 @@ class SectionView:
             self.ground[:, 1],
             *(hole.track[:, 1] for hole in self.holes),
             *(p[:, 1] for p in self.points.values()),
+            *(line[:, 1] for body in self.bodies for line in (*body.rings, *body.band)),
         ]
         z = np.concatenate([np.empty(0), *found])
         z = z[np.isfinite(z)]

@@ -15,7 +15,7 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.sheet import SheetDialog, metres
 from geofit.gui.translate import user_language
-from geofit.project.section_sheet import SheetOrder, write_section_sheet
+from geofit.project.section_sheet import SheetBody, SheetOrder, write_section_sheet
 from geofit.site.section_view import parallel_lines
 
 __all__ = ["SectionSheetDialog"]
@@ -34,6 +34,7 @@ class SectionSheetDialog(SheetDialog):
         line: Floats,
         thickness: float,
         uncertainty: Mapping[str, Uncertainty],
+        bodies: Mapping[str, SheetBody],
         folder: Path,
         parent: QWidget | None = None,
     ) -> None:
@@ -41,7 +42,7 @@ class SectionSheetDialog(SheetDialog):
         self.setWindowTitle(self.tr("Section sheet"))
         self.title_line.setText(self.tr("Geological section"))
         self.drawing = self.tr("Cutting and drawing the sections…")
-        self._line, self._uncertainty = line, dict(uncertainty)
+        self._line, self._uncertainty, self._bodies = line, dict(uncertainty), dict(bodies)
         # The patches are all that is cut; what stands behind them need not travel to the other process.
         self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
         self.which = QComboBox()
@@ -65,7 +66,7 @@ class SectionSheetDialog(SheetDialog):
             ((self.tr("&Height"), self.factor),),
         )
         self.which.currentIndexChanged.connect(self.refresh)
-        self.say(self.tr("Each section is drawn to scale: holes with lithology, horizons with their 90 % bands."))
+        self.say(self.tr("Each section is drawn to scale: holes with lithology, horizons and bodies with their bands."))
         self.refresh()
 
     def lines(self) -> Mapping[str, Floats]:
@@ -93,7 +94,7 @@ class SectionSheetDialog(SheetDialog):
 
     def work(self) -> tuple[Callable[..., Any], tuple[Any, ...]]:
         """Return what writes the sections."""
-        return write_section_sheet, (self._site, self._surfaces, self._uncertainty, self.order())
+        return write_section_sheet, (self._site, self._surfaces, self._uncertainty, self.order(), self._bodies)
 
     def refresh(self) -> None:
         """Enable what can be done."""

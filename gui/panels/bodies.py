@@ -31,7 +31,7 @@ from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.settings_form import SettingsForm, scrolling
 from geofit.gui.panels.verdict import VerdictBadge
-from geofit.project.body_record import BodyProvenance, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import FITTED, BodyProvenance, ClosedMesh, Frame
 
 __all__ = ["BodiesPanel", "BodyShown"]
 
@@ -148,7 +148,7 @@ class BodiesPanel(QWidget):
             self.title.clear()
         self.title.setVisible(shown is None)
         accuracy = None if shown is None else shown.accuracy
-        judged = shown is None or isinstance(shown.provenance.source, Intervals)
+        judged = shown is None or isinstance(shown.provenance.source, FITTED)
         self.badge.setVisible(shown is not None and judged)
         if shown is not None:
             self.badge.show_accuracy(accuracy, shown.stale, shown.verdict, shown.waiting)
@@ -228,7 +228,7 @@ class BodiesPanel(QWidget):
 
     def _check(self) -> None:
         source = self.source.source()
-        fitted = source is None or isinstance(source, Intervals)
+        fitted = source is None or isinstance(source, FITTED)
         self.form.setVisible(fitted)
         settings = self.form.check(self._given) if fitted else self._given
         known = self._shown.provenance if self._shown is not None else None
@@ -243,7 +243,7 @@ class BodiesPanel(QWidget):
         self.banner.show_text(
             self.tr("There is a body of this name already: choose another name.")
             if taken
-            else self.tr("Choose the codes that lie inside the body.")
+            else self.source.missing()
             if self._shown is None and source is None
             else self.tr("Not fitted with these settings yet: press Fit.")
             if changed

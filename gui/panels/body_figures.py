@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from geofit.bodies.simulate import BodyVolumes
-from geofit.bodies.violations import Violation
+from geofit.bodies.violations import Violation, question_rows
 from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import Column, DataTable
@@ -108,33 +108,41 @@ class BodyFigures(QWidget):
         )
 
     def _show_violations(self, result: BodyResult) -> None:
-        self._found = result.violations
+        broken, asked = result.violations, question_rows(result.questions)
+        self._found = broken + asked
         a = result.accuracy
         if a is None:
             self.count.setText(self.tr("Nothing was fitted: there are no data to check against."))
-        elif not self._found:
+        elif not broken:
             text = self.tr("No violations: {n} contacts within ε, {metres:.1f} m logged on the correct side.")
             self.count.setText(text.format(n=a.n, metres=a.logged_length))
         else:
             text = self.tr("Violations: {n}; samples on the wrong side: {wrong}; {metres:.2f} m of {logged:.1f} m")
             wrong = a.missed_length + a.excess_length
-            self.count.setText(
-                text.format(n=len(self._found), wrong=a.wrong_side, metres=wrong, logged=a.logged_length)
-            )
+            self.count.setText(text.format(n=len(broken), wrong=a.wrong_side, metres=wrong, logged=a.logged_length))
+        if asked:
+            text = self.tr("Questions between sections: {n}.").format(n=len(asked))
+            self.count.setText(f"{self.count.text()} {text}")
         kinds = {
             "contact": self.tr("Contact", "BodyFigures"),
             "sample": self.tr("Sample", "BodyFigures"),
             "length": self.tr("Interval", "BodyFigures"),
             "data": self.tr("Not used", "BodyFigures"),
+            "question": self.tr("Question", "BodyFigures"),
         }
         found, places = self._found, np.array([one.place for one in self._found]).reshape(-1, 3)
         self.violations.setVisible(bool(found))
         self.violations.show_columns(
             [
                 Column(
-                    self.tr("Kind"), np.array([kinds[one.kind] for one in found], str), icons=lambda _: icon("failed")
+                    self.tr("Kind"),
+                    np.array([kinds[one.kind] for one in found], str),
+                    icons=lambda k: icon("warning" if found[k].kind == "question" else "failed"),
                 ),
-                Column(self.tr("Hole"), np.array([one.hole for one in found], str)),
+                Column(
+                    self.tr("Sections") if asked and not broken else self.tr("Hole"),
+                    np.array([one.hole for one in found], str),
+                ),
                 Column(
                     self.tr("Distance, m"),
                     np.array([one.distance for one in found], float),

@@ -1,4 +1,4 @@
-"""Where a body comes from: codes of the open site's intervals, codes of another site file, or a closed mesh."""
+"""Where a body comes from: codes of intervals, outlines on sections, picked points, or a closed mesh."""
 
 from __future__ import annotations
 
@@ -18,12 +18,14 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.project.body_record import BodySource, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import BodySource, ClosedMesh, Frame, Intervals, Outlines, Picks
 
-__all__ = ["BodySourceForm"]
+__all__ = ["MESH", "OTHER", "OUTLINES", "OWN", "POINTS", "BodySourceForm"]
 
-OWN, OTHER, MESH, FRAME = "own", "other", "mesh", "frame"
-#: Rows of the list of codes that are seen at once, at most.
+OWN, OTHER, OUTLINES, POINTS, MESH = "own", "other", "outlines", "points", "mesh"
+#: Kinds of which a list chooses: codes, or layers.
+LISTED = (OWN, OTHER, OUTLINES)
+#: Rows of the list that are seen at once, at most.
 ROWS = 6
 
 
@@ -42,6 +44,8 @@ class BodySourceForm(QWidget):
         for kind, words in (
             (OWN, self.tr("Intervals of this site")),
             (OTHER, self.tr("Intervals of another site file")),
+            (OUTLINES, self.tr("Outlines on sections in a file")),
+            (POINTS, self.tr("Points on its surface in a file")),
             (MESH, self.tr("Closed mesh or solid in a file")),
         ):
             self.kind.addItem(words, kind)
@@ -53,9 +57,7 @@ class BodySourceForm(QWidget):
         row.setSpacing(6)
         row.addWidget(self.file, 1)
         row.addWidget(self.browse)
-        self.codes = QListWidget()
-        self.codes.setAccessibleName(self.tr("Codes inside the body"))
-        self.head = QLabel(self.tr("Codes inside the body"))
+        self.codes, self.head = QListWidget(), QLabel()
         self.head.setBuddy(self.codes)
         self.frame = QLabel()
         self.frame.setWordWrap(True)
@@ -64,9 +66,9 @@ class BodySourceForm(QWidget):
         column.setSpacing(4)
         for widget in (self.kind, self.place, self.head, self.codes, self.frame):
             column.addWidget(widget)
-        self._own: Mapping[str, int] = {}
-        self._other: tuple[str, Mapping[str, int]] = ("", {})
-        self._mesh = ""
+        #: The file of each kind, and what its list offers with how often it occurs.
+        self._files: dict[str, str] = dict.fromkeys((OWN, OTHER, OUTLINES, POINTS, MESH), "")
+        self._offers: dict[str, Mapping[str, int]] = {}
         self._wanted: frozenset[str] = frozenset()
         self._frame: Frame | None = None
         self.kind.activated.connect(lambda _: self._choose())
@@ -76,18 +78,14 @@ class BodySourceForm(QWidget):
 
     def show_own(self, codes: Mapping[str, int]) -> None:
         """Offer the codes of the open site."""
-        self._own = codes
+        self._offers[OWN] = codes
         self._arrange()
 
-    def show_other(self, file: str, codes: Mapping[str, int]) -> None:
-        """Offer the codes of another site file."""
-        self._other = (file, codes)
-        self._arrange()
-        self.changed.emit()
-
-    def show_mesh(self, file: str) -> None:
-        """Show the file of a closed mesh."""
-        self._mesh = file
+    def show_file(self, kind: str, file: str, offered: Mapping[str, int] | None = None) -> None:
+        """Show the file of a kind with the codes or layers that it offers; of new layers all are wanted."""
+        self._files[kind], self._offers[kind] = file, offered or {}
+        if kind == OUTLINES and kind == self.kind.currentData():
+            self._wanted = frozenset(self._offers[kind])
         self._arrange()
         self.changed.emit()
 
@@ -96,14 +94,20 @@ class BodySourceForm(QWidget):
         self._frame = source if isinstance(source, Frame) else None
         kind = OWN
         self._wanted = frozenset()
-        if isinstance(source, Intervals):
-            self._wanted, kind = frozenset(source.codes), OTHER if source.file else OWN
-            if source.file and self._other[0] != source.file:
-                self._other = (source.file, dict.fromkeys(source.codes, 0))
-        elif isinstance(source, ClosedMesh):
-            self._mesh, kind = source.file, MESH
-        elif source is None and not self._own:
-            kind = OTHER
+        match source:
+            case Intervals(codes, file):
+                self._wanted, kind = frozenset(codes), OTHER if file else OWN
+                self._remember(kind, file, codes)
+            case Outlines(file, layers):
+                self._wanted, kind = frozenset(layers), OUTLINES
+                self._remember(kind, file, layers)
+                self._wanted = self._wanted or frozenset(self._offers[OUTLINES])
+            case Picks(file):
+                self._files[POINTS], kind = file, POINTS
+            case ClosedMesh(file):
+                self._files[MESH], kind = file, MESH
+            case None if not self._offers.get(OWN):
+                kind = OTHER
         self.kind.setCurrentIndex(self.kind.findData(kind))
         self._arrange()
 
@@ -111,32 +115,59 @@ class BodySourceForm(QWidget):
         """Return the source that is chosen; None while something is missing."""
         if self._frame is not None:
             return self._frame
-        kind, codes = self.kind.currentData(), tuple(sorted(self._wanted & set(self._offered())))
-        if kind == MESH:
-            return ClosedMesh(self._mesh) if self._mesh else None
-        if not codes:
+        kind, offered = self.kind.currentData(), self._offered()
+        file, chosen = self._files[kind], tuple(sorted(self._wanted & set(offered)))
+        if kind != OWN and not file:
             return None
-        return Intervals(codes, self._other[0] if kind == OTHER else "")
+        match kind:
+            case "mesh":
+                return ClosedMesh(file)
+            case "points":
+                return Picks(file)
+            case "outlines":
+                # All layers: the same source as without a choice.
+                whole = len(chosen) == len(offered)
+                return Outlines(file, () if whole else chosen) if chosen or not offered else None
+        return Intervals(chosen, file) if chosen else None
+
+    def missing(self) -> str:
+        """Say what is missing of a source."""
+        kind = self.kind.currentData()
+        if kind != OWN and not self._files[kind]:
+            return self.tr("Choose the file that the body is made from.")
+        if kind == OUTLINES:
+            return self.tr("Choose the layers whose outlines bound the body.")
+        return self.tr("Choose the codes that lie inside the body.")
+
+    def _remember(self, kind: str, file: str, names: tuple[str, ...]) -> None:
+        """Offer what a body was made from until its file is read."""
+        if kind != OWN and self._files[kind] != file:
+            self._files[kind], self._offers[kind] = file, dict.fromkeys(names, 0)
 
     def _offered(self) -> Mapping[str, int]:
-        return self._own if self.kind.currentData() == OWN else self._other[1]
+        return self._offers.get(self.kind.currentData(), {})
 
     def _choose(self) -> None:
-        self._arrange()
         kind = self.kind.currentData()
-        if (kind == OTHER and not self._other[0]) or (kind == MESH and not self._mesh):
+        self._wanted = frozenset(self._offered()) if kind == OUTLINES else self._wanted & set(self._offered())
+        self._arrange()
+        if kind != OWN and not self._files[kind]:
             self.file_wanted.emit(kind)
         self.changed.emit()
 
     def _arrange(self) -> None:
         kind = self.kind.currentData()
-        made, logged = self._frame is not None, kind in (OWN, OTHER)
-        file = self._other[0] if kind == OTHER else self._mesh
+        made = self._frame is not None
+        listed = kind in LISTED and (kind != OUTLINES or len(self._offered()) > 1)
+        file = self._files[kind]
         self.file.setText(Path(file).name if file else self.tr("no file chosen"))
         self.file.setToolTip(file)
+        words = self.tr("Layers of its outlines") if kind == OUTLINES else self.tr("Codes inside the body")
+        self.head.setText(words)
+        self.codes.setAccessibleName(words)
         for widget, shown in (
-            (self.kind, not made), (self.place, not made and kind != OWN), (self.head, not made and logged),
-            (self.codes, not made and logged), (self.frame, made),
+            (self.kind, not made), (self.place, not made and kind != OWN), (self.head, not made and listed),
+            (self.codes, not made and listed), (self.frame, made),
         ):  # fmt: skip
             widget.setVisible(shown)
         if self._frame is not None:

@@ -32,7 +32,8 @@ def write_sheet_dxf(
     """Write sections with ground, holes, lithology, bands and points.
 
     Layers: one a horizon, with ``_inferred`` (dashed: above the ground or beyond the data), ``_band`` and ``_points``;
-    one a lithology code, ``LITH_code``; GROUND, HOLES, FRAME, TEXT. Each section is drawn in true metres below the one
+    one a lithology code, ``LITH_code``; one a body, ``BODY_name``, with ``_band`` (dashed: between these lines its
+    surface lies with 80 % chance); GROUND, HOLES, FRAME, TEXT. Each section is drawn in true metres below the one
     before it; ``exaggeration`` stretches elevations, and the title reports it.
 
     Raises
@@ -42,9 +43,11 @@ def write_sheet_dxf(
     """
     horizons = list(dict.fromkeys(name for view in views for name in (*view.traces, *view.points)))
     codes = lithologies(list(views))
-    stems = file_stems([*horizons, *(f"LITH_{code}" for code in codes)])
+    bodies = list(dict.fromkeys(f"BODY_{body.name}" for view in views for body in view.bodies))
+    stems = file_stems([*horizons, *(f"LITH_{code}" for code in codes), *bodies])
     names = [stem + end for h in horizons for stem in (stems[h],) for end in ("", "_inferred", "_band", "_points")]
     names += [stems[f"LITH_{code}"] for code in codes]
+    names += [stems[body] + end for body in bodies for end in ("", "_band")]
     with drawing_of(path, [*names, GROUND, HOLES, FRAME, TEXT]) as document:
         document.linetypes.add("DASHED_SECTION", pattern=[9.0, 6.0, -3.0])
         space, drop = document.modelspace(), 0.0
@@ -85,6 +88,12 @@ def _section(space: Modelspace, view: SectionView, at: Any, stems: dict[str, str
     for name, places in view.points.items():
         for place in at(places):
             space.add_point(place, dxfattribs={"layer": f"{stems[name]}_points"})
+    for body in view.bodies:
+        layer = stems[f"BODY_{body.name}"]
+        for ring in body.rings:
+            space.add_lwpolyline(at(ring), close=True, dxfattribs={"layer": layer})
+        for line in body.band:
+            space.add_lwpolyline(at(line), dxfattribs={"layer": f"{layer}_band", "linetype": "DASHED_SECTION"})
     for hole in view.holes:
         _hole(space, view, hole, at, stems)
 

@@ -27,7 +27,7 @@ def opened(shown, qtbot, folder):
     showing = shown.window.showing
     showing.begin_section()
     site, surfaces = shown.document.site_in_use(), shown.document.surfaces()
-    dialog = SectionSheetDialog(site, surfaces, showing.line, 50.0, {}, folder)
+    dialog = SectionSheetDialog(site, surfaces, showing.line, 50.0, {}, {}, folder)
     qtbot.addWidget(dialog)
     dialog.show()
     return dialog

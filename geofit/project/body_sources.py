@@ -1,0 +1,161 @@
+"""What bodies are fitted to, read from where it lies: logged intervals, outlines on sections, picked points."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from geofit.bodies.data import BodyData, BodyIssue
+from geofit.bodies.settings import BodySettings
+from geofit.data.errors import InputError
+from geofit.data.messages import Untranslated, message
+from geofit.data.progress import Progress
+from geofit.project.body_record import Intervals, Outlines, Picks
+
+if TYPE_CHECKING:
+    from geofit.bodies.outlines import Outline
+    from geofit.data.site import ImportIssue, Site
+
+__all__ = ["SourceData", "codes_of", "file_digest", "given_of_logs", "outline_layers", "read_source", "site_codes"]
+
+
+@dataclass(frozen=True, eq=False)
+class SourceData:
+    """What a source holds: data for a fit, a hash of what it held, and the outlines if there are any."""
+
+    data: BodyData
+    given: str
+    outlines: tuple[Outline, ...] = ()
+
+
+def read_source(
+    source: Intervals | Outlines | Picks,
+    settings: BodySettings,
+    campaigns: Sequence[Any],
+    folder: Path,
+    progress: Progress | None = None,
+) -> SourceData:
+    """Read what a body is fitted to; what a file has and the fit does not use is among the issues of the data.
+
+    Parameters
+    ----------
+    source : Intervals, Outlines or Picks
+        Its file, if any, is relative to ``folder``.
+    settings : BodySettings
+        ``step`` is the distance of samples along intervals and outlines.
+    campaigns : sequence
+        Boreholes with logs of the open site.
+    folder : Path
+        Folder of the open site.
+
+    Raises
+    ------
+    GeofitError
+        As :func:`geofit.fit_body`, and the readers of the files.
+    """
+    match source:
+        case Intervals(codes, file):
+            from geofit.bodies.intervals import from_intervals
+
+            holes = _campaigns(folder / file, progress) if file else campaigns
+            return SourceData(from_intervals(holes, codes, settings.step), given_of_logs(holes))
+        case Outlines(file, layers):
+            from geofit.bodies.outlines import from_outlines
+            from geofit.io.outlines import read_outlines
+
+            drawn = read_outlines(folder / file, layers)
+            data = from_outlines(drawn.outlines, settings.step)
+            return SourceData(_with_issues(data, drawn.issues), file_digest(folder / file), drawn.outlines)
+        case Picks(file):
+            from geofit.io.body_points import read_body_points
+
+            picked = read_body_points(folder / file)
+            return SourceData(_with_issues(picked.data, picked.issues), file_digest(folder / file))
+
+
+def outline_layers(file: Path, *, progress: Progress | None = None) -> dict[str, int]:
+    """Return the layers of a file of outlines with the number of closed lines on each; errors as its reader."""
+    from geofit.io.outlines import read_outlines
+
+    return read_outlines(file).layers
+
+
+def site_codes(file: Path, *, progress: Progress) -> dict[str, int]:
+    """Read the site of another file, and return the codes of its interval tables.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or its site has no interval tables.
+    """
+    return codes_of(_campaigns(file, progress))
+
+
+def codes_of(campaigns: Sequence[Any]) -> dict[str, int]:
+    """Return the codes of interval tables with how often each occurs, the most frequent first."""
+    counts: dict[str, int] = {}
+    for log in (log for campaign in campaigns for log in campaign.logs):
+        for code, count in zip(*np.unique(log.code, return_counts=True), strict=True):
+            if code:
+                counts[str(code)] = counts.get(str(code), 0) + int(count)
+    return dict(sorted(counts.items(), key=lambda item: (-item[1], item[0])))
+
+
+def given_of_logs(campaigns: Sequence[Any]) -> str:
+    """Return a hash of all intervals and paths that a body of logged intervals depends on."""
+    digest = hashlib.sha256()
+    for campaign in campaigns:
+        for hole, path in campaign.paths.items():
+            digest.update(hole.encode())
+            for array in (path.depth, path.xyz):
+                digest.update(np.ascontiguousarray(array, np.float64).tobytes())
+        for log in campaign.logs:
+            digest.update("\n".join([*log.hole.tolist(), *log.code.tolist()]).encode())
+            for array in (log.top, log.base):
+                digest.update(np.ascontiguousarray(array, np.float64).tobytes())
+    return digest.hexdigest()[:16]
+
+
+def file_digest(file: Path) -> str:
+    """Return a short hash of a file."""
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()[:16]
+
+
+def _with_issues(data: BodyData, issues: Sequence[ImportIssue]) -> BodyData:
+    """Return the data with what was found when their file was read."""
+    found = tuple(
+        BodyIssue(
+            "file",
+            message(
+                "project.file-issue",
+                "{file}, {number}: {reason}",
+                file=Untranslated(one.file),
+                number=one.row,
+                reason=one.reason,
+            )
+            if one.row
+            else message("project.file-note", "{file}: {reason}", file=Untranslated(one.file), reason=one.reason),
+            used=one.severity != "error",
+        )
+        for one in issues
+    )
+    return replace(data, issues=(*found, *data.issues))
+
+
+def _campaigns(file: Path, progress: Progress | None) -> Sequence[Any]:
+    from geofit.io.site_file import load_site
+
+    site: Site = load_site(file, progress)
+    if not any(campaign.logs for campaign in site.boreholes):
+        raise InputError(
+            message("project.site-without-logs", "The site has no interval tables"),
+            message("project.give-site-with-logs", "Give a site file whose [boreholes] names interval tables."),
+            file=str(file),
+        )
+    return site.boreholes

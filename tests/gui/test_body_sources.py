@@ -1,0 +1,154 @@
+"""Bodies in the window from outlines on sections and from picked points; a site that has bodies alone."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+import ezdxf
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFileDialog
+
+from geofit.project.body_record import Intervals, Outlines, Picks
+
+PLACE = np.array([1400.0, 2600.0, 500.0])
+ANGLE = np.linspace(0, 2 * np.pi, 40, endpoint=False)
+
+
+def rings():
+    """Ellipses across a lens on five sections, and a second lens on the last two."""
+    for k, x in enumerate((-40.0, -20.0, 0.0, 20.0, 40.0)):
+        width = 30.0 * np.sqrt(1 - (x / 60) ** 2)
+        lens = np.column_stack([np.full(40, x), width * np.cos(ANGLE), 0.4 * width * np.sin(ANGLE)])
+        yield f"S{k}", PLACE + lens
+        if x > 0:
+            yield f"S{k}", PLACE + 0.5 * lens + [0.5 * x, 70.0, 0.0]
+
+
+@pytest.fixture
+def opened(app, sample):
+    app.window.files.open(sample / "site.toml")
+    app.idle()
+    app.panels, app.bodies = app.window.panels, app.window.bodies
+    app.panels.reveal("bodies")
+    app.sample = sample
+    return app
+
+
+def choose(app, monkeypatch, kind, file):
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(file), ""))
+    box = app.panels.bodies.source.kind
+    box.setCurrentIndex(box.findData(kind))
+    box.activated.emit(box.currentIndex())
+    app.idle()
+
+
+def fit(app):
+    app.qtbot.mouseClick(app.panels.bodies.fit_button, Qt.MouseButton.LeftButton)
+    app.idle()
+
+
+def drawing(path):
+    document = ezdxf.new("R2010")
+    for layer, ring in rings():
+        document.modelspace().add_polyline3d(ring, close=True, dxfattribs={"layer": layer})
+    document.modelspace().add_polyline3d(PLACE + 500 * np.eye(3), close=True, dxfattribs={"layer": "FRAME"})
+    document.saveas(path)
+    return path
+
+
+def test_outlines_of_a_drawing_become_a_body_with_questions(opened, monkeypatch):
+    file = drawing(opened.sample / "lens.dxf")
+    choose(opened, monkeypatch, "outlines", file)
+    panel = opened.panels.bodies
+    codes = panel.source.codes
+    offered = {codes.item(i).text(): codes.item(i) for i in range(codes.count())}
+    assert list(offered) == ["S0  (1)", "S1  (1)", "S2  (1)", "S3  (2)", "S4  (2)", "FRAME  (1)"]
+    assert all(item.checkState() == Qt.CheckState.Checked for item in offered.values())
+    offered["FRAME  (1)"].setCheckState(Qt.CheckState.Unchecked)
+    fit(opened)
+    record = opened.document.state.bodies["lens"]
+    assert record.provenance.source == Outlines("lens.dxf", ("S0", "S1", "S2", "S3", "S4"))
+    result = opened.document.body("lens")
+    assert result.accuracy.verdict == "PASS"
+    assert [(one.code, one.first, one.second, one.parts) for one in result.questions] == [
+        ("branches", "S2", "S3", (1, 2))
+    ]
+    figures = opened.panels.body_figures
+    assert "Questions between sections: 1" in figures.count.text()
+    assert figures.violations.rows.index(0, 0).data() == "Question"
+    figures.violation_chosen.emit(figures._found[0])
+    assert panel.badge.isVisibleTo(panel)
+
+
+def test_the_same_outlines_as_geojson(opened, monkeypatch):
+    features = [
+        {"type": "Feature", "properties": {"section": name},
+         "geometry": {"type": "Polygon", "coordinates": [[*ring.tolist(), ring[0].tolist()]]}}
+        for name, ring in rings()
+    ]  # fmt: skip
+    file = opened.sample / "lens.geojson"
+    file.write_text(json.dumps({"type": "FeatureCollection", "features": features}), encoding="utf-8")
+    choose(opened, monkeypatch, "outlines", file)
+    fit(opened)
+    assert opened.document.state.bodies["lens"].provenance.source == Outlines("lens.geojson")
+    assert opened.document.body("lens").accuracy.passed
+
+
+def test_points_with_and_without_normals_become_a_body(opened, monkeypatch):
+    rng = np.random.default_rng(5)
+    unit = rng.normal(size=(120, 3))
+    unit /= np.linalg.norm(unit, axis=1)[:, None]
+    rows = ["x,y,z,nx,ny,nz"]
+    for k, (place, n) in enumerate(zip(PLACE + 25 * unit, unit, strict=True)):
+        rows.append(",".join(f"{c:.4f}" for c in place) + ("," + ",".join(f"{c:.4f}" for c in n) if k % 2 else ",,,"))
+    file = opened.sample / "ball.csv"
+    file.write_text("\n".join(rows) + "\n", encoding="utf-8")
+    choose(opened, monkeypatch, "points", file)
+    assert not opened.panels.bodies.source.codes.isVisibleTo(opened.panels.bodies)
+    fit(opened)
+    assert opened.document.state.bodies["ball"].provenance.source == Picks("ball.csv")
+    assert opened.document.body("ball").mesh.volume == pytest.approx(4 / 3 * np.pi * 25**3, rel=0.02)
+
+
+def test_a_file_without_outlines_is_refused_and_another_can_be_chosen(opened, monkeypatch):
+    document = ezdxf.new("R2010")
+    document.modelspace().add_line((0, 0), (1, 1))
+    empty = opened.sample / "empty.dxf"
+    document.saveas(empty)
+    with pytest.raises(AssertionError, match="0 planes"):
+        choose(opened, monkeypatch, "outlines", empty)
+    opened.failures.clear()
+    panel = opened.panels.bodies
+    assert not panel.fit_button.isEnabled()
+    assert "Choose the file" in panel.banner.text
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(drawing(opened.sample / "lens.dxf")), ""))
+    opened.qtbot.mouseClick(panel.source.browse, Qt.MouseButton.LeftButton)
+    opened.idle()
+    assert panel.fit_button.isEnabled()
+
+
+def test_a_site_of_bodies_alone(app, sample, tmp_path):
+    for name in ("bodies.toml", "bodies"):
+        source = sample / name
+        (shutil.copytree if source.is_dir() else shutil.copy)(source, tmp_path / name)
+    app.window.files.open(tmp_path / "bodies.toml")
+    app.idle()
+    document, panels = app.document, app.window.panels
+    assert document.is_open
+    assert not document.horizons
+    assert panels.bodies.source.codes.count() >= 3
+    assert app.window.actions_["save"].isEnabled()
+    assert not app.window.actions_["fit"].isEnabled()
+    app.window.bodies.fit("", Intervals(("ORE",)), panels.bodies.form.edited())
+    app.idle()
+    assert document.body("ORE").accuracy.passed
+    app.window.files.save_to(tmp_path / "work.geofit")
+    app.idle()
+    app.window.files.open(tmp_path / "work.geofit")
+    app.idle()
+    assert list(document.state.bodies) == ["ORE"]
+    assert document.body("ORE").origin == "again"
+    app.window.grab().save(str(tmp_path / "alone.png"))
