@@ -29,6 +29,8 @@ Ints = NDArray[np.int64]
 
 #: The iso value in fixed point.
 UNIT = 1 << 20
+#: Edge of the blocks of voxels that bound a gain together.
+BLOCK = 2
 
 
 @dataclass(frozen=True)
@@ -76,6 +78,9 @@ class Cover:
         self.field = np.zeros(body.shape, dtype=np.int32)
         self.covered = self.spilled = self.evaluations = 0
         self.total = int(body.sum())
+        self._room = _room(self.body)
+        #: The round in which the blocks round each candidate were looked at last.
+        self.asked = np.full(len(index), -1)
         self._centres: list[Ints] = []
         self._reaches: list[float] = []
 
@@ -97,6 +102,14 @@ class Cover:
             box, full = np.zeros(shape, dtype=np.int32), np.ones(shape, dtype=bool)
             whole[j] = _loops()[0](box, full, self.edges, half, e, self.stiffness, UNIT)[0] / UNIT
         return np.asarray(whole[inverse])
+
+    def room(self, i: int) -> float:
+        """Return a gain that candidate i cannot exceed now, in voxels, from the room that is left in blocks of voxels.
+
+        No block gains more than what its body voxels lack, nor more than the ball is worth at the block's nearest
+        voxel in all of them.
+        """
+        return float(_loops()[2](self._room, self.edges, self.index[i], self.radius[i], self.stiffness, UNIT) / UNIT)
 
     def touched(self, i: int, since: int) -> bool:
         """Whether a ball chosen since round ``since`` shares voxels with candidate i."""
@@ -135,7 +148,9 @@ class Cover:
 
     def add(self, i: int, radius: float) -> None:
         """Add candidate i with a radius to the field."""
-        gained, spilled = _loops()[1](self.field, self.body, self.edges, self.index[i], radius, self.stiffness, UNIT)
+        gained, spilled = _loops()[1](
+            self.field, self.body, self.edges, self.index[i], radius, self.stiffness, UNIT, self._room
+        )
         self.covered += int(gained)
         self.spilled += int(spilled)
         self._centres.append(self.index[i])
@@ -159,7 +174,13 @@ def choose(cover: Cover, heap: list[tuple[float, int, int]]) -> Choice | None:
             return None
         now = len(cover._centres)
         if since < 0 or cover.touched(i, since):
-            heapq.heappush(heap, (-cover.gain(i), i, now))
+            # A look at the blocks comes first: most candidates fall behind by it, without an evaluation.
+            room = cover.room(i) if cover.asked[i] < now else np.inf
+            cover.asked[i] = now
+            if room < -bound:
+                heapq.heappush(heap, (-room, i, since))
+            else:
+                heapq.heappush(heap, (-cover.gain(i), i, now))
             continue
         radius, score = cover.search_radius(i)
         if score > 0:
@@ -183,9 +204,16 @@ def choose_fully(cover: Cover, candidates: list[int]) -> Choice | None:
     return None
 
 
+def _room(body: NDArray[np.bool_]) -> Ints:
+    """Return what the body voxels of each block lack, in fixed point: nothing is covered yet."""
+    wide = np.pad(body, [(0, -n % BLOCK) for n in body.shape])
+    a, b, c = (n // BLOCK for n in wide.shape)
+    return UNIT * wide.reshape(a, BLOCK, b, BLOCK, c, BLOCK).sum(axis=(1, 3, 5), dtype=np.int64)
+
+
 @cache
-def _loops() -> tuple[Any, Any]:
-    """Return the compiled loops over the voxels of a ball: its gain, and its addition to the field."""
+def _loops() -> tuple[Any, Any, Any]:
+    """Return the compiled loops over the voxels of a ball: its gain, its addition to the field, the bound by blocks."""
     from numba import njit
 
     @njit(cache=True, inline="always")
@@ -219,7 +247,7 @@ def _loops() -> tuple[Any, Any]:
         return more, spilled
 
     @njit(cache=True)
-    def add(field, body, edges, centre, e, s, unit):  # type: ignore[no-untyped-def]  # pragma: no cover
+    def add(field, body, edges, centre, e, s, unit, room):  # type: ignore[no-untyped-def]  # pragma: no cover
         far = e * (1.0 + 2.0 / s)
         gained = spilled = np.int64(0)
         a, b, c = np.ceil(far / edges[0]), np.ceil(far / edges[1]), np.ceil(far / edges[2])
@@ -233,6 +261,8 @@ def _loops() -> tuple[Any, Any]:
                         old = np.int64(field[i, j, k])
                         new = min(old + strength(r2, e, s, unit), np.int64(1) << 30)
                         field[i, j, k] = new
+                        if body[i, j, k]:
+                            room[i // BLOCK, j // BLOCK, k // BLOCK] -= min(new, unit) - min(old, unit)
                         if old < unit <= new:
                             if body[i, j, k]:
                                 gained += 1
@@ -240,4 +270,26 @@ def _loops() -> tuple[Any, Any]:
                                 spilled += 1
         return gained, spilled
 
-    return gain, add
+    @njit(cache=True, inline="always")
+    def gap(block, centre, edge):  # type: ignore[no-untyped-def]  # pragma: no cover
+        """Return the distance along one axis from a centre to the nearest voxel of a block."""
+        return edge * max(BLOCK * block - centre, centre - (BLOCK * block + BLOCK - 1), 0)
+
+    @njit(cache=True)
+    def bound(room, edges, centre, e, s, unit):  # type: ignore[no-untyped-def]  # pragma: no cover
+        far = e * (1.0 + 2.0 / s)
+        total = np.int64(0)
+        a, b, c = np.ceil(far / edges[0]), np.ceil(far / edges[1]), np.ceil(far / edges[2])
+        for i in range(max(centre[0] - a, 0) // BLOCK, min((centre[0] + a) // BLOCK + 1, room.shape[0])):
+            x2 = gap(i, centre[0], edges[0]) ** 2
+            for j in range(max(centre[1] - b, 0) // BLOCK, min((centre[1] + b) // BLOCK + 1, room.shape[1])):
+                xy2 = x2 + gap(j, centre[1], edges[1]) ** 2
+                for k in range(max(centre[2] - c, 0) // BLOCK, min((centre[2] + c) // BLOCK + 1, room.shape[2])):
+                    if room[i, j, k] == 0:
+                        continue
+                    r2 = xy2 + gap(k, centre[2], edges[2]) ** 2
+                    if r2 < far * far:
+                        total += min(room[i, j, k], BLOCK**3 * min(strength(r2, e, s, unit), unit))
+        return total
+
+    return gain, add, bound

@@ -10,12 +10,15 @@ from numpy.typing import NDArray
 
 from geofit.pores.ball_tables import DIRECTIONS, inclusion_table, signed_directions
 from geofit.pores.distance import sums_of_squares
+from geofit.pores.threads import in_parts
 
 __all__ = ["BLOCK", "BallSearch", "block_maxima", "exact", "paper"]
 
 
 #: Edge of the blocks that share one bound of the balls around them, voxels.
 BLOCK = 8
+#: Voxels that are worth a thread.
+_LEAST = 500_000
 
 
 def exact(reach2: NDArray[Any]) -> NDArray[np.int64]:
@@ -53,10 +56,13 @@ class BallSearch:
 
         ``reach2`` begins with slice ``low`` and reaches beyond those slices by ``REACH``, or to the end of the volume.
         """
-        found = _maximal(
-            reach2, first - low, end - low, low, self._directions, self._source, self._tables, self._counts
+        tables = self._directions, self._source, self._tables, self._counts
+        found = in_parts(
+            lambda a, b: _maximal(reach2, first - low + a, first - low + b, low, *tables),
+            end - first,
+            _LEAST // (reach2.shape[1] * reach2.shape[2]) + 1,
         )
-        return np.asarray(found + low * reach2.shape[1] * reach2.shape[2], np.int64)
+        return np.asarray(np.concatenate(found) + low * reach2.shape[1] * reach2.shape[2], np.int64)
 
 
 def block_maxima(reach2: NDArray[Any], first: int) -> NDArray[np.int64]:
@@ -90,7 +96,7 @@ def _spread(largest: NDArray[np.int64]) -> NDArray[np.int64]:
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _maximal(
     reach2: NDArray[Any],
     first: int,

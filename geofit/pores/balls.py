@@ -197,10 +197,13 @@ def _assembled(
     """Sort balls, given by flat index and F², from large to small."""
     from geofit.pores.ball_painting import farthest_squares
 
-    order = np.argsort(-values, kind="stable")
+    cubic = edges == (1.0, 1.0, 1.0)
+    # Small whole numbers are sorted by their digits, at once.
+    least = values.max(initial=0) - values
+    order = np.argsort(least.astype(np.uint16) if least.max(initial=0) < 1 << 16 and cubic else least, kind="stable")
     kept, values = kept[order], values[order]
     centre = np.stack(np.unravel_index(kept, shape), axis=1).astype(np.int32)
-    if edges == (1.0, 1.0, 1.0):
+    if cubic:
         radius2: NDArray[Any] = sums_of_squares(int(values[0]) if len(values) else 0)[values]
     else:
         radius2 = farthest_squares(values, np.square(edges))

@@ -11,13 +11,15 @@ has pore voxels at all faces, so a diagonal neighbour is reached through one of 
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from geofit.pores.packed import PackedSpace, pore_voxels, slot
+from geofit.pores.packed import PackedSpace, pore_voxels, row_of_three, slot
+from geofit.pores.threads import in_parts
 
 __all__ = ["OFFSETS", "flood", "levels_of"]
 
@@ -29,6 +31,10 @@ OFFSETS = np.array(
     ),
     dtype=np.int64,
 )
+#: The lower half of a key holds this number less the basin, the upper half the level.
+_BASIN = 0x7FFFFFFF
+#: Voxels of a level that are worth a thread.
+_LEAST = 20_000
 
 
 def levels_of(
@@ -66,9 +72,7 @@ def flood(
     pore_voxels(space, voxels)
     ranked, counts = _ranked(levels, voxels, int(levels.max(initial=0)))
     del voxels
-    label = np.zeros(len(levels), np.int32)
-    peaks = _flood(space, levels, ranked, counts, by_edges, by_corners, OFFSETS, label)
-    return label, peaks
+    return _flood(space, levels, ranked, counts, by_edges, by_corners)
 
 
 @njit(cache=True)
@@ -113,7 +117,6 @@ def _neighbourhood(space: PackedSpace, levels: NDArray[np.int32], here: Any, rea
     return total
 
 
-@njit(cache=True)
 def _flood(
     space: PackedSpace,
     levels: NDArray[np.int32],
@@ -121,99 +124,228 @@ def _flood(
     counts: NDArray[np.int64],
     by_edges: int,
     by_corners: int,
-    offsets: NDArray[np.int64],
-    label: NDArray[np.int32],
-) -> NDArray[np.int64]:
-    n0, n1, n2 = space.shape
-    steps = offsets[:, 0] * (n1 * n2) + offsets[:, 1] * n2 + offsets[:, 2]
-    wave = np.empty_like(ranked[: counts.max()])
-    found = np.empty(len(wave), np.int32)
-    stack = np.empty_like(wave)
-    peaks = np.empty(1024, np.int64)
-    basins = 0
-    begin = 0
+) -> tuple[NDArray[np.int32], NDArray[np.int64]]:
+    # Level and basin of each flooded voxel in one number, the larger the wider: of equal levels the first basin wins.
+    # Two more, so that rock at the end of the volume has a key to read.
+    keys = np.zeros(len(levels) + 2, np.int64)
+    found, stack = np.empty(int(counts.max()), np.int64), np.empty_like(ranked[: counts.max()])
+    peaks: list[NDArray[np.int64]] = []
+    basins = begin = 0
     for level in range(len(counts) - 1, 0, -1):
-        end = begin + counts[level]
+        if counts[level] == 0:
+            continue
+        end = begin + int(counts[level])
+        near = OFFSETS[: 6 if level < by_edges else 18 if level < by_corners else 26]
         # First wave: all voxels of this level; later ones: what touches a voxel that the last wave gave a basin.
-        waiting = counts[level]
-        for index in range(waiting):
-            wave[index] = ranked[begin + index]
-        while waiting > 0:
-            decided = 0
-            for index in range(waiting):
-                here = np.int64(wave[index])
-                i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
-                inside = 0 < i < n0 - 1 and 0 < j < n1 - 1 and 0 < k < n2 - 1
-                best_level, best = 0, 0
-                for d in range(26):
-                    if not inside:
-                        a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
-                        if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
-                            continue
-                    there = slot(space, here + steps[d])
-                    if there < 0:
-                        continue
-                    basin = label[there]
-                    if basin <= 0:
-                        continue
-                    other = levels[there]
-                    if d >= 6 and max(other, level) < (by_edges if d < 18 else by_corners):
-                        continue
-                    if other > best_level or (other == best_level and basin < best):
-                        best_level, best = other, basin
-                if best > 0:
-                    wave[decided], found[decided] = here, best
-                    decided += 1
-            for index in range(decided):
-                label[slot(space, np.int64(wave[index]))] = found[index]
-            # The next wave; a voxel waits once, marked by -1.
-            waiting = 0
-            for index in range(decided):
-                here = np.int64(wave[index])
-                i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
-                for d in range(6 if level < by_edges else 18 if level < by_corners else 26):
-                    a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
-                    if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
-                        continue
-                    there = slot(space, here + steps[d])
-                    if there >= 0 and levels[there] == level and label[there] == 0:
-                        label[there] = -1
-                        stack[waiting] = here + steps[d]
-                        waiting += 1
-            for index in range(waiting):
-                wave[index] = stack[index]
+        wave = ranked[begin:end].copy()
+        while len(wave):
+            decide = partial(_decide, space, keys, wave, by_edges, by_corners, OFFSETS, found)
+            in_parts(decide, len(wave), _LEAST)
+            decided, left = _write(space, keys, wave, found, level, stack)
+            # The next wave is looked for from the side that has fewer voxels.
+            if left <= decided and len(wave) == end - begin:
+                waiting = _touching(space, keys, stack, left, level, near, wave)
+                wave = wave[:waiting]
+            else:
+                waiting = _touched(space, levels, keys, wave, decided, level, near, stack)
+                wave = stack[:waiting].copy()
         # What no wider basin reaches: one basin for each connected part, ranked by its surroundings.
-        first = basins
-        for index in range(begin, end):
-            seed = slot(space, np.int64(ranked[index]))
-            if label[seed] != 0:
-                continue
-            if basins == len(peaks):
-                grown = np.empty(2 * basins, np.int64)
-                grown[:basins] = peaks
-                peaks = grown
-            basins += 1
-            stack[0], size = ranked[index], 1
-            label[seed] = basins
-            done = 0
-            while done < size:
-                here = np.int64(stack[done])
-                done += 1
-                i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
-                for d in range(6 if level < by_edges else 18 if level < by_corners else 26):
-                    a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
-                    if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
-                        continue
-                    there = slot(space, here + steps[d])
-                    if there >= 0 and levels[there] == level and label[there] == 0:
-                        label[there] = basins
-                        stack[size] = here + steps[d]
-                        size += 1
-            peaks[basins - 1] = _middle(space, levels, stack, size)
-        if basins > first + 1:
-            _rank_peaks(space, levels, label, ranked, begin, end, peaks, first, basins)
+        new = _new_basins(space, levels, keys, ranked[begin:end], level, basins, near, stack)
+        peaks.append(new)
+        basins += len(new)
         begin = end
+    del found, stack
+    np.bitwise_and(keys, _BASIN, out=keys)
+    np.subtract(_BASIN, keys, out=keys)
+    return keys[: len(levels)].astype(np.int32), np.concatenate(peaks)
+
+
+@njit(cache=True, nogil=True)
+def _decide(
+    space: PackedSpace,
+    keys: NDArray[np.int64],
+    wave: NDArray[Any],
+    by_edges: int,
+    by_corners: int,
+    offsets: NDArray[np.int64],
+    out: NDArray[np.int64],
+    first: int,
+    end: int,
+) -> None:
+    """Write the largest key round the voxels ``first`` ... ``end`` - 1 of a wave; no key is changed meanwhile."""
+    for index in range(first, end):
+        out[index] = _widest(space, keys, np.int64(wave[index]), by_edges, by_corners, offsets)
+
+
+@njit(cache=True)
+def _write(
+    space: PackedSpace,
+    keys: NDArray[np.int64],
+    wave: NDArray[Any],
+    found: NDArray[np.int64],
+    level: int,
+    open_: NDArray[Any],
+) -> tuple[int, int]:
+    """Flood the voxels of a wave for which a key was found, and list the others as open; return how many of each.
+
+    The flooded ones come first in ``wave`` afterwards.
+    """
+    decided, left = 0, 0
+    for index in range(len(wave)):
+        here = wave[index]
+        if found[index] > 0:
+            keys[slot(space, np.int64(here))] = (level << 32) | (found[index] & _BASIN)
+            wave[decided] = here
+            decided += 1
+        else:
+            open_[left] = here
+            left += 1
+    return decided, left
+
+
+@njit(cache=True)
+def _new_basins(
+    space: PackedSpace,
+    levels: NDArray[np.int32],
+    keys: NDArray[np.int64],
+    members: NDArray[Any],
+    level: int,
+    first: int,
+    near: NDArray[np.int64],
+    stack: NDArray[Any],
+) -> NDArray[np.int64]:
+    """Make a basin of each connected part of a level that is not flooded yet; return the peaks in their order."""
+    peaks = np.empty(64, np.int64)
+    basins = 0
+    for index in range(len(members)):
+        seed = slot(space, np.int64(members[index]))
+        if keys[seed] != 0:
+            continue
+        if basins == len(peaks):
+            grown = np.empty(2 * basins, np.int64)
+            grown[:basins] = peaks
+            peaks = grown
+        basins += 1
+        stack[0], size, done = members[index], 1, 0
+        keys[seed] = -1
+        while done < size:
+            size += _touched(space, levels, keys, stack[done : done + 1], 1, level, near, stack[size:])
+            done += 1
+        for member in range(size):
+            keys[slot(space, np.int64(stack[member]))] = _key(level, first + basins)
+        peaks[basins - 1] = _middle(space, levels, stack, size)
+    if basins > 1:
+        number = _rank_peaks(space, levels, peaks, basins)
+        for index in range(len(members)):
+            place = slot(space, np.int64(members[index]))
+            basin = _BASIN - (keys[place] & _BASIN) - first
+            if basin > 0:
+                keys[place] = _key(level, first + number[basin - 1])
     return peaks[:basins].copy()
+
+
+@njit(cache=True)
+def _key(level: int, basin: int) -> int:
+    return (level << 32) | (_BASIN - basin)
+
+
+@njit(cache=True, nogil=True)
+def _widest(
+    space: PackedSpace,
+    keys: NDArray[np.int64],
+    here: int,
+    by_edges: int,
+    by_corners: int,
+    offsets: NDArray[np.int64],
+) -> int:
+    """Return the largest key of the flooded neighbours that a voxel is connected to, 0 if there is none."""
+    n0, n1, n2 = space.shape
+    i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
+    inside = 0 < i < n0 - 1 and 0 < j < n1 - 1 and 0 < k < n2 - 1
+    # A flooded voxel is at least as wide as this one: it decides what its edges and corners connect.
+    by_edges, by_corners = by_edges << 32, by_corners << 32
+    best = 0
+    if inside:
+        for a in range(-1, 2):
+            for b in range(-1, 2):
+                there, three = row_of_three(space, here + (a * n1 + b) * n2)
+                far = abs(a) + abs(b)
+                beside = by_edges if far == 1 else by_corners if far == 2 else 0
+                middle = by_edges if far == 2 else 0
+                # Without branches, which the processor could not foresee: rock counts as a key of 0.
+                low, mid, high = three & 1, three >> 1 & 1, three >> 2
+                key = keys[there] * low
+                best = max(best, key if key >= beside else 0)
+                key = keys[there + low] * mid
+                best = max(best, key if key >= middle else 0)
+                key = keys[there + low + mid] * high
+                best = max(best, key if key >= beside else 0)
+        return best
+    for d in range(26):
+        a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
+        if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
+            continue
+        there = slot(space, (a * n1 + b) * n2 + c)
+        if there >= 0 and keys[there] >= (0 if d < 6 else by_edges if d < 18 else by_corners):
+            best = max(best, keys[there])
+    return best
+
+
+@njit(cache=True)
+def _touching(
+    space: PackedSpace,
+    keys: NDArray[np.int64],
+    open_: NDArray[Any],
+    count: int,
+    level: int,
+    offsets: NDArray[np.int64],
+    out: NDArray[Any],
+) -> int:
+    """Write those of the first ``count`` open voxels that touch a flooded voxel of their level; return how many."""
+    n0, n1, n2 = space.shape
+    found = 0
+    for index in range(count):
+        here = np.int64(open_[index])
+        i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
+        for d in range(len(offsets)):
+            a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
+            if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
+                continue
+            there = slot(space, (a * n1 + b) * n2 + c)
+            if there >= 0 and keys[there] >> 32 == level:
+                out[found] = here
+                found += 1
+                break
+    return found
+
+
+@njit(cache=True)
+def _touched(
+    space: PackedSpace,
+    levels: NDArray[np.int32],
+    keys: NDArray[np.int64],
+    flooded: NDArray[Any],
+    count: int,
+    level: int,
+    offsets: NDArray[np.int64],
+    out: NDArray[Any],
+) -> int:
+    """Write the open voxels of a level that touch the first ``count`` flooded ones, each once, and mark them by -1."""
+    n0, n1, n2 = space.shape
+    found = 0
+    for index in range(count):
+        here = np.int64(flooded[index])
+        i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
+        for d in range(len(offsets)):
+            a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
+            if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
+                continue
+            there = slot(space, (a * n1 + b) * n2 + c)
+            if there >= 0 and keys[there] == 0 and levels[there] == level:
+                keys[there] = -1
+                out[found] = (a * n1 + b) * n2 + c
+                found += 1
+    return found
 
 
 @njit(cache=True)
@@ -242,27 +374,15 @@ def _middle(space: PackedSpace, levels: NDArray[np.int32], members: NDArray[Any]
 
 @njit(cache=True)
 def _rank_peaks(
-    space: PackedSpace,
-    levels: NDArray[np.int32],
-    label: NDArray[np.int32],
-    ranked: NDArray[Any],
-    begin: int,
-    end: int,
-    peaks: NDArray[np.int64],
-    first: int,
-    last: int,
-) -> None:
-    """Give the basins ``first`` ... ``last`` of one level numbers by the surroundings of their peaks."""
-    keys = np.empty(last - first, np.uint64)
-    for index in range(first, last):
-        keys[index - first] = _neighbourhood(space, levels, peaks[index], 2)
+    space: PackedSpace, levels: NDArray[np.int32], peaks: NDArray[np.int64], count: int
+) -> NDArray[np.int32]:
+    """Sort the first peaks, all of one level, by their surroundings; return the new number of each, from 1."""
+    keys = np.empty(count, np.uint64)
+    for index in range(count):
+        keys[index] = _neighbourhood(space, levels, peaks[index], 2)
     order = np.argsort(keys)
-    sorted_peaks = peaks[first:last][order].copy()
-    peaks[first:last] = sorted_peaks
-    number = np.empty(last - first, np.int32)
-    for place in range(len(order)):
-        number[order[place]] = first + 1 + place
-    for index in range(begin, end):
-        place = slot(space, np.int64(ranked[index]))
-        if label[place] > first:
-            label[place] = number[label[place] - first - 1]
+    peaks[:count] = peaks[:count][order].copy()
+    number = np.empty(count, np.int32)
+    for place in range(count):
+        number[order[place]] = 1 + place
+    return number

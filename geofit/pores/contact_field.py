@@ -15,6 +15,8 @@ __all__ = ["contact_values", "sort_into_cells"]
 
 #: Weight of the voxels' own field, against 50 of a contact at its own place.
 _BACKGROUND = 1e-3
+#: Weight of a voxel that is held, against a contact at the same distance.
+_FORCE = 30.0
 
 
 def sort_into_cells(
@@ -32,6 +34,7 @@ def contact_values(
     xyz: NDArray[np.float64],
     points: NDArray[np.float64],
     normals: NDArray[np.float64],
+    held: NDArray[np.float64],
     start: NDArray[np.int64],
     lower: NDArray[np.float64],
     counts: NDArray[np.int64],
@@ -41,7 +44,8 @@ def contact_values(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return values (n,) and gradients (n, 3) at places given in units of the shortest edge from the low corner.
 
-    ``points`` and ``normals`` are sorted into cells of edge ``support``.
+    ``points`` and ``normals`` are sorted into cells of edge ``support``. A point with a value other than 0 in ``held``
+    has no normal: it is the middle of a voxel where the field takes this value, and reaches as far as one voxel.
     """
     values = np.empty(len(xyz))
     gradients = np.empty((len(xyz), 3))
@@ -65,13 +69,14 @@ def contact_values(
                     continue
                 for p in range(start[first + low], start[first + high]):
                     x, y, z = place[0] - points[p, 0], place[1] - points[p, 1], place[2] - points[p, 2]
-                    q = (x * x + y * y + z * z) / square
+                    own, force = (square, 1.0) if held[p] == 0.0 else (1.0, _FORCE)
+                    q = (x * x + y * y + z * z) / own
                     if q >= 1.0:
                         continue
                     near = q + 0.02
-                    w = (1.0 - q) ** 3 / near
-                    dw = (-3.0 * (1.0 - q) ** 2 / near - (1.0 - q) ** 3 / near**2) * 2.0 / square
-                    h = x * normals[p, 0] + y * normals[p, 1] + z * normals[p, 2]
+                    w = force * (1.0 - q) ** 3 / near
+                    dw = force * (-3.0 * (1.0 - q) ** 2 / near - (1.0 - q) ** 3 / near**2) * 2.0 / own
+                    h = x * normals[p, 0] + y * normals[p, 1] + z * normals[p, 2] + held[p]
                     total += w
                     height += w * h
                     d_total[0] += dw * x

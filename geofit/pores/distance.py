@@ -13,9 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.messages import message
+from geofit.pores.threads import in_parts
 from geofit.pores.volume import VolumeError
 
 __all__ = ["Border", "border_walls", "squared_distance", "sums_of_squares"]
+
+#: Voxels that are worth a thread.
+_LEAST = 500_000
 
 #: Which faces of the sample stop a ball: all, none, or one word for each axis of the array.
 Border = Literal["closed", "open"] | tuple[Literal["closed", "open"], ...]
@@ -75,10 +79,20 @@ def squared_distance(
     shape = np.array(pore.shape)
     farthest = squares.dtype.type((squares * shape * shape).sum())
     out = np.empty(pore.shape, dtype=squares.dtype)
-    scan_rows(pore, squares[2], farthest, walls[2], out)
-    # A view with the scanned axis first; the middle axis walks through planes that lie together in memory.
-    scan_envelopes(out.transpose(1, 0, 2), squares[1], farthest, walls[1])
-    scan_envelopes(out, squares[0], farthest, walls[0])
+    n0, n1, n2 = pore.shape
+
+    def in_slices(first: int, end: int) -> None:
+        part = out[first:end]
+        scan_rows(pore[first:end], squares[2], farthest, walls[2], part)
+        # A view with the scanned axis first; the middle axis walks through planes that lie together in memory.
+        scan_envelopes(part.transpose(1, 0, 2), squares[1], farthest, walls[1])
+
+    in_parts(in_slices, n0, _LEAST // (n1 * n2) + 1)
+    in_parts(
+        lambda first, end: scan_envelopes(out[:, first:end], squares[0], farthest, walls[0]),
+        n1,
+        _LEAST // (n0 * n2) + 1,
+    )
     return out
 
 

@@ -14,7 +14,7 @@ __all__ = ["scan_envelopes", "scan_rows"]
 _TILE = 32
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def scan_rows(pore: NDArray[np.bool_], square: Any, farthest: Any, wall: bool, out: NDArray[Any]) -> None:
     """Write the squared distance to the nearest rock of the same row (last axis)."""
     n0, n1, n2 = pore.shape
@@ -35,7 +35,7 @@ def scan_rows(pore: NDArray[np.bool_], square: Any, farthest: Any, wall: bool, o
                 out[i, j, k] = min(square * step * step, farthest) if step < far else farthest
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def scan_envelopes(field: NDArray[Any], square: Any, farthest: Any, wall: bool) -> None:
     """Replace ``field`` by its lower envelope of parabolas along the first axis, in place."""
     n, rows, columns = field.shape
@@ -65,7 +65,7 @@ def scan_envelopes(field: NDArray[Any], square: Any, farthest: Any, wall: bool) 
                     field[i, row, left + c] = lines[c, i]
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _envelope(
     line: NDArray[Any],
     first: int,

@@ -48,30 +48,32 @@ def saddles(
     """
     n0, n1, n2 = space.shape
     steps = offsets[:, 0] * (n1 * n2) + offsets[:, 1] * n2 + offsets[:, 2]
+    # Of two neighbours the earlier voxel finds the later one.
+    later = np.flatnonzero(steps > 0)
     size = 1024
     keys = np.full(size, -1, np.int64)
     widest = np.zeros(size, np.int32)
     count = 0
+    row = -1
     for here in range(n0 * n1 * n2):
-        row = slot(space, here)
-        if row < 0:
+        if space.bits[here >> 6] >> np.uint64(here & 63) & np.uint64(1) == 0:
             continue
-        own, level = np.int64(label[row]), levels[row]
+        row += 1
+        own, level = label[row], levels[row]
         i, j, k = here // (n1 * n2), here // n2 % n1, here % n2
         inside = 0 < i < n0 - 1 and 0 < j < n1 - 1 and 0 < k < n2 - 1
-        for d in range(26):
+        for d in later:
             if not inside:
                 a, b, c = i + offsets[d, 0], j + offsets[d, 1], k + offsets[d, 2]
                 if a < 0 or b < 0 or c < 0 or a >= n0 or b >= n1 or c >= n2:
                     continue
             there = slot(space, here + steps[d])
-            # Each pair is seen from both sides; the side with the smaller number takes it.
-            if there < 0 or label[there] <= own:
+            if there < 0 or label[there] == own:
                 continue
             if d >= 6 and max(level, levels[there]) < (by_edges if d < 18 else by_corners):
                 continue
             saddle = min(level, levels[there])
-            key = own * (basins + 1) + label[there]
+            key = np.int64(min(own, label[there])) * (basins + 1) + max(own, label[there])
             place = _place(keys, key)
             if keys[place] == -1:
                 keys[place] = key

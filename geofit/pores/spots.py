@@ -7,17 +7,19 @@ from numba import njit
 from numpy.typing import NDArray
 
 from geofit.pores.packed import PackedSpace, slot
+from geofit.pores.threads import in_parts
 from geofit.pores.windows import Windows
 
 __all__ = ["own_saddle", "widest_balls"]
 
+#: Balls that are worth a thread.
+_LEAST = 500
 #: A centre may move this far from its voxel, in voxels along each axis.
 _MOVE = 0.75
 #: A window with less than this share of the area of its own ball's section is a strip between other windows.
 _STRIP = 0.5
 
 
-@njit(cache=True)
 def widest_balls(
     voxel: NDArray[np.int64],
     normal: NDArray[np.float64],
@@ -39,6 +41,22 @@ def widest_balls(
     start_at : ndarray of float, shape (n, 3)
         Place from which the search starts, in indices; within a voxel of ``voxel``.
     """
+    found = in_parts(
+        lambda first, end: _widest_balls(voxel[first:end], normal[first:end], space, edges, start_at[first:end]),
+        len(voxel),
+        _LEAST,
+    )
+    return np.concatenate(found)
+
+
+@njit(cache=True, nogil=True)
+def _widest_balls(
+    voxel: NDArray[np.int64],
+    normal: NDArray[np.float64],
+    space: PackedSpace,
+    edges: NDArray[np.float64],
+    start_at: NDArray[np.float64],
+) -> NDArray[np.float64]:
     n0, n1, n2 = space.shape
     out = np.zeros(len(voxel))
     for row in range(len(voxel)):
@@ -58,10 +76,10 @@ def widest_balls(
                     shell = abs(a - i) == reach or abs(b - j) == reach
                     step = 1 if shell else max(2 * reach, 1)
                     for c in range(k - reach, k + reach + 1, step):
-                        if c < 0 or c >= n2 or slot(space, (a * n1 + b) * n2 + c) >= 0:
-                            continue
                         x, y, z = (a - i) * edges[0], (b - j) * edges[1], (c - k) * edges[2]
                         gap = np.sqrt(x * x + y * y + z * z)
+                        if gap > limit or c < 0 or c >= n2 or slot(space, (a * n1 + b) * n2 + c) >= 0:
+                            continue
                         nearest = min(nearest, gap)
                         if gap <= nearest + 4.0 * _MOVE * edges.max():
                             if count == len(rocks):
@@ -108,9 +126,12 @@ def widest_balls(
     return out
 
 
-@njit(cache=True)
+@njit(cache=True, nogil=True)
 def _nearest(rocks: NDArray[np.float64], count: int, px: float, py: float, pz: float, least: float) -> float:
-    """Return the distance to the nearest rock, or any distance not above ``least`` if it is nearer than that."""
+    """Return the distance to the nearest rock, or any distance not above ``least`` if it is nearer than that.
+
+    A rock that ended the search moves forward, so that it ends the next one sooner.
+    """
     best, enough = np.inf, least * least
     for r in range(count):
         x, y, z = rocks[r, 0] - px, rocks[r, 1] - py, rocks[r, 2] - pz
@@ -118,6 +139,9 @@ def _nearest(rocks: NDArray[np.float64], count: int, px: float, py: float, pz: f
         if square < best:
             best = square
             if best <= enough:
+                ahead = r // 2
+                for axis in range(3):
+                    rocks[r, axis], rocks[ahead, axis] = rocks[ahead, axis], rocks[r, axis]
                 break
     return float(np.sqrt(best))
 

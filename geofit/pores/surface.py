@@ -45,6 +45,8 @@ Construction = Literal["contact", "blend"]
 _SUPPORT = 2.5
 #: The volume is measured in at most so many boxes of so many voxels along each axis, and corrected so often.
 BOXES, BOX, ROUNDS = 16, 32, 2
+#: Value of the field in a voxel that is held, and how often faults are looked for.
+_HOLD, RESCUES = 0.5, 4
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +65,9 @@ class ContactField:
         Length of the shortest edge in metres.
     shift : float
         Taken off the field, in units, so that the body has the volume of its voxels.
+    held : ndarray of int, shape (m, 3)
+        Voxels in which the field keeps the sign that they have, because averaged planes would close a throat there or
+        break a wall.
     """
 
     points: Floats
@@ -71,15 +76,20 @@ class ContactField:
     edges: tuple[float, float, float]
     unit: float
     shift: float = 0.0
+    held: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), np.int64))
 
     @cached_property
-    def _cells(self) -> tuple[Floats, Floats, NDArray[np.int64], Floats, NDArray[np.int64]]:
+    def _cells(self) -> tuple[Floats, Floats, Floats, NDArray[np.int64], Floats, NDArray[np.int64]]:
         from geofit.pores.contact_field import sort_into_cells
 
         lower = np.full(3, -1.0)
         counts = np.ceil((np.array(self.pore.shape) * self.edges + 2.0) / _SUPPORT).astype(np.int64)
-        order, start = sort_into_cells(self.points, lower, _SUPPORT, counts)
-        return self.points[order], self.normals[order], start, lower, counts
+        points = np.concatenate([self.points, (self.held + 0.5) * self.edges])
+        normals = np.concatenate([self.normals, np.zeros(self.held.shape)])
+        sign = np.where(self.pore[tuple(self.held.T)], -_HOLD, _HOLD)
+        values = np.concatenate([np.zeros(len(self.points)), sign + self.shift])
+        order, start = sort_into_cells(points, lower, _SUPPORT, counts)
+        return points[order], normals[order], values[order], start, lower, counts
 
     def _both(self, xyz: Floats) -> tuple[Floats, Floats]:
         from geofit.pores.contact_field import contact_values
@@ -201,6 +211,22 @@ class PoreSurface(OwnField):
         """Share of the sample that lies in the body, by the volume of its triangles."""
         return float(self.overview.volume / np.prod(self.bounds[1]))
 
+    @property
+    def held_open(self) -> NDArray[np.int64]:
+        """Pore voxels (n, 3) in which the field is held, or averaging would have closed a throat there."""
+        return self._held(True)
+
+    @property
+    def held_closed(self) -> NDArray[np.int64]:
+        """Rock voxels (n, 3) in which the field is held, or averaging would have broken a wall there."""
+        return self._held(False)
+
+    def _held(self, pore: bool) -> NDArray[np.int64]:
+        if not isinstance(self.field, ContactField):
+            return np.zeros((0, 3), np.int64)
+        held = self.field.held
+        return np.asarray(held[self.field.pore[tuple(held.T)] == pore])
+
     def voxels(self) -> NDArray[np.bool_]:
         """Return the voxels whose middle lies in the body."""
         edges = np.array(self.voxel)
@@ -308,8 +334,26 @@ def _contact_field(volume: RockVolume) -> ContactField:
         else:
             high = shift
     body = replace(raw, shift=0.5 * (low + high))
+    # Voxels that are held change the volume a little, and another volume the faults.
     for _ in range(ROUNDS):
-        body = _of_equal_volume(body, volume)
+        body = _rescued(_of_equal_volume(body, volume), volume, near, middles)
+    return _rescued(_of_equal_volume(body, volume), volume, near, middles)
+
+
+def _rescued(body: ContactField, volume: RockVolume, near: NDArray[np.int64], middles: Floats) -> ContactField:
+    """Return the body with the parts, tunnels and cavities of its voxels, as far as the middles of voxels tell.
+
+    Only voxels beside the wall, whose flat indices and middles are given, can have the wrong sign.
+    """
+    from geofit.pores.topology import topology_faults
+
+    for _ in range(RESCUES):
+        rebuilt = volume.pore.copy()
+        rebuilt.ravel()[near] = body.value(middles) < 0
+        faults = topology_faults(rebuilt, volume.pore)
+        if not len(faults):
+            break
+        body = replace(body, held=np.unique(np.concatenate([body.held, faults]), axis=0))
     return body
 
 

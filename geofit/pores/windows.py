@@ -38,8 +38,7 @@ class Windows(NamedTuple):
 
 def inner_windows(space: PackedSpace, pore_of: NDArray[np.int32], levels: NDArray[np.int32], pores: int) -> Windows:
     """Return the windows between pores; ``pore_of`` counts from 1."""
-    count = _inner_faces(space, pore_of, levels, 0, pores + 1)[0]
-    _, key, voxel, axis, sign, level = _inner_faces(space, pore_of, levels, count, pores + 1)
+    key, voxel, axis, sign, level = _inner_faces(space, pore_of, levels, pores + 1)
     found = _grouped(space.shape, key, voxel, axis, sign, level, pores + 1)
     return found._replace(second=found.second - 1)
 
@@ -95,35 +94,38 @@ def _grouped(
 
 @njit(cache=True)
 def _inner_faces(
-    space: PackedSpace, pore_of: NDArray[np.int32], levels: NDArray[np.int32], count: int, base: int
-) -> tuple[int, NDArray[np.int64], NDArray[np.int64], NDArray[np.int8], NDArray[np.int8], NDArray[np.int32]]:
-    """Return how many voxel faces part two pores, and the first ``count`` of them."""
+    space: PackedSpace, pore_of: NDArray[np.int32], levels: NDArray[np.int32], base: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int8], NDArray[np.int8], NDArray[np.int32]]:
+    """Return the voxel faces that part two pores: key, voxel, axis, sign, level."""
     n0, n1, n2 = space.shape
     steps = (n1 * n2, n2, 1)
-    key, voxel = np.empty(count, np.int64), np.empty(count, np.int64)
-    axis, sign = np.empty(count, np.int8), np.empty(count, np.int8)
-    level = np.empty(count, np.int32)
-    row = 0
+    voxel, axis = np.empty(1024, np.int64), np.empty(1024, np.int8)
+    count, place = 0, -1
     for here in range(n0 * n1 * n2):
-        place = slot(space, here)
-        if place < 0:
+        if space.bits[here >> 6] >> np.uint64(here & 63) & np.uint64(1) == 0:
             continue
-        own = pore_of[place]
+        place += 1
         for d in range(3):
             if here // steps[d] % space.shape[d] == space.shape[d] - 1:
                 continue
             there = slot(space, here + steps[d])
-            if there < 0 or pore_of[there] == own:
+            if there < 0 or pore_of[there] == pore_of[place]:
                 continue
-            if row < count:
-                other = pore_of[there]
-                key[row] = np.int64(min(own, other)) * base + max(own, other)
-                voxel[row] = here
-                axis[row] = d
-                sign[row] = 1 if own < other else -1
-                level[row] = min(levels[place], levels[there])
-            row += 1
-    return row, key, voxel, axis, sign, level
+            if count == len(voxel):
+                more_voxels, more_axes = np.empty(2 * count, np.int64), np.empty(2 * count, np.int8)
+                more_voxels[:count], more_axes[:count] = voxel, axis
+                voxel, axis = more_voxels, more_axes
+            voxel[count], axis[count] = here, d
+            count += 1
+    voxel, axis = voxel[:count].copy(), axis[:count].copy()
+    key, sign, level = np.empty(count, np.int64), np.empty(count, np.int8), np.empty(count, np.int32)
+    for row in range(count):
+        first, second = slot(space, voxel[row]), slot(space, voxel[row] + steps[axis[row]])
+        own, other = pore_of[first], pore_of[second]
+        key[row] = np.int64(min(own, other)) * base + max(own, other)
+        sign[row] = 1 if own < other else -1
+        level[row] = min(levels[first], levels[second])
+    return key, voxel, axis, sign, level
 
 
 @njit(cache=True)

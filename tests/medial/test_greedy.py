@@ -76,6 +76,21 @@ def test_the_bound_is_never_below_the_gain():
     assert all(found.gain(i) <= bounds[i] for i in range(len(found.index)))
 
 
+@pytest.mark.parametrize("edges", [(1.0, 1.0, 1.0), (1.0, 1.5, 2.0)])
+def test_the_room_in_blocks_is_never_below_the_gain(edges):
+    """At the start and after each ball: the bound that saves evaluations must not hide the best candidate."""
+    found = cover(6, edges=edges)
+    heap, everyone = heap_of(found), range(len(found.index))
+    before = np.full(len(found.index), np.inf)
+    for _ in range(5):
+        rooms = np.array([found.room(i) for i in everyone])
+        assert (np.array([found.gain(i) for i in everyone]) <= rooms).all()
+        assert (rooms <= before).all()
+        chosen = choose(found, heap)
+        assert found.room(chosen.candidate) < rooms[chosen.candidate]
+        before = rooms
+
+
 @pytest.mark.parametrize("seed", range(10))
 def test_the_radius_search_is_at_least_as_good_as_a_thousand_radii(seed):
     found = cover(seed, cost=1.3)
