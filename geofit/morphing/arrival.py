@@ -36,11 +36,17 @@ def arrival(d_a: Floats, d_b: Floats, spacing: float) -> Floats:
     place only. Fast marching of second order (J. Sethian, SIAM Review 41, 1999) for u, which is smooth at B where T has
     no end; buckets in place of a heap (L. Yatziv et al., J. Comput. Phys. 212, 2006).
     """
-    from geofit.morphing.arrival_loops import march, start_values
+    from geofit.morphing.arrival_loops import START, march, start_values
+    from geofit.morphing.wedge_loops import angles, wedges
 
     floor = FLOOR * spacing
-    u = start_values(np.ascontiguousarray(d_a), np.ascontiguousarray(d_b), spacing, floor)
-    march(u, np.ascontiguousarray(d_b), (d_a < 0) != (d_b < 0), spacing, floor)
+    d_a, d_b = np.ascontiguousarray(d_a), np.ascontiguousarray(d_b)
+    region = (d_a < 0) != (d_b < 0)
+    near = np.minimum(np.abs(d_a), np.abs(d_b)) < (START + 2) * spacing
+    cosine = angles(d_a, d_b, region | near, spacing)
+    factor = wedges(d_a, d_b, cosine, region | (np.abs(d_a) <= START * spacing), spacing, floor)
+    u = start_values(d_a, d_b, *factor[:2], spacing, floor)
+    march(u, d_b, region, *factor, spacing, floor)
     return u
 
 
@@ -48,14 +54,16 @@ def source_field(u: Floats, d_a: Floats, d_b: Floats, spacing: float) -> Floats:
     """Return a field F that is zero on A and makes every frame linear: (1 - s) F + s d_B is zero where 1 - u = s.
 
     F = d_B + L with L = -d_B / u, the length that the whole way of the front has at a node; beyond the way L is
-    continued. Inside both bodies F is negative, outside both positive: no frame leaves the corridor between them.
+    continued. Inside both bodies F is negative, outside both positive: no frame leaves the corridor between them. In a
+    part of the way that no front reaches, such as a hollow of B within A, F = d_A: the frames are those of a blend.
     """
     from geofit.morphing.arrival_loops import widen
 
     length = np.maximum(np.abs(d_b), FLOOR * spacing) / u
     length = np.where(d_b < 0, length, -length)
+    alone = np.isnan(u) & ((d_a < 0) != (d_b < 0))
     widen(length, LAYERS)
-    field = np.where(np.isnan(length), d_a, d_b + length)
+    field = np.where(np.isnan(length) | alone, d_a, d_b + length)
     lower, upper = np.minimum(d_a, d_b), np.maximum(d_a, d_b)
     field = np.where(upper < 0, np.minimum(field, upper), field)
     return np.where(lower >= 0, np.maximum(field, lower), field)

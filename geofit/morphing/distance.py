@@ -20,6 +20,8 @@ Bools = NDArray[np.bool_]
 TOLERANCE = 1e-7
 #: Beyond the bodies this many spacings get both distances: the front starts there.
 RIM = 5.0
+#: Layers of nodes around the bodies that get both distances, too: the front ends there.
+BEYOND = 4
 #: A polished distance must lie this near to that from the triangles, in spacings: triangles err by less.
 TRUSTED = 0.25
 
@@ -81,10 +83,21 @@ def distances(body: Samples, wanted: Bools, band: float = 8.0) -> Floats:
 
 def both_distances(a: Samples, b: Samples) -> tuple[Floats, Floats]:
     """Return the signed distances (nx, ny, nz) from two bodies, metres, exact in both of them and around them."""
-    either = a.inside | b.inside
-    d_a = distances(a, either)
-    d_b = distances(b, either | (np.abs(d_a) < RIM * a.lattice.spacing))
+    around = _widened(a.inside | b.inside, BEYOND)
+    d_a = distances(a, around)
+    d_b = distances(b, around | (np.abs(d_a) < RIM * a.lattice.spacing))
     return d_a, d_b
+
+
+def _widened(nodes: Bools, layers: int) -> Bools:
+    """Return the nodes within some layers of others along the axes and diagonals."""
+    wide = nodes.copy()
+    for axis in range(3):
+        lines, before = np.moveaxis(wide, axis, 0), np.moveaxis(wide, axis, 0).copy()
+        for k in range(1, layers + 1):
+            lines[k:] |= before[:-k]
+            lines[:-k] |= before[k:]
+    return wide
 
 
 def redistanced(values: Floats, lattice: Lattice, band: float) -> Floats:
