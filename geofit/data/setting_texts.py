@@ -165,6 +165,27 @@ SETTINGS: Mapping[str, SettingText] = {
             True: message("settings.strict-true", "Met where knots allow"),
         },
     ),
+    "dips": SettingText(
+        message("settings.dips", "Measured dips"),
+        message(
+            "settings.dips-about",
+            "Check: dips measured on the horizon are compared with the surface. Fit: they are data as well, and the "
+            "surface takes their slope as far as their accuracy asks for it.",
+        ),
+        choices={
+            "check": message("settings.dips-check", "Checked"),
+            "fit": message("settings.dips-fit", "Checked and fitted"),
+        },
+    ),
+    "dip_accuracy": SettingText(
+        message("settings.dip-accuracy", "Accuracy of dips"),
+        message(
+            "settings.dip-accuracy-about",
+            "Standard deviation of a measured dip about the surface's own, the waviness of the bed included.",
+        ),
+        "°",
+        number="real",
+    ),
     "max_iterations": SettingText(
         message("settings.max-iterations", "Rounds, at most"),
         message(
