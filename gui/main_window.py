@@ -16,6 +16,7 @@ from geofit.gui.bodies import Bodies
 from geofit.gui.context import ContextMenus
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.steps import StepsDialog
+from geofit.gui.dips import Dips
 from geofit.gui.exporting import Delivering
 from geofit.gui.files import Files
 from geofit.gui.fitting import Fitting
@@ -72,6 +73,7 @@ class MainWindow(QMainWindow):
         self.living = Living(session, self.activity, self.fitting, self.panels, self.panels.offer, self)
         self.showing.also.append(self.living.show)
         self.selecting = Selecting(document, self.panels, self.showing, self)
+        self.dips = Dips(document, self.panels, self.showing, self)
         self.adjusting = Adjusting(document, self.fitting, self.panels.adjust, self)
         self.ordering = Ordering(document, self.activity, self.fitting, self.showing, self.panels, self)
         self.delivering = Delivering(document, self.activity, preferences, self.panels, self.showing, self)
@@ -117,7 +119,9 @@ class MainWindow(QMainWindow):
         self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)
-        for part in (self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing):
+        for part in (
+            self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing,
+        ):  # fmt: skip
             part.close()
         for end in self._ends:
             end()
@@ -238,6 +242,7 @@ class MainWindow(QMainWindow):
         panels.residuals.move_requested.connect(self.adjusting.move_to)
         panels.prediction.examine_requested.connect(self._with_horizon(fitting.examine))
         panels.changes.add_requested.connect(self.living.ask_files)
+        panels.stereonet.add_requested.connect(self.living.ask_files)
         panels.changes.fit_requested.connect(fitting.fit)
         panels.changes.place_chosen.connect(panels.view.focus_place)
         panels.section.failed.connect(lambda error: self.fail(self.tr("Section"), error))
@@ -260,6 +265,7 @@ class MainWindow(QMainWindow):
             part.reported.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.reported.connect(self.tell)
+        self.dips.reported.connect(self.tell)
         self.session.recorded.connect(self.tell)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (
