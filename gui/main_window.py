@@ -13,6 +13,7 @@ from geofit.gui.activity import Activity
 from geofit.gui.activity_bar import ActivityBar
 from geofit.gui.adjusting import Adjusting
 from geofit.gui.bodies import Bodies
+from geofit.gui.comparing_fits import ComparingFits
 from geofit.gui.context import ContextMenus
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.steps import StepsDialog
@@ -74,6 +75,7 @@ class MainWindow(QMainWindow):
         self.showing.also.append(self.living.show)
         self.selecting = Selecting(document, self.panels, self.showing, self)
         self.dips = Dips(document, self.panels, self.showing, self)
+        self.comparing_fits = ComparingFits(document, self.fitting, self)
         self.adjusting = Adjusting(document, self.fitting, self.panels.adjust, self)
         self.ordering = Ordering(document, self.activity, self.fitting, self.showing, self.panels, self)
         self.delivering = Delivering(document, self.activity, preferences, self.panels, self.showing, self)
@@ -120,7 +122,7 @@ class MainWindow(QMainWindow):
         self.activity.cancel()
         finish_all(helpers=False)
         for part in (
-            self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing,
+            self.comparing_fits, self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing,
         ):  # fmt: skip
             part.close()
         for end in self._ends:
@@ -194,6 +196,7 @@ class MainWindow(QMainWindow):
             "fit": self._with_horizon(self.fitting.fit),
             "fit_all": self.fitting.fit_all,
             "examine": self._with_horizon(self.fitting.examine),
+            "compare_fits": self._with_horizon(self.comparing_fits.open),
             "check_order": self.ordering.check,
             "order": self.ordering.edit,
             "separate": self.ordering.ask_separation,
@@ -266,6 +269,7 @@ class MainWindow(QMainWindow):
         self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.reported.connect(self.tell)
         self.dips.reported.connect(self.tell)
+        self.comparing_fits.reported.connect(self.tell)
         self.session.recorded.connect(self.tell)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (

@@ -232,7 +232,9 @@ def _dips(result: HorizonResult) -> tuple[DipLine, ...]:
         return ()
     return tuple(
         DipLine(
-            *measured.xyz[one.index].tolist(),
+            float(measured.xyz[one.index, 0]),
+            float(measured.xyz[one.index, 1]),
+            float(measured.xyz[one.index, 2]),
             one.azimuth,
             one.dip,
             one.surface_azimuth,

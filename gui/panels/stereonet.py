@@ -12,7 +12,6 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QIcon, QResizeEvent
 from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QSplitter, QVBoxLayout, QWidget
 
-from geofit.data.languages import Language
 from geofit.geometry.attitudes import poles
 from geofit.gui.panels.canvas import Canvas, PlotColours, recolour
 from geofit.gui.panels.marks import icon
@@ -204,7 +203,7 @@ class StereonetPanel(QWidget):
             return
         (axes,) = self.canvas.axes(1)
         names = table.measured.horizon[table.index].tolist()
-        chosen = np.flatnonzero(table.index == self._chosen) if self._chosen is not None else []
+        chosen = np.flatnonzero(table.index == (-1 if self._chosen is None else self._chosen))
         net = Net(
             table.azimuth,
             table.dip,
@@ -213,7 +212,7 @@ class StereonetPanel(QWidget):
             int(chosen[0]) if len(chosen) else None,
             self.traces.isChecked(),
         )
-        stereonet(axes, net, cast(Language, user_language()))
+        stereonet(axes, net, user_language())
         recolour(axes, colours)
 
     def _arrange(self, colours: PlotColours) -> None:
