@@ -156,7 +156,7 @@ class Fitting(QObject):
         index = None if surface is None else row.find(surface.points)
         if index is None:
             text = message(
-                "window.point-not-fitted",
+                "gui.point-not-fitted",
                 "{file} row {row} is not among the points of the surface of '{name}'. Include it and fit, or choose "
                 "another point.",
                 file=row.file,
@@ -258,7 +258,7 @@ class Fitting(QObject):
         surface = self._document.shelf.surface(provenance)
         if provenance is None or surface is None:
             text = message(
-                "project.no-surface-adjust-fit",
+                "data.no-surface-to-adjust",
                 "'{name}' has no surface to adjust. Fit it first.",
                 name=command.horizon,
             )
@@ -266,7 +266,7 @@ class Fitting(QObject):
             return None
         if surface.model is None and not self._document.holds(provenance):
             text = message(
-                "window.read-file-data-changed",
+                "gui.surface-data-changed",
                 "'{name}' was read from a file, and its data have changed since. Fit it again, then adjust.",
                 name=command.horizon,
             )
@@ -281,7 +281,7 @@ class Fitting(QObject):
             self.refused.emit(
                 DocumentError(
                     message(
-                        "window.surface-changed-adjusted-adjust",
+                        "gui.surface-changed-while-adjusting",
                         "The surface changed while it was adjusted. Adjust it once more.",
                     )
                 )
@@ -295,9 +295,7 @@ class Fitting(QObject):
         provenance = self._document.state.provenances.get(name)
         surface = self._document.shelf.surface(provenance)
         if provenance is None or surface is None:
-            text = message(
-                "window.no-surface-examine-fit", "'{name}' has no surface to examine. Fit it first.", name=name
-            )
+            text = message("gui.no-surface-to-examine", "'{name}' has no surface to examine. Fit it first.", name=name)
             self.refused.emit(DocumentError(text))
             return None
         return examined, (provenance, surface)

@@ -137,7 +137,7 @@ class Living(QObject):
         changed = [name for name, what in found.items() if what == "changed"]
         if changed:
             offer = plural_message(
-                "window.files-changed",
+                "gui.files-changed",
                 "{file} has changed since it was read.",
                 "{count} files have changed since they were read, the first {file}.",
                 count=len(changed),
@@ -148,7 +148,7 @@ class Living(QObject):
             self._bar.hide()
         for name, what in found.items():
             if what == "missing":
-                _LOG.warning(message("log.file-missing", "{file} no longer exists.", file=name))
+                _LOG.warning(message("gui.log-file-missing", "{file} no longer exists.", file=name))
 
     def _stamped(self) -> dict[str, _Stamp]:
         document = self._document
@@ -185,7 +185,7 @@ class Living(QObject):
         for text in change.lost:
             _LOG.warning(text)
         carried = plural_message(
-            "window.exclusions-carried", "{count} exclusion kept.", "{count} exclusions kept.", count=change.carried
+            "gui.exclusions-carried", "{count} exclusion kept.", "{count} exclusions kept.", count=change.carried
         )
         words = [translated(one.text) for one in change.arrivals if one.any]
         if change.carried:

@@ -253,7 +253,7 @@ class Morphing(QObject):
 
     def _exported(self, done: MorphRun) -> None:
         folder = done.files[0].resolve().parent
-        _LOG.info(message("log.wrote", "Wrote {file}", file=str(folder)))
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(folder)))
         self.reported.emit(
             self.tr("Wrote {n} files to {folder}. {note}").format(
                 n=len(done.files), folder=folder, note=self._panel.note.text()

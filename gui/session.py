@@ -56,7 +56,7 @@ class Session(QObject):
         except OSError as error:
             _LOG.warning(
                 message(
-                    "log.no-journal",
+                    "gui.log-journal-not-written",
                     "No journal can be written, so a crash would lose unsaved work: {error}",
                     error=shown_error(error),
                 )
@@ -89,7 +89,7 @@ class Session(QObject):
             except InputError as error:
                 _LOG.warning(
                     message(
-                        "log.data-not-kept",
+                        "gui.log-data-not-kept",
                         "The earlier data cannot be stored, so they could not be restored after a crash: {error}",
                         error=shown_error(error),
                     )
@@ -122,7 +122,7 @@ class Session(QObject):
             self._journal = None
             _LOG.warning(
                 message(
-                    "log.journal-lost",
+                    "gui.log-journal-lost",
                     "The journal cannot be written any more, so that a crash would lose unsaved work: {error}",
                     error=shown_error(error),
                 )
@@ -132,14 +132,14 @@ class Session(QObject):
         """Log a step, a fit with its figures, and say it."""
         text = command.text
         if action == "undo":
-            text = message("log.undone", "Undone: {step}", step=text)
+            text = message("gui.log-undone", "Undone: {step}", step=text)
         elif action == "redo":
-            text = message("log.redone", "Done again: {step}", step=text)
+            text = message("gui.log-redone", "Done again: {step}", step=text)
         elif isinstance(command, SetSurface):
             surface = self.document.surface(command.provenance.horizon)
             if surface is not None and surface.accuracy is not None:
                 figures = verdict_of(surface.accuracy).data.text
-                text = message("log.fitted", "{step}: {figures}", step=text, figures=figures)
+                text = message("gui.log-fitted", "{step}: {figures}", step=text, figures=figures)
         _LOG.info(text)
         self.recorded.emit(translated(text))
 

@@ -64,7 +64,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         i = int(swapped[0])
         raise InputError(
             message(
-                "import.look-exchanged-rows-lie",
+                "io.axes-exchanged",
                 "x and y appear to be exchanged: {count} of {total} rows lie far outside the study "
                 "area, and inside it with x and y swapped, the first at x = {x:.15g}, y = {y:.15g}",
                 count=len(swapped),
@@ -73,7 +73,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
                 y=y[i],
             ),
             message(
-                "import.easting-northing-exchange-columns",
+                "io.exchange-columns",
                 "x is the easting, y the northing; exchange the columns "
                 "(in many Chinese tables X is the northing and Y the easting).",
             ),
@@ -85,8 +85,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         rows.reject(
             i,
             "x",
-            message("import.look-exchanged-row", "x and y appear to be exchanged in this row"),
-            message("import.easting-northing", "x is the easting, y the northing."),
+            message("io.row-axes-exchanged", "x and y appear to be exchanged in this row"),
+            message("io.x-is-easting", "x is the easting, y the northing."),
         )
     if known and off.size:
         i = int(off[0])
@@ -94,13 +94,13 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
             i,
             "x",
             message(
-                "import.rows-far-outside-study",
+                "io.rows-far-outside",
                 "Rows far outside the study area: {count}, the first at x = {x:.15g}, y = {y:.15g}",
                 count=off.size,
                 x=x[i],
                 y=y[i],
             ),
-            message("import.check-coordinates-boundary", "Check the coordinates and the boundary."),
+            message("io.check-coordinates", "Check the coordinates and the boundary."),
         )
 
 

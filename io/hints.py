@@ -16,8 +16,8 @@ def nearest(wanted: str, known: Iterable[str], all_of_them: Message, cutoff: flo
     if not near:
         return all_of_them
     return message(
-        "import.first-second",
+        "io.column-pair",
         "{first} {second}",
-        first=message("import.did-you-mean", "Did you mean '{name}'?", name=Untranslated(near[0])),
+        first=message("io.did-you-mean", "Did you mean '{name}'?", name=Untranslated(near[0])),
         second=all_of_them,
     )

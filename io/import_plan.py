@@ -67,7 +67,7 @@ class Plan:
                     self.set_aside(
                         part.source.name,
                         part.preview.read,
-                        message("import.file-not-used", "The file is not used: {reason}", reason=error.reason),
+                        message("io.file-not-used", "The file is not used: {reason}", reason=error.reason),
                         error.remedy,
                         row=error.row or 0,
                         column=error.column or "",
@@ -85,7 +85,7 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
             legible(name),
             0,
             message("import.file-not-utf", "The name of the file is not UTF-8, and a site file cannot name it"),
-            message("import.rename-file", "Rename the file."),
+            message("io.rename-file", "Rename the file."),
         )
         return
     source = Source(path=path, name=name, target=crs or None)
@@ -106,7 +106,7 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
             plan.set_aside(
                 part_source.name,
                 preview.read,
-                message("import.mapping-leaves-table", "The mapping leaves this table out"),
+                message("io.table-left-out", "The mapping leaves this table out"),
                 EMPTY,
                 "note",
             )
@@ -136,28 +136,28 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
             nearest, missing, best = kind, absent, share
     if names & GEOGRAPHIC and not preview.crs:
         return message(
-            "import.file-not-used-places",
+            "io.file-in-degrees",
             "The file is not used: its places are longitude and latitude ({names})",
             names=tuple(Untranslated(name) for name in preview.header if plain_name(name)[0] in GEOGRAPHIC),
         ), message(
-            "import.grid-site-crs",
+            "io.name-grid-with-crs",
             "Name the grid of the site, in metres, with --crs, such as EPSG:32650: they are projected to it.",
         )
     if best >= 0.5:
         return message(
-            "import.file-not-used-nearest",
+            "io.file-without-columns",
             "The file is not used: nearest to a {kind} table, but without {names}",
             kind=nearest,
-            names=tuple(message("place.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing),
+            names=tuple(message("io.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing),
         ), _REMEDY
     return message(
-        "import.file-not-used-columns",
+        "io.file-of-unknown-kind",
         "The file is not used: its columns ({names}) are of no known kind",
         names=", ".join(preview.header[:12]),
     ), _REMEDY
 
 
-_REMEDY = message("import.name-kind-columns-mapping", "Name its kind and columns in a mapping file (--mapping).")
+_REMEDY = message("io.name-kind-in-mapping", "Name its kind and columns in a mapping file (--mapping).")
 
 
 def complete(plan: Plan) -> None:
@@ -167,13 +167,13 @@ def complete(plan: Plan) -> None:
         for part in plan.of(kind)[1:]:
             plan.parts[kind].remove(part)
             first = plan.of(kind)[0].source.name
-            remedy = message("import.import-only-one", "Import one of them.")
+            remedy = message("io.import-only-one", "Import one of them.")
             if kind == "ground":
                 remedy = message(
-                    "import.state-kind-grid-mapping",
+                    "io.state-grid-in-mapping",
                     'State kind = "grid" in a mapping file (--mapping) where it is a horizon.',
                 )
-            reason = message("import.taken-already", "The {kind} is taken from {file} already", kind=kind, file=first)
+            reason = message("io.kind-taken-already", "The {kind} is taken from {file} already", kind=kind, file=first)
             plan.set_aside(part.source.name, _rows_of(part), reason, remedy)
     lacking = [
         ("survey", "collar"),
@@ -187,9 +187,9 @@ def complete(plan: Plan) -> None:
                     part.source.name,
                     part.preview.read,
                     message(
-                        "import.table-no-table", "The {kind} table has no {needed} table", kind=kind, needed=needed
+                        "io.companion-table-missing", "The {kind} table has no {needed} table", kind=kind, needed=needed
                     ),
-                    message("import.add-table", "Add the {needed} table.", needed=needed),
+                    message("io.add-table", "Add the {needed} table.", needed=needed),
                 )
     _place_sections(plan)
 
@@ -226,26 +226,26 @@ def _place_sections(plan: Plan) -> None:
             part.section = known.get(stem.casefold(), "")
             if part.section in placed:
                 reason = message(
-                    "import.section-taken-already",
+                    "io.section-taken-already",
                     "Section '{name}' is taken from {file} already",
                     name=part.section,
                     file=placed[part.section],
                 )
-                remedy = message("import.import-only-one", "Import one of them.")
+                remedy = message("io.import-only-one", "Import one of them.")
             elif not part.section:
-                reason = message("import.section-no-line-plan", "The section has no line in plan")
+                reason = message("io.section-without-line", "The section has no line in plan")
                 remedy = message(
-                    "import.add-table-section-corners",
+                    "io.add-section-table",
                     "Add a table section, x, y with the corners of section '{name}', or write [[section]] with its "
                     "line into the site file.",
                     name=stem,
                 )
                 if kind == "drawing":
                     a_map = message(
-                        "import.map-state-kind-traces",
+                        "io.state-map-kind",
                         'A map: state kind = "traces", "adit path" or "adit contacts" in a mapping file.',
                     )
-                    remedy = message("import.first-second", "{first} {second}", first=remedy, second=a_map)
+                    remedy = message("io.column-pair", "{first} {second}", first=remedy, second=a_map)
             else:
                 placed[part.section] = part.source.name
                 continue
@@ -273,12 +273,12 @@ def campaigns(plan: Plan) -> list[tuple[Part, Part | None, list[Part]]]:
                     part.source.name,
                     part.preview.read,
                     message(
-                        "import.taken-already",
+                        "io.kind-taken-already",
                         "The {kind} is taken from {file} already",
                         kind=kind,
                         file=surveys[k].source.name,
                     ),
-                    message("import.join-survey-tables", "Join the survey tables."),
+                    message("io.join-survey-tables", "Join the survey tables."),
                 )
     return [(collar, surveys.get(k), intervals.get(k, [])) for k, collar in enumerate(collars)]
 

@@ -205,7 +205,7 @@ def fixes_trend(points: Floats, oriented: Floats) -> bool:
 def _unsatisfied(count: int, rounds: int) -> FitError:
     return FitError(
         message(
-            "bodies.samples-still-wrong",
+            "bodies.active-set-not-converged",
             "{count} samples are still on the wrong side after {rounds} rounds. Look for intervals that contradict "
             "the contacts, or give the contacts a larger coincidence_distance.",
             count=count,

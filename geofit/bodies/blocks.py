@@ -55,7 +55,7 @@ def block_lattice(body: BodyFit, spacing: float | None = None) -> Lattice:
         least = float(np.prod(upper - lower) / MOST) ** (1 / 3)
         raise SettingsError(
             message(
-                "bodies.blocks-cannot-used-body",
+                "bodies.block-size-unusable",
                 "Blocks of {spacing} m cannot be used for a body {size:.1f} m long: at most {most} blocks are made, "
                 "so give {least:.3g} m or more.",
                 spacing=spacing,

@@ -86,7 +86,7 @@ def _combined(part: Field, epsilon: float, size: float) -> tuple[Any, bool]:
 def _endless() -> FitError:
     return FitError(
         message(
-            "bodies.part-endless", "A part of the body is unbounded: a solid must be closed. Write triangles instead."
+            "bodies.part-unbounded", "A part of the body is unbounded: a solid must be closed. Write triangles instead."
         )
     )
 

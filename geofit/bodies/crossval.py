@@ -128,7 +128,7 @@ def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
     if len(set(names.tolist()) - {""}) < 3:
         raise FitError(
             message(
-                "bodies.leaving-hole-time-needs",
+                "bodies.folds-need-three-holes",
                 "Leaving out one hole at a time needs three holes or more with samples, and their names in "
                 "inside_hole and outside_hole.",
             )

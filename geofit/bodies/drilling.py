@@ -71,7 +71,7 @@ def suggest_holes(
     if count < 1 or not np.isfinite([azimuth, dip]).all():
         raise SettingsError(
             message(
-                "bodies.holes-azimuth-cannot-suggested",
+                "bodies.suggestion-unusable",
                 "{count} holes of azimuth {azimuth} and dip {dip} cannot be suggested: give a count of 1 or more and "
                 "finite angles.",
                 count=count,

@@ -104,7 +104,7 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
         if not ((own >= region.lower) & (own <= region.upper)).all(axis=1).any():
             raise FitError(
                 message(
-                    "bodies.contact-inside-sample",
+                    "bodies.box-without-data",
                     "No contact and no inside sample lies in the box {lower} to {upper}. Give a box around the body.",
                     lower=region.lower.tolist(),
                     upper=region.upper.tolist(),

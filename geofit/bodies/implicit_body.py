@@ -126,7 +126,7 @@ class ImplicitBody:
         if not is_finite(spacing) or spacing <= 0 or longest / spacing > self.most_cells:
             raise SettingsError(
                 message(
-                    "bodies.spacing-cannot-used",
+                    "bodies.spacing-unusable",
                     "A spacing of {spacing} m cannot be used for a body {size:.1f} m long: give {least:.3g} m or more.",
                     spacing=spacing,
                     size=longest,

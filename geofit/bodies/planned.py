@@ -121,7 +121,7 @@ def predict_hole(
     if start.shape != (3,) or not np.isfinite([*start, azimuth, dip, length]).all() or length <= 0:
         raise SettingsError(
             message(
-                "bodies.planned-hole-needs-collar",
+                "bodies.planned-hole-unusable",
                 "A planned hole needs a collar x, y, z, finite angles and a length above 0 m, not {collar}, "
                 "{azimuth}, {dip}, {length}.",
                 collar=start.tolist(),

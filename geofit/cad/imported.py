@@ -296,8 +296,8 @@ def existing(path: str | PathLike[str]) -> Path:
     source = Path(path)
     if not is_file(source):
         raise InputError(
-            message("import.file-missing", "There is no such file"),
-            message("import.check-path", "Check the path."),
+            message("data.file-missing", "There is no such file"),
+            message("data.check-path", "Check the path."),
             file=str(source),
         )
     return source
@@ -305,5 +305,5 @@ def existing(path: str | PathLike[str]) -> Path:
 
 def no_faces(file: Path, read: bool, unreadable: Message, remedy: Message) -> InputError:
     """Return the error of a file that OpenCASCADE could not read, or in which it found no face."""
-    reason = message("import.file-without-faces", "The file contains no face") if read else unreadable
+    reason = message("cad.no-face", "The file contains no face") if read else unreadable
     return InputError(reason, remedy, file=str(file))

@@ -132,7 +132,7 @@ def adjust(survey: Survey, *, length_error: float = 0.05, angle_error: float = 1
     if not (length_error > 0 and angle_error > 0):
         raise SettingsError(
             message(
-                "caves.errors-degrees-values",
+                "caves.errors-not-positive",
                 "The errors are {length} m and {angle} degrees; give values above 0.",
                 length=length_error,
                 angle=angle_error,

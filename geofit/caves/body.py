@@ -239,11 +239,11 @@ def centreline_body(
     """
     if ends not in ("round", "flat"):
         raise SettingsError(
-            message("caves.ends-unknown-round", "The ends '{ends}' are unknown; give 'round' or 'flat'.", ends=ends)
+            message("caves.ends-unknown", "The ends '{ends}' are unknown; give 'round' or 'flat'.", ends=ends)
         )
     if (blend is not None and not blend >= 0) or (radius is not None and not radius > 0):
         raise SettingsError(
-            message("caves.blend-radius", "The blend must be 0 or more, the radius above 0, in metres.")
+            message("caves.blend-or-radius-unusable", "The blend must be 0 or more, the radius above 0, in metres.")
         )
     adjusted = adjust(survey) if isinstance(survey, Survey) else survey
     found = sections(adjusted, radius)
@@ -307,5 +307,7 @@ def _points(xyz: ArrayLike) -> Floats:
 
 def _spacing(spacing: float) -> float:
     if not (np.isfinite(spacing) and spacing > 0):
-        raise SettingsError(message("caves.spacing", "The spacing is {spacing}; give metres above 0.", spacing=spacing))
+        raise SettingsError(
+            message("caves.spacing-not-positive", "The spacing is {spacing}; give metres above 0.", spacing=spacing)
+        )
     return float(spacing)

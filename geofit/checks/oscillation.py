@@ -95,14 +95,14 @@ def oscillation(
     beyond = worst[off[worst] > allowed[worst]]
     if not len(beyond):
         text = message(
-            "check.points-surface-keeps-support",
+            "checks.surface-follows-support",
             "between the points the surface follows what they support; it departs by {value:.1f} m "
             "where {limit:.1f} m are allowed, at {x:.0f}, {y:.0f}",
             **figures,
         )
         return Check("oscillation", True, value, limit, "m", partly(text, len(chosen), given))
     text = message(
-        "check.surface-swings-points-around",
+        "checks.surface-oscillates",
         "the surface oscillates between the points: at {x:.0f}, {y:.0f} by {value:.1f} m from "
         "what those around support ({limit:.1f} m allowed), and so at {count} of {n} places; a "
         "point there may be wrong, or the tolerance finer than the data",

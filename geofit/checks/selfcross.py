@@ -37,13 +37,13 @@ def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     frame = surface.frame
     if all(plan_map(patch) is not None for patch in surface.patches):
         text = message(
-            "check.height-field-map-stands",
+            "checks.height-field-over-map",
             "a height field over the map has one value at each location: it cannot cross itself",
         )
         return Check("self-intersection", True, 0, 0, "places", text)
     if frame == "best-plane":
         text = message(
-            "check.height-field-best-plane",
+            "checks.height-field-over-plane",
             "a height field over its best plane has one value at each location: it cannot cross itself",
         )
         return Check("self-intersection", True, 0, 0, "places", text)
@@ -51,14 +51,14 @@ def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     crossed, where = _crossings(triangles) if len(triangles) else (0, triangles)
     if not crossed:
         text = message(
-            "check.no-two-triangles-ends",
+            "checks.surface-does-not-cross-itself",
             "no two of {n} triangles between the ends and middles of its spans cross",
             n=len(triangles),
         )
         return Check("self-intersection", True, 0, 0, "places", text)
     place = where[0] + surface.origin
     text = message(
-        "check.surface-passes-through-crossing",
+        "checks.surface-crosses-itself",
         "the surface passes through itself: crossing pairs of triangles: {crossed} (triangles: {n}), one at "
         "{x:.1f}, {y:.1f}, {z:.1f}",
         crossed=crossed,

@@ -61,7 +61,7 @@ def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     count = int(turned.sum())
     if count:
         text = message(
-            "check.places-folded-degenerate-surface",
+            "checks.places-folded",
             "{count} of {total} places folded or degenerate: the surface turns over there, or its "
             "normals point to the other side",
             count=count,
@@ -69,7 +69,7 @@ def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
         )
     else:
         text = message(
-            "check.places-folded-degenerate",
+            "checks.places-folded-count",
             "{count} of {total} places folded or degenerate",
             count=0,
             total=len(normal),
@@ -96,14 +96,14 @@ def _patches(surface: FittedSurface) -> Check:
     count = len(faults)
     if not count:
         text = message(
-            "check.no-edge-corner-control",
+            "checks.patches-not-degenerate",
             "no edge, corner or control point of the patches ({n}) has collapsed",
             n=len(surface.patches),
         )
         return Check("patches", True, 0, 0, "places", text)
     names = tuple(dict.fromkeys(name for name, _ in faults))
     text = message(
-        "check.places-patches-degenerate-edge",
+        "checks.patches-degenerate",
         "places where patches are degenerate (an edge without length, a corner without an angle, control points "
         "that run back): {count}, in {names}; other programs may refuse such a face",
         count=count,
@@ -155,9 +155,7 @@ def _elevation_range(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     beyond = np.maximum(z.min() - points[:, 2], points[:, 2] - z.max())
     worst = int(np.argmax(beyond))
     value, limit = max(float(beyond[worst]), 0.0), RANGE_SHARE * float(np.ptp(z))
-    text = message(
-        "check.elevations-reach-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=value
-    )
+    text = message("data.elevations-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=value)
     where = _named(points[[worst]] + surface.origin) if value > limit else ()
     return Check("elevation range", value <= limit, value, limit, "m", text, where)
 
@@ -172,20 +170,20 @@ def _area(surface: FittedSurface) -> Check:
     figures = {"covered": covered, "wanted": wanted, "off": off}
     if off <= UNCOVERED:
         text = message(
-            "check.area-covered",
+            "checks.area-covered",
             "the surface covers {covered:.0f} of the study area's {wanted:.0f} square metres",
             **figures,
         )
     elif covered < wanted:
         text = message(
-            "check.area-not-covered",
+            "checks.area-not-covered",
             "the surface covers only {covered:.0f} of the study area's {wanted:.0f} square metres: {off:.1f} % of it "
             "have no surface",
             **figures,
         )
     else:
         text = message(
-            "check.patches-cover-square-metres",
+            "checks.patches-overlap",
             "the patches cover {covered:.0f} square metres of a study area of {wanted:.0f}: they overlap",
             **figures,
         )

@@ -84,14 +84,14 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
     figures = {"value": value, "shown": shown, "x": place[0, 0], "y": place[0, 1]}
     if value <= limit:
         text = message(
-            "check.away-points-surface-departs",
+            "checks.surface-near-trend",
             "away from the points the surface departs from their plane by {value:.1f} m, the points themselves by "
             "{shown:.1f} m",
             **figures,
         )
         return Check("trend", True, value, limit, "m", partly(text, len(local), len(every)))
     text = message(
-        "check.surface-runs-away-no",
+        "checks.surface-runs-away",
         "the surface runs away where no point constrains it: {value:.1f} m from the regional "
         "trend at {x:.0f}, {y:.0f}, where the points depart from it by {shown:.1f} m at most; "
         "do not use it there without further points",

@@ -73,15 +73,15 @@ def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes
 
         if not intervals:
             raise InputError(
-                message("cli.table-collars-alone-logged", "A table of collars alone has no logged intervals"),
-                message("cli.give-tables-intervals-with", "Give the tables of intervals with --intervals."),
+                message("cli.collars-without-intervals", "A table of collars alone has no logged intervals"),
+                message("cli.give-intervals", "Give the tables of intervals with --intervals."),
                 file=str(source),
             )
         return read_boreholes(source, survey, intervals)
     if survey is not None or intervals:
         raise InputError(
-            message("cli.survey-intervals-table-collars", "--survey and --intervals are for a table of collars"),
-            message("cli.site-file-names-tables", "A site file names its own tables in [boreholes]."),
+            message("cli.options-for-collars", "--survey and --intervals are for a table of collars"),
+            message("cli.site-file-has-tables", "A site file names its own tables in [boreholes]."),
             file=str(source),
         )
     from geofit.io.site_file import load_site

@@ -33,7 +33,7 @@ def adjust(model: Model, surface: HorizonFit) -> HorizonFit:
                 surface = _with_note(
                     surface,
                     message(
-                        "fit.local-adjustments-until-sigma",
+                        "fitting.sigma-brought-below-epsilon",
                         "local adjustments until sigma came below epsilon: {step}",
                         step=step,
                     ),
@@ -44,7 +44,7 @@ def adjust(model: Model, surface: HorizonFit) -> HorizonFit:
         candidate = None if tried is None else fit_of(tried)
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
             words = message(
-                "fit.sigma-stays-above-epsilon",
+                "fitting.sigma-above-epsilon",
                 "sigma stays above epsilon: no further local adjustment lowers it (made: {step})",
                 step=step,
             )

@@ -87,7 +87,7 @@ def fit_with_core(
     if chosen and field.noise > max(resolved, little):
         raise ExactnessError(
             message(
-                "fitting.points-bear-each-other",
+                "fitting.points-support-to-noise",
                 "its points support each other to about {noise:.3g} m only, where their height varies "
                 "by about {spread:.3g} m",
                 noise=field.noise,
@@ -102,7 +102,7 @@ def fit_with_core(
         linear = False
         notes = (
             message(
-                "fit.across-linear-needs-least",
+                "fitting.ruled-core-without-sections",
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
@@ -126,14 +126,14 @@ def fit_with_core(
     if linear and rule is None:
         notes = (
             message(
-                "fit.core-linear-across-sections",
+                "fitting.ruled-core-not-exact",
                 "a core linear across its sections cannot meet all of its points; it is cubic across",
             ).with_severity("warning"),
         )
     first = cap_for(settings, len(data.plane), A_POINT)
     if most > first:
         words = message(
-            "fitting.meeting-every-point-core",
+            "fitting.core-too-many-control-points",
             "meeting every point of the core takes {count} control points, more than {a_point} a data point",
             count=in_patches(space.shape, core, space),
             a_point=A_POINT,
@@ -266,7 +266,7 @@ def _torn(data: Data, inside: NDArray[np.bool_], coarse: TensorSpace, field: Fie
 
 def _torn_note(point: Message) -> Message:
     note = message(
-        "fitting.core-point-contradicts-neighbour",
+        "fitting.core-points-contradict",
         "{point} contradicts a point very close to it: the core cannot meet both and passes through the other",
         point=point,
     )

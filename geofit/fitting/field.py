@@ -250,7 +250,7 @@ def choose(
     found = sorted(found, key=lambda one: one.value)
     if found[0].value >= UNSOLVABLE:
         text = message(
-            "fit.no-smoothing-system-points",
+            "fitting.system-not-solvable",
             "No smoothing makes the system of {points} points and {size} control points solvable: the points lie on "
             "too few places. Give more points, or a larger coincidence_distance.",
             points=len(plane),

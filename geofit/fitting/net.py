@@ -367,7 +367,7 @@ class Periphery:
         if not count:
             return ()
         note = message(
-            "fitting.points-beyond-noise-predicts",
+            "fitting.points-beyond-tolerance-as-noise",
             "{count} points beyond {tolerance:g} m, as noise of {noise:.3g} m predicts; they are listed, not fitted",
             count=count,
             tolerance=self.settings.interior_tolerance,
@@ -381,7 +381,7 @@ class Periphery:
         if not self._chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
             return ()
         note = message(
-            "fit.points-scatter-smoothest-surface",
+            "fitting.points-scatter",
             "the points scatter by about {noise:.2g} m about the smoothest surface that they support; meeting each "
             "within {tolerance:g} m bends it between them, and an interior tolerance of about {wider:.2g} m would "
             "predict new holes better",
@@ -395,7 +395,7 @@ class Periphery:
         count = int((excess > 0).sum())
         if not count:
             return ()
-        reason = message("fit.no-control-points-allowed", "no more control points are allowed there")
+        reason = message("fitting.control-points-used-up", "no more control points are allowed there")
         if released:
             reason = message(
                 "fitting.neighbours-contradict",
@@ -405,16 +405,16 @@ class Periphery:
         if self.field.contradictory:
             noise = self.field.noise
             reason = message(
-                "fit.data-contradict-not-chased",
+                "fitting.data-contradict",
                 "the data contradict each other by about {noise:.2f} m, which is not fitted",
                 noise=noise,
             )
         elif len(self.data.plane) > CLOUD:
-            reason = message("fit.cloud-not-chased", "the points of a cloud are not met one by one")
+            reason = message("fitting.cloud-not-met-by-points", "the points of a cloud are not met one by one")
         elif self.settings.smoothing != "auto":
-            reason = message("fit.smoothing-given", "the smoothing is given")
+            reason = message("fitting.smoothing-given", "the smoothing is given")
         note = message(
-            "fit.interior-tolerance-not-met",
+            "fitting.tolerance-not-met",
             "interior tolerance {tolerance:g} m not met in height, points: {count}, worst {worst:.3f} m: {reason}",
             tolerance=self.settings.interior_tolerance,
             count=count,

@@ -105,7 +105,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
     if section is not points.section and (section != "").any():
         lines = len(np.unique(section[section != ""]))
         notes.append(
-            message("fit.section-lines-found-points", "{lines} section lines found in the points' plan", lines=lines)
+            message("fitting.section-lines-found", "{lines} section lines found in the points' plan", lines=lines)
         )
     if boundary is not None and kind == "map":
         corners = frame.plan(boundary)
@@ -115,7 +115,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
             count = int(beyond.sum())
             notes.append(
                 message(
-                    "fit.points-beyond-study-area",
+                    "fitting.points-beyond-study-area",
                     "points beyond the study area: {count}; the surface is widened to contain them",
                     count=count,
                 ).with_severity("warning")
@@ -129,27 +129,23 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]:
     if settings.frame != "auto":
-        return settings.frame, message("fit.frame-asked", "frame '{frame}' as requested", frame=settings.frame)
+        return settings.frame, message("fitting.frame-requested", "frame '{frame}' as requested", frame=settings.frame)
     plane = best_plane_frame(points)
     dip = _dip(points, plane)
     over_map = backtracking(points, map_frame(points))
     if dip < STEEP and over_map <= OVERTURNED:
-        return "map", message(
-            "fit.height-field-map-mean", "height field over the map (mean dip {dip:.0f} degrees)", dip=dip
-        )
+        return "map", message("fitting.frame-map", "height field over the map (mean dip {dip:.0f} degrees)", dip=dip)
     extent = np.ptp(plane.to_local(points.xyz), axis=0)
     thin = extent[2] <= PLANAR * min(extent[0], extent[1])
     over_plane = backtracking(points, plane)
-    steep = message(
-        "fit.height-field-best-plane", "height field over its best plane: it dips {dip:.0f} degrees", dip=dip
-    )
+    steep = message("fitting.frame-best-plane", "height field over its best plane: it dips {dip:.0f} degrees", dip=dip)
     if dip >= STEEP and thin and over_plane <= OVERTURNED:
         return "best-plane", steep
     if over_map > OVERTURNED and len(np.unique(points.section[points.section != ""])) >= 2:
         return (
             "sections",
             message(
-                "fit.parametric-surface-through-sections",
+                "fitting.frame-sections",
                 "parametric surface through its sections: {share:.0f} % of their length runs backwards "
                 "(overturned), so it is not a height field",
                 share=100 * over_map,
@@ -157,7 +153,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
         )
     if over_map <= OVERTURNED:
         return "map", message(
-            "fit.cloud-not-plane",
+            "fitting.frame-map-despite-dip",
             "height field over the map: as a whole the points dip {dip:.0f} degrees, but they scatter across that "
             "plane by {thickness:.0f} m over {length:.0f} x {width:.0f} m",
             dip=dip,
@@ -168,7 +164,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
     if dip >= STEEP:
         return "best-plane", steep
     return "map", message(
-        "fit.height-field-map-some",
+        "fitting.frame-map-despite-overturned",
         "height field over the map; some section lines run backwards, check the residuals there",
     )
 
@@ -210,7 +206,7 @@ def _parametrize_over_sections(points: PointSet, reason: Message) -> Parametriza
     lines = len(surface.u)
     if lines < 2:
         text = message(
-            "fit.frame-sections-needs-least",
+            "fitting.frame-needs-sections",
             "frame='sections' needs at least two named sections with ordered points; {lines} were given. Name them in "
             "the section column, or choose frame='map' or 'best-plane'.",
             lines=lines,

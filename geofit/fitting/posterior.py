@@ -154,7 +154,7 @@ def posterior(model: Model) -> Posterior:
     if given.parametrization.parametric:
         raise FitError(
             message(
-                "prediction.parametric-surface-no-height",
+                "fitting.posterior-needs-height-field",
                 "A parametric surface is not a height field, and has no posterior. Leave out its sections instead.",
             )
         )

@@ -47,7 +47,7 @@ def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Mes
         return split_none(
             plane,
             message(
-                "fit.no-point-lies-inside", "{reason}; no point lies inside, so all are approximated", reason=reason
+                "fitting.no-point-inside", "{reason}; no point lies inside, so all are approximated", reason=reason
             ).with_severity("warning"),
         )
     if inside.all():
@@ -55,7 +55,7 @@ def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Mes
             plane,
             area,
             message(
-                "fit.no-point-lies-outside", "{reason}; no point lies outside, so all are interpolated", reason=reason
+                "fitting.no-point-outside", "{reason}; no point lies outside, so all are interpolated", reason=reason
             ),
         )
     counts = {"within": int(inside.sum()), "outside": int((~inside).sum())}
@@ -63,7 +63,10 @@ def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Mes
         core,
         inside,
         message(
-            "fit.points-inside-outside", "{reason}: {within} points inside, {outside} outside", reason=reason, **counts
+            "fitting.points-inside-outside",
+            "{reason}: {within} points inside, {outside} outside",
+            reason=reason,
+            **counts,
         ),
     )
 

@@ -164,7 +164,7 @@ def metaballs(
     if not (cost > 0 and 0 < share <= 1 and stiffness > 0 and (max_balls is None or max_balls > 0)):
         raise SettingsError(
             message(
-                "medial.cost-stiffness-share",
+                "medial.settings-unusable",
                 "Give a cost and a stiffness above 0, a share above 0 and at most 1, and at least 1 ball.",
             )
         )
@@ -179,7 +179,7 @@ def metaballs(
     if not chosen:
         raise SettingsError(
             message(
-                "medial.ball-covers-voxel",
+                "medial.body-too-thin",
                 "No ball covers a voxel more than it costs: the body is thinner than a voxel. Scan it with smaller "
                 "voxels.",
             )
@@ -211,7 +211,7 @@ def _candidates(volume: RockVolume, distance: str, weights: ArrayLike) -> tuple[
     if distance != "chamfer":
         raise SettingsError(
             message(
-                "medial.distance-unknown-euclid",
+                "medial.distance-unknown",
                 "The distance '{name}' is unknown; give 'euclid' or 'chamfer'.",
                 name=distance,
             )
@@ -219,7 +219,7 @@ def _candidates(volume: RockVolume, distance: str, weights: ArrayLike) -> tuple[
     if not volume.cubic:
         raise SettingsError(
             message(
-                "medial.voxels-measure-chamfer",
+                "medial.chamfer-needs-cubes",
                 "The voxels measure {edges} m, and a chamfer distance needs cubes; use distance='euclid'.",
                 edges=volume.voxel,
             )

@@ -122,7 +122,7 @@ class Morph:
         """Return n equal steps of tau from 0 to 1."""
         if n < 2:
             raise SettingsError(
-                message("morphing.frames-two", "{count} frames cannot hold both ends: ask for 2 or more.", count=n)
+                message("morphing.too-few-frames", "{count} frames cannot hold both ends: ask for 2 or more.", count=n)
             )
         return np.linspace(0.0, 1.0, n)
 

@@ -90,7 +90,7 @@ def pore_network(
     if not (r_min >= 0 and 0 < tau <= 2):
         raise VolumeError(
             message(
-                "pores.min-tau-not",
+                "pores.ball-settings-unusable",
                 "r_min={r_min} and tau={tau} are not usable. r_min is a radius in voxels and not negative; tau is a "
                 "ratio between 0 and 2.",
                 r_min=r_min,
@@ -100,7 +100,7 @@ def pore_network(
     if hierarchy not in ("merge-tree", "paper"):
         raise VolumeError(
             message(
-                "pores.hierarchy-unknown-merge",
+                "pores.hierarchy-unknown",
                 "hierarchy={name} is unknown. Give 'merge-tree' or 'paper'.",
                 name=repr(hierarchy),
             )
@@ -109,7 +109,7 @@ def pore_network(
     size, whole = int(np.prod(volume.shape)), isinstance(volume, RockVolume)
     check_memory(
         int(_PORE * size * volume.porosity + _VOXEL * size + _WHOLE * size * whole + _SLAB * min(size, slabs.VOXELS)),
-        message("pores.network-voxels", "The network of {count} voxels", count=size),
+        message("pores.network-of-voxels", "The network of {count} voxels", count=size),
     )
     if volume.porosity == 1:
         border = "closed"

@@ -283,15 +283,15 @@ def _file_digest(file: Path) -> str:
 def origin_text(result: BodyResult) -> Message:
     """Return in words how a body came here."""
     if result.origin == "read back":
-        return message("body.read-back", "Read from the project file; it has not been made again.")
+        return message("project.body-read-back", "Read from the project file; it has not been made again.")
     if result.origin == "fitted":
-        return message("body.made-now", "Made in this session.")
+        return message("project.body-made-now", "Made in this session.")
     if not is_finite(result.difference):
-        return message("body.made-again", "Made again from the same data.")
+        return message("project.body-made-again", "Made again from the same data.")
     if result.difference == 0:
-        return message("body.made-again-same", "Made again from the same data: the same as the project's file.")
+        return message("project.body-made-again-same", "Made again from the same data: the same as the project's file.")
     return message(
-        "body.made-again-other",
+        "project.body-made-again-other",
         "Made again from the same data; it differs from the project's file by up to {difference:.3g} m.",
         difference=result.difference,
     )

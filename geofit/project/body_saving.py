@@ -84,7 +84,7 @@ def records_of(project: Project) -> dict[str, BodyRecord]:
                     name=body.name,
                     error=repr(error),
                 ),
-                message("project.undo-last-change-hand", "Undo the last manual edit, or open a copy."),
+                message("data.undo-last-edit", "Undo the last manual edit, or open a copy."),
                 file=project.name,
             ) from None
     return found

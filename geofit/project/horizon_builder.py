@@ -79,8 +79,8 @@ def picks_of(site: Site, rule: ContactRule) -> Picks:
                 carrying |= set(log.hole[np.isin(log.code, rule.codes)].tolist())
     if not sets:
         raise InputError(
-            message("import.no-code-of-rule", "No interval has the code {code}", code=rule.label),
-            message("import.name-one", "Name one of them."),
+            message("project.no-code-of-rule", "No interval has the code {code}", code=rule.label),
+            message("data.name-one", "Name one of them."),
         )
     points = PointSet.concatenate(sets)
     return Picks(points, len(carrying), len(carrying - set(points.hole.tolist())))

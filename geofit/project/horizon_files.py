@@ -127,7 +127,7 @@ def section_profiles(
         nothing,
         lambda reason: missing.append(
             message(
-                "run.sections-not-cut",
+                "project.sections-not-cut",
                 "{name} is missing from the geological sections: {reason}",
                 name=result.name,
                 reason=reason,
@@ -147,7 +147,7 @@ def compared(surface: HorizonFit) -> tuple[Storage | None, tuple[Message, ...]]:
         None,
         lambda reason: missing.append(
             message(
-                "run.storage-not-compared",
+                "project.storage-not-compared",
                 "{name}: its storage was not compared: {reason}",
                 name=surface.name,
                 reason=reason,
@@ -165,7 +165,7 @@ def _write_bands(surface: HorizonFit, prediction: PredictionResult, stem: Path) 
     if prediction.uncertainty is None:
         return (
             message(
-                "run.no-90-surfaces-standard",
+                "project.no-band-without-deviation",
                 "{name}: no 90 % surfaces, its standard deviation is not known",
                 name=surface.name,
             ),
@@ -175,7 +175,7 @@ def _write_bands(surface: HorizonFit, prediction: PredictionResult, stem: Path) 
     def without(reason: Message) -> None:
         missing.append(
             message(
-                "run.no-90-surface", "{name}: a 90 % surface is missing: {reason}", name=surface.name, reason=reason
+                "project.band-missing", "{name}: a 90 % surface is missing: {reason}", name=surface.name, reason=reason
             )
         )
 

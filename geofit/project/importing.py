@@ -98,16 +98,16 @@ def import_files(
     site_file = Path(site_file)
     if not files:
         raise InputError(
-            message("import.no-file-given", "No file is given"),
-            message("import.name-tables-drawings-maps", "Name the tables, drawings, maps and grids of the site."),
+            message("project.no-file-given", "No file is given"),
+            message("project.name-files", "Name the tables, drawings, maps and grids of the site."),
         )
     if legible(site_file.name) != site_file.name:
         raise InputError(
             message(
-                "import.site-file-name-not-utf8",
+                "project.site-file-name-not-utf8",
                 "The name of the site file is not UTF-8, and its mapping file cannot name it",
             ),
-            message("import.choose-another-name", "Choose another name."),
+            message("data.choose-another-name", "Choose another name."),
             file=legible(str(site_file)),
         )
     folder = site_file.parent
@@ -148,17 +148,17 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
     for part in (part for parts in plan.parts.values() for part in parts):
         preview, name = part.preview, part.source.name
         others = tuple(
-            message("import.kind-merit", "{kind} {merit:.2f}", kind=kind, merit=merit)
+            message("project.kind-merit", "{kind} {merit:.2f}", kind=kind, merit=merit)
             for kind, merit in list(preview.kinds.items())[1:4]
         )
         reason = message(
-            "import.taken-confidence",
+            "project.kind-taken",
             "Taken as {kind}, confidence {confidence:.2f}",
             kind=preview.kind,
             confidence=preview.confidence,
         )
         if others:
-            reason = message("import.table-alternatives", "{text}; else {others}", text=reason, others=others)
+            reason = message("project.table-alternatives", "{text}; else {others}", text=reason, others=others)
         notes.append(
             ImportIssue(
                 name,
@@ -167,13 +167,13 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
                 "",
                 "note",
                 reason,
-                message("import.state-kind-mapping-file", "State another kind in the mapping file."),
+                message("project.state-kind-in-mapping", "State another kind in the mapping file."),
             )
         )
         for guess in preview.roles:
             if guess.stated:
                 continue
-            remedy = message("import.name-column-mapping-file", "Name another column in the mapping file.")
+            remedy = message("project.name-column-in-mapping", "Name another column in the mapping file.")
             severity: Literal["note", "warning"] = "warning" if guess.basis == "values" else "note"
             notes.append(ImportIssue(name, 0, guess.column, "", severity, taken_as(guess), remedy))
     return notes
@@ -251,14 +251,14 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
             "",
             "note",
             message(
-                "import.base-codes-fewer-contacts",
+                "project.codes-without-horizon",
                 "The base of {count} codes has fewer than {least} contacts and gives no horizon: {names}",
                 count=len(few),
                 least=FEWEST_CONTACTS,
                 names=names,
             ),
             message(
-                "import.add-horizon-site-file",
+                "project.add-horizon-to-site-file",
                 "Add a [[horizon]] to the site file where needed (--base, --top).",
             ),
         )
@@ -270,8 +270,8 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
 
 def _name(limit: str, code: str) -> Message:
     if limit == "top":
-        return message("import.top-of-stratum", "top of {code}", code=Untranslated(code))
-    return message("import.base-of-stratum", "base of {code}", code=Untranslated(code))
+        return message("project.top-of-stratum", "top of {code}", code=Untranslated(code))
+    return message("project.base-of-stratum", "base of {code}", code=Untranslated(code))
 
 
 def _label(site_file: Path, mapping_file: Path, crs: str) -> dict[str, Any]:

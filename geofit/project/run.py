@@ -353,7 +353,7 @@ def _within(progress: Progress | None, low: float, high: float, name: str = "") 
     def listen(stage: str | Message, fraction: float, /) -> None:
         tell(
             progress,
-            message("run.stage-of", "{name}: {stage}", name=name, stage=stage) if name else stage,
+            message("data.stage-of-name", "{name}: {stage}", name=name, stage=stage) if name else stage,
             low + (high - low) * fraction,
         )
 
@@ -372,7 +372,7 @@ def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Messag
         None,
         lambda reason: missing.append(
             message(
-                "run.order-horizons-not-examined",
+                "project.order-not-examined",
                 "The order of the horizons was not examined: {reason}",
                 reason=reason,
             )
@@ -436,8 +436,8 @@ def _chosen(site: Site, horizons: Sequence[str]) -> list[str]:
     unknown = [name for name in horizons if name not in site.horizons]
     if unknown:
         raise InputError(
-            message("run.no-horizon", "There is no horizon '{name}'", name=unknown[0]),
-            message("run.known-horizons", "The horizons are: {names}.", names=", ".join(site.horizons)),
+            message("data.horizon-unknown", "There is no horizon '{name}'", name=unknown[0]),
+            message("data.known-horizons", "The horizons are: {names}.", names=", ".join(site.horizons)),
             file=site.name,
         )
     return [name for name in site.horizons if not horizons or name in horizons]
@@ -448,7 +448,7 @@ def _make(out: Path) -> None:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            message("run.folder-cannot", "The folder cannot be made: {error}", error=error.strerror or str(error)),
-            message("run.name-other-folder", "Name another one with --out."),
+            message("data.folder-not-made", "The folder cannot be made: {error}", error=error.strerror or str(error)),
+            message("project.name-other-folder", "Name another one with --out."),
             file=str(out),
         ) from None

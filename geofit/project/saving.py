@@ -76,15 +76,15 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
     source = next((source for source in project.sources if source.role == _SITE), None)
     if source is None:
         raise InputError(
-            message("project.project-names-no-site", "The project names no site file"),
-            message("project.open-site-file-site", "Open the site file (site.toml) instead."),
+            message("project.no-site-file", "The project names no site file"),
+            message("project.open-site-file", "Open the site file (site.toml) instead."),
             file=str(path),
         )
     site_file = (path.parent / source.path).resolve()
     if not site_file.is_file():
         raise InputError(
-            message("project.project-site-file-not", "The project's site file is not there any more"),
-            message("project.put-back-open-site", "Put it back, or open the site file where it is now."),
+            message("project.site-file-gone", "The project's site file is not there any more"),
+            message("project.put-site-file-back", "Put it back, or open the site file where it is now."),
             file=str(site_file),
         )
     site = read_site(site_file, progress, added=_added(project))

@@ -29,7 +29,7 @@ _FIT = {
     "noise": message("report.noise", "Noise, m"),
     "spacing": message("report.spacing", "Spacing, m"),
     "noise_limit": message("report.noise-limit", "Largest noise that a point may have, m"),
-    "by_hand": message("report.by-hand", "Changes by hand"),
+    "by_hand": message("report.manual-edits", "Changes by hand"),
 }
 
 

@@ -16,11 +16,11 @@ __all__ = ["change_blocks", "contact_rows"]
 #: Contacts that a report lists.
 MOST_ROWS = 40
 _HEADER = (
-    message("change.hole", "Hole"), message("change.kind", "Kind"), message("change.easting", "Easting, m"),
-    message("change.northing", "Northing, m"), message("change.found", "Observed, m"),
-    message("change.predicted", "Predicted, m"), message("change.low", "90 % low, m"),
-    message("change.high", "90 % high, m"), message("change.residual", "Residual, m"),
-    message("change.inside", "Inside"),
+    message("report.hole", "Hole"), message("report.heading-kind", "Kind"), message("report.easting", "Easting, m"),
+    message("report.northing", "Northing, m"), message("report.heading-found", "Observed, m"),
+    message("report.heading-predicted", "Predicted, m"), message("report.heading-low", "90 % low, m"),
+    message("report.heading-high", "90 % high, m"), message("report.heading-residual", "Residual, m"),
+    message("report.heading-inside", "Inside"),
 )  # fmt: skip
 
 

@@ -12,9 +12,9 @@ from geofit.report.document import Block, Cell, Column, Facts, Heading, Mark, Pa
 __all__ = ["prediction_blocks"]
 
 _SCHEMES = {
-    "hole": message("report.hole-time", "one hole at a time"),
-    "section": message("report.section-time", "one section at a time"),
-    "block": message("report.block-time", "one block at a time"),
+    "hole": message("report.scheme-holes", "one hole at a time"),
+    "section": message("report.scheme-sections", "one section at a time"),
+    "block": message("report.scheme-blocks", "one block at a time"),
 }
 #: Methods beside ours, in the order of their columns.
 _REFERENCES = ("thin plate", "kriging")

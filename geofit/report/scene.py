@@ -37,7 +37,7 @@ __all__ = [
 Floats = NDArray[np.float64]
 
 NO_OPENGL = message(
-    "report.3d-picture-missing-machine",
+    "report.picture-without-opengl",
     "The 3D picture is missing: this machine has no OpenGL library. "
     "Install one (Debian and Ubuntu: apt-get install libgl1 libegl1 libxrender1) and run again.",
 )
@@ -77,10 +77,8 @@ class Scene:
     def caption(self) -> Message:
         """Direction and scale in words."""
         if self.raised == 1:
-            return message("report.seen-south-west-true", "Seen from the south-west, true scale.")
-        return message(
-            "report.seen-south-west-heights", "Seen from the south-west, heights × {times}.", times=self.raised
-        )
+            return message("report.seen-true-scale", "Seen from the south-west, true scale.")
+        return message("report.seen-exaggerated", "Seen from the south-west, heights × {times}.", times=self.raised)
 
 
 def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -> Scene:

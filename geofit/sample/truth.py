@@ -367,7 +367,7 @@ def horizon_truth(name: str) -> MapTruth | PlaneTruth | FoldTruth:
     if name not in _TRUTHS:
         raise SettingsError(
             message(
-                "sample.sample-site-no-horizon",
+                "sample.horizon-unknown",
                 "The sample site has no horizon {name!r}; choose one of {names}.",
                 name=name,
                 names=", ".join(HORIZONS),

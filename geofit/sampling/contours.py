@@ -80,7 +80,7 @@ def contours(
     if not is_finite(step) or step <= 0:
         raise SettingsError(
             message(
-                "geometry.contour-interval-give-metres",
+                "data.contour-interval-not-positive",
                 "The contour interval is {step}; give metres above 0.",
                 step=shown(step),
             )
@@ -89,7 +89,7 @@ def contours(
     if last - first > MOST:
         raise SettingsError(
             message(
-                "geometry.interval-contours-give-above",
+                "sampling.too-many-contours",
                 "An interval of {step:g} m makes {count} contours from {low:.1f} to {high:.1f} m; give one above "
                 "{least:.2g} m.",
                 step=step,

@@ -45,7 +45,7 @@ class Fault:
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
             raise SettingsError(
                 message(
-                    "site.fault-shape-fitted-surface",
+                    "site.fault-wrong-shape",
                     "Fault {number} has shape {shape}; a fitted surface or at least two (easting, northing) corners of "
                     "its trace are needed.",
                     number=number + 1,

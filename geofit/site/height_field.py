@@ -46,7 +46,7 @@ class HeightField:
         self._mappings: list[Plan] = [one for one in mappings if one is not None]
         if not mappings or len(self._mappings) < len(mappings):
             text = message(
-                "site.no-height-field-map",
+                "site.not-a-height-field",
                 "'{name}' is not a height field over the map, so above and below are not defined for "
                 "it. Name fitted horizons only; leave out faults, overturned folds and triangles read "
                 "from files.",

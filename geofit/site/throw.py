@@ -53,7 +53,7 @@ class FaultCut:
     def text(self) -> Message:
         """The throw in words."""
         return message(
-            "site.throw",
+            "site.fault-throw",
             "{fault} throws {horizon} down by {low:.2f} to {high:.2f} m, {mean:.2f} m on average over {length:.0f} m: "
             "{up} lies above {down}",
             fault=self.fault,

@@ -191,7 +191,7 @@ def _bounds(xyz: Rows) -> tuple[Floats, Floats]:
     if xyz.ndim != 2 or xyz.shape[1] != 3 or len(xyz) < 16:
         raise PointsError(
             message(
-                "streaming.cloud-shape",
+                "streaming.cloud-wrong-shape",
                 "The cloud has shape {shape}; at least 16 points, (n, 3), are needed.",
                 shape=xyz.shape,
             )
@@ -213,7 +213,7 @@ def _bounds(xyz: Rows) -> tuple[Floats, Floats]:
     if max(np.abs(low).max(), np.abs(high).max()) > LARGEST or (low == high).all():
         raise PointsError(
             message(
-                "streaming.cloud-extent",
+                "streaming.cloud-extent-unusable",
                 "The coordinates run from {low} to {high}; they must differ, and be at most {largest:.0e} m. Check the "
                 "unit and the columns.",
                 low=low.tolist(),
@@ -233,7 +233,7 @@ def _frame(xyz: Rows, low: Floats, high: Floats, settings: FitSettings, boundary
     if kind == "sections":
         raise FitError(
             message(
-                "streaming.frame-sections",
+                "streaming.cloud-without-sections",
                 "frame='sections' needs named sections, which a cloud has not. Choose 'map' or 'best-plane'.",
             )
         )

@@ -190,7 +190,7 @@ class ExportDialog(TaskDialog):
         first = Check(
             "σ", None if sigma is None else back.sigma < sigma.epsilon, back.sigma, sigma.epsilon if sigma else np.nan,
             "m", message(
-                "check.sigma-in-file", "{faces} faces; σ of all points from the surface in the file", faces=back.faces
+                "gui.sigma-in-file", "{faces} faces; σ of all points from the surface in the file", faces=back.faces
             ),
         )  # fmt: skip
         return [first, *back.checks]

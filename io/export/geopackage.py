@@ -37,14 +37,14 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
     InputError
         If there is no contour, or the file cannot be written.
     """
-    pyogrio = need("pyogrio", "gis", message("export.need-package", "Writing {format}", format="GeoPackage"))
+    pyogrio = need("pyogrio", "gis", message("io.package-missing-for-format", "Writing {format}", format="GeoPackage"))
     import shapely
 
     rows = [(name, contour) for name, lines in contours.items() for contour in lines]
     if not rows:
         raise InputError(
-            message("export.no-contour-write", "There is no contour to write"),
-            message("export.choose-smaller-interval", "Choose a smaller interval."),
+            message("io.no-contour", "There is no contour to write"),
+            message("io.choose-smaller-interval", "Choose a smaller interval."),
             file=str(path),
         )
     geometry = shapely.to_wkb(np.array([shapely.LineString(contour.line) for _, contour in rows]))
@@ -65,10 +65,8 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
             )  # fmt: skip
     except (pyogrio.errors.DataSourceError, pyogrio.errors.CRSError) as error:
         raise InputError(
-            message("export.file-cannot-written", "The file cannot be written: {error}", error=error),
-            message(
-                "export.check-path-give-system", "Check the path; give the system as EPSG:number, or none: --crs ''."
-            ),
+            message("data.file-not-written", "The file cannot be written: {error}", error=error),
+            message("io.check-path-and-system", "Check the path; give the system as EPSG:number, or none: --crs ''."),
             file=str(path),
         ) from None
     else:

@@ -96,7 +96,7 @@ def test_a_fold_is_cut_by_a_prism():
 def test_a_gap_is_named_with_its_width():
     _, parts = nine()
     apart = moved(parts, "p11", [0, 0, 0.01])
-    with refused(StitchError, "fit.patches-not-share-edges") as caught:
+    with refused(StitchError, "cad.edges-not-shared") as caught:
         shell(horizon(apart))
     gap = caught.value.message.params["places"][0].params
     assert (gap["first"], gap["second"], gap["gap"]) == ("p01", "p11", pytest.approx(0.01, rel=1e-6))
@@ -104,18 +104,18 @@ def test_a_gap_is_named_with_its_width():
 
 def test_patches_far_apart_are_named():
     _, parts = nine()
-    with refused(StitchError, "fit.patches-separate-pieces-connected", shells=2):
+    with refused(StitchError, "cad.patches-not-connected", shells=2):
         shell(horizon([parts[0], parts[8]]))
 
 
 def test_an_outline_beside_the_surface():
     _, parts = nine()
-    with refused(StitchError, "fit.not-reach-outline-give"):
+    with refused(StitchError, "cad.outline-not-reached-at-all"):
         shell(horizon(parts, outline=[(2000, 0), (3000, 0), (3000, 500)]))
 
 
 def test_no_patch():
-    with refused(StitchError, "fit.no-patch-surface-needs"):
+    with refused(StitchError, "cad.no-patch"):
         shell(horizon([]))
 
 
@@ -186,9 +186,9 @@ def test_one_surface_keeps_a_position_seam():
 
 def test_one_surface_needs_a_grid():
     _, parts = nine()
-    with refused(StitchError, "fit.patches-no-full-grid"):
+    with refused(StitchError, "cad.patches-not-a-grid"):
         one_surface(horizon(parts[:8]))
-    with refused(StitchError, "fit.neighbouring-patches-gape-merged"):
+    with refused(StitchError, "cad.patches-too-far-to-merge"):
         one_surface(horizon(moved(parts, "p11", [0, 0, 0.01])))
 
 

@@ -114,7 +114,7 @@ def test_what_is_not_read_is_listed(svx):
     assert ("warning", 5) in listed
     assert {row for severity, row in listed if severity == "error"} == {6, 7, 11, 12}
     assert ("note", 9) in listed
-    (remarks,) = [issue.reason for issue in found.issues if issue.reason.code == "import.commands-not-change"]
+    (remarks,) = [issue.reason for issue in found.issues if issue.reason.code == "io.commands-ignored"]
     assert str(remarks.params["names"]) == "*team (2), *title (1)"
     (count,) = found.counts
     assert (count.read, count.used, count.listed) == (4, 1, 3)

@@ -347,7 +347,7 @@ def test_20_errors_say_what_to_do_and_the_dark_theme_reaches_the_view(shown, qtb
     dialog = ErrorDialog(
         "Open a.csv",
         InputError(
-            message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+            message("io.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
         ),
     )
     qtbot.addWidget(dialog)

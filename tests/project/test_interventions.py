@@ -26,7 +26,12 @@ def test_excluded_rows_become_points_and_edits_become_sentences():
     )
     excluded, told = interventions_of(result.site, Provenance("T3/T2", result.surface.settings, "", rows, edits))
     assert excluded.row.tolist() == points.row[[3, 7]].tolist()
-    assert [one.code for one in told] == ["edit.moved", "edit.pulled", "edit.weighed", "edit.separated"]
+    assert [one.code for one in told] == [
+        "project.moved",
+        "project.moved-towards-point",
+        "project.weighed",
+        "project.separated",
+    ]
     assert told[1].params == {"number": 12, "share": 80.0}
     assert interventions_of(result.site, Provenance("T3/T2", result.surface.settings, "")) == (None, ())
 

@@ -154,7 +154,7 @@ def test_a_fault_that_cannot_be_laid_is_named(site):
     bad = replace(site, horizons={**site.horizons, "F1": fault()[:2]})
     found = fit_site(bad, ["T2"])
     failure = found.failures["T2"]
-    assert (failure.code, failure.params["fault"]) == ("site.fault-cannot-laid", "F1")
+    assert (failure.code, failure.params["fault"]) == ("site.fault-not-fitted", "F1")
     assert failure.params["reason"].params["given"].params["count"] == 2
     assert not found.surfaces
 
@@ -181,7 +181,7 @@ def test_a_repair_pushes_crossing_horizons_apart_and_checks_them_again():
     assert after.moved
     for name in after.moved:
         surface = after.surfaces[name]
-        assert with_code(surface.accuracy.notes, "site.moved-keep-order-strata").params["most"] > 0
+        assert with_code(surface.accuracy.notes, "site.moved-to-keep-order").params["most"] > 0
         assert np.abs(surface.distance(surface.points.xyz) - surface.accuracy.residuals).max() < 1e-6
 
 
@@ -189,10 +189,10 @@ def test_a_repair_says_what_it_leaves_alone(site):
     found = SiteFit()
     assert compare(site, found) == ()
     plain = replace(crossing(), order=())
-    assert fit_site(plain, ["U"], separate=True).warnings[0].code == "site.no-repair-order-site"
+    assert fit_site(plain, ["U"], separate=True).warnings[0].code == "site.order-names-no-pair"
     cut = fit_site(site, ["T2", "T1"], separate=True)
     (warning,) = cut.warnings
-    assert (warning.code, warning.severity) == ("site.cut-fault-not-pushed", "warning")
+    assert (warning.code, warning.severity) == ("site.faulted-not-separated", "warning")
     assert warning.params["names"] == "T2, T1"
 
 
