@@ -84,6 +84,8 @@ _PLAIN: dict[str, _Spec] = {
                QT_TRANSLATE_NOOP("Actions", "Push horizons apart where they cross; points met exactly stay"), ""),
     "build_horizon": (QT_TRANSLATE_NOOP("Actions", "&Build from lithology…"), "Ctrl+B",
                       QT_TRANSLATE_NOOP("Actions", "A horizon from logged codes: group, top or base, thin beds"), ""),
+    "compare_fits": (QT_TRANSLATE_NOOP("Actions", "Compare &fits…"), "Ctrl+Shift+F",
+                     QT_TRANSLATE_NOOP("Actions", "Two fits of the chosen horizon side by side, with one camera"), ""),
     "worst": (QT_TRANSLATE_NOOP("Actions", "Go to the &worst point"), "F8", "", ""),
     "exclude": (QT_TRANSLATE_NOOP("Actions", "E&xclude or include the chosen row"), "Ctrl+D", "", ""),
     "stop": (QT_TRANSLATE_NOOP("Actions", "&Stop the task"), "Esc", "", "cancel"),

@@ -19,6 +19,7 @@ from geofit.gui.translate import translated
 from geofit.gui.view3d.picking import Hit
 from geofit.gui.workspace import Workspace
 from geofit.project.commands import RemoveHorizons, RenameHorizon
+from geofit.project.dip_table import dip_lines
 from geofit.project.document import Document
 from geofit.project.identify import hole_lines, point_lines, surface_lines
 from geofit.project.provenance import Row
@@ -28,7 +29,7 @@ __all__ = ["ContextMenus"]
 #: Length to each side of a section through a place, as a share of the scene's longer side.
 SIDE = 0.35
 #: Kinds of layers whose things are named under the pointer.
-_NAMED = ("points", "holes", "adits", "surface")
+_NAMED = ("points", "holes", "adits", "dips", "surface")
 
 
 class ContextMenus(QObject):
@@ -133,6 +134,9 @@ class ContextMenus(QObject):
             residual = None if residuals is None else float(residuals[int(hit.which)])
             out = row in document.state.excluded.get(name, frozenset())
             return point_lines(name, listing.points, index, residual, excluded=out)
+        if hit.layer.kind == "dips":
+            measured = document.site.orientations
+            return () if measured is None else dip_lines(measured, int(hit.which))
         if hit.layer.kind in ("holes", "adits"):
             return hole_lines(document.site, str(hit.which), hit.xyz)
         surface = document.surface(name) if hit.layer.kind == "surface" else None

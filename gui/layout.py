@@ -10,12 +10,12 @@ from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabBar, QToolBar
 __all__ = ["BOTTOM", "Layout"]
 
 #: Of the layout that is remembered; one more when docks come or go.
-VERSION = 3
+VERSION = 4
 _Area = Qt.DockWidgetArea
 #: What folds away below the view.
 BOTTOM = (
-    "residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "changes", "body_figures", "morph",
-    "log",
+    "residuals", "section", "histogram", "plan", "seams", "checks", "prediction", "changes", "stereonet",
+    "body_figures", "morph", "log",
 )  # fmt: skip
 _PLACES = (
     (_Area.LeftDockWidgetArea, ("tree", "scene"), False),

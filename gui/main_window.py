@@ -13,9 +13,11 @@ from geofit.gui.activity import Activity
 from geofit.gui.activity_bar import ActivityBar
 from geofit.gui.adjusting import Adjusting
 from geofit.gui.bodies import Bodies
+from geofit.gui.comparing_fits import ComparingFits
 from geofit.gui.context import ContextMenus
 from geofit.gui.dialogs.error import ErrorDialog
 from geofit.gui.dialogs.steps import StepsDialog
+from geofit.gui.dips import Dips
 from geofit.gui.exporting import Delivering
 from geofit.gui.files import Files
 from geofit.gui.fitting import Fitting
@@ -77,6 +79,8 @@ class MainWindow(QMainWindow):
         self.living = Living(session, self.activity, self.fitting, self.panels, self.panels.offer, self)
         self.showing.also.append(self.living.show)
         self.selecting = Selecting(document, self.panels, self.showing, self)
+        self.dips = Dips(document, self.panels, self.showing, self)
+        self.comparing_fits = ComparingFits(document, self.fitting, self)
         self.adjusting = Adjusting(document, self.fitting, self.panels.adjust, self)
         self.ordering = Ordering(document, self.activity, self.fitting, self.showing, self.panels, self)
         self.delivering = Delivering(document, self.activity, preferences, self.panels, self.showing, self)
@@ -122,7 +126,9 @@ class MainWindow(QMainWindow):
         self.preferences.layout = (self.saveGeometry(), self.panels.layout.state)
         self.activity.cancel()
         finish_all(helpers=False)
-        for part in (self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing):
+        for part in (
+            self.comparing_fits, self.showing, self.selecting, self.fitting, self.living, self.bodies, self.morphing,
+        ):  # fmt: skip
             part.close()
         for end in self._ends:
             end()
@@ -195,6 +201,7 @@ class MainWindow(QMainWindow):
             "fit": self._with_horizon(self.fitting.fit),
             "fit_all": self.fitting.fit_all,
             "examine": self._with_horizon(self.fitting.examine),
+            "compare_fits": self._with_horizon(self.comparing_fits.open),
             "check_order": self.ordering.check,
             "order": self.ordering.edit,
             "separate": self.ordering.ask_separation,
@@ -243,6 +250,7 @@ class MainWindow(QMainWindow):
         panels.residuals.move_requested.connect(self.adjusting.move_to)
         panels.prediction.examine_requested.connect(self._with_horizon(fitting.examine))
         panels.changes.add_requested.connect(self.living.ask_files)
+        panels.stereonet.add_requested.connect(self.living.ask_files)
         panels.changes.fit_requested.connect(fitting.fit)
         panels.changes.place_chosen.connect(panels.view.focus_place)
         panels.section.failed.connect(lambda error: self.fail(self.tr("Section"), error))
@@ -265,6 +273,8 @@ class MainWindow(QMainWindow):
             part.reported.connect(self.tell)
         self.fitting.displaced.connect(self.showing.show_cuts)
         self.selecting.reported.connect(self.tell)
+        self.dips.reported.connect(self.tell)
+        self.comparing_fits.reported.connect(self.tell)
         self.session.recorded.connect(self.tell)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (

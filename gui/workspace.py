@@ -25,6 +25,7 @@ from geofit.gui.panels.residuals import ResidualTable
 from geofit.gui.panels.scene_list import SceneList
 from geofit.gui.panels.seams import SeamTable
 from geofit.gui.panels.section import SectionPanel
+from geofit.gui.panels.stereonet import StereonetPanel
 from geofit.gui.panels.verdict import VerdictBadge
 from geofit.gui.reach import Reach
 from geofit.gui.start_page import StartPage
@@ -56,7 +57,7 @@ class Workspace(QObject):
         self.residuals, self.section, self.histogram = ResidualTable(), SectionPanel(), HistogramPanel()
         self.log, self.seams, self.checks = LogPanel(), SeamTable(), ChecksPanel()
         self.prediction, self.plan = PredictionPanel(), PlanPanel()
-        self.changes = ChangesPanel()
+        self.changes, self.stereonet = ChangesPanel(), StereonetPanel()
         self.bodies, self.body_figures, self.morph = BodiesPanel(), BodyFigures(), MorphPanel()
         self.docks = {
             "tree": self._dock("tree", self.tr("Project"), self.tree),
@@ -72,6 +73,7 @@ class Workspace(QObject):
             "checks": self._dock("checks", self.tr("Checks", "Workspace"), self.checks),
             "prediction": self._dock("prediction", self.tr("Away from the data"), self.prediction),
             "changes": self._dock("changes", self.tr("What moved"), self.changes),
+            "stereonet": self._dock("stereonet", self.tr("Dips"), self.stereonet),
             "body_figures": self._dock("body_figures", self.tr("Body figures"), self.body_figures),
             "morph": self._dock("morph", self.tr("Metamorphosis"), self.morph),
             "log": self._dock("log", self.tr("Log"), self.log),

@@ -112,8 +112,8 @@ def closed_lines(source: Source, journal: Journal) -> list[ClosedLine]:
                 journal.add(
                     "note" if kind not in CLOSABLE else "error",
                     source.name,
-                    message("import.not-closed-line", "A {entity} that is not a closed line is not used", entity=kind),
-                    message("import.close-polyline", "Close the polyline in CAD if it outlines the body."),
+                    message("io.not-closed-line", "A {entity} that is not a closed line is not used", entity=kind),
+                    message("io.close-polyline", "Close the polyline in CAD if it outlines the body."),
                     row=number,
                     column=layer,
                     value=kind,

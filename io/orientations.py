@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.site import Orientations
+from geofit.geometry.attitudes import attitudes
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import ORIENTATIONS
 from geofit.io.journal import Journal
@@ -109,6 +110,4 @@ def _from_normals(rows: Rows) -> tuple[Floats, Floats]:
             message("io.normal-zero", "The normal has zero length"),
             message("io.give-normal-components", "Give the three components of the plane's normal."),
         )
-    up = n * np.where(n[:, 2:] < 0, -1.0, 1.0)
-    azimuth = np.degrees(np.arctan2(up[:, 0], up[:, 1])) % 360.0
-    return azimuth, np.degrees(np.arctan2(np.hypot(up[:, 0], up[:, 1]), up[:, 2]))
+    return attitudes(n)

@@ -14,6 +14,7 @@ from geofit.cli.options import (
     Across,
     Crs,
     Decimal,
+    Dips,
     Frame,
     Json,
     Out,
@@ -88,6 +89,8 @@ def fit(
     ] = None,
     max_iterations: Annotated[int | None, typer.Option(help=_help("max_iterations", "20"))] = None,
     max_control_points: Annotated[int | None, typer.Option(help=_help("max_control_points", "automatic"))] = None,
+    dips: Annotated[Dips | None, typer.Option(help=_help("dips", "check"))] = None,
+    dip_accuracy: Annotated[float | None, typer.Option(help=_help("dip_accuracy", "5"))] = None,
     coincidence_distance: Annotated[float | None, typer.Option(help=_help("coincidence_distance", "0.01"))] = None,
     separate: Annotated[
         bool,
@@ -121,6 +124,8 @@ def fit(
         "strict": strict,
         "max_iterations": max_iterations,
         "max_control_points": max_control_points,
+        "dips": dips and dips.value,
+        "dip_accuracy": dip_accuracy,
         "coincidence_distance": coincidence_distance,
     }
     changes: dict[str, Any] = {name: value for name, value in given.items() if value is not None}

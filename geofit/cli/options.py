@@ -30,6 +30,13 @@ class Seam(StrEnum):
     POSITION = "position"
 
 
+class Dips(StrEnum):
+    """What measured dips are for."""
+
+    CHECK = "check"
+    FIT = "fit"
+
+
 class Frame(StrEnum):
     """In which frame a surface is a height field."""
 

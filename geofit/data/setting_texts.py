@@ -165,6 +165,27 @@ SETTINGS: Mapping[str, SettingText] = {
             True: message("data.setting-strict-true", "Met where knots allow"),
         },
     ),
+    "dips": SettingText(
+        message("data.setting-dips", "Measured dips"),
+        message(
+            "data.setting-dips-about",
+            "Check: dips measured on the horizon are compared with the surface. Fit: they are data as well, and the "
+            "surface takes their slope as far as their accuracy asks for it.",
+        ),
+        choices={
+            "check": message("data.checked", "Checked"),
+            "fit": message("data.setting-dips-fit", "Checked and fitted"),
+        },
+    ),
+    "dip_accuracy": SettingText(
+        message("data.setting-dip-accuracy", "Accuracy of dips"),
+        message(
+            "data.setting-dip-accuracy-about",
+            "Standard deviation of a measured dip about the surface's own, the waviness of the bed included.",
+        ),
+        "°",
+        number="real",
+    ),
     "max_iterations": SettingText(
         message("data.setting-max-iterations", "Rounds, at most"),
         message(

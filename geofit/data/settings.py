@@ -57,6 +57,11 @@ class FitSettings:
     max_control_points : int or None
         Cap of the number of control points; None: 40 a data point, 15 with a core, between 1,600 and 20,000, and as
         many as it takes to interpolate the core.
+    dips : {"check", "fit"}
+        Whether dips measured on the horizon are compared with its surface only, or are data of the fit as well: each
+        is an observation of the surface's gradient.
+    dip_accuracy : float
+        Standard deviation in degrees of a measured dip about the surface's own, the waviness of the bed included.
     coincidence_distance : float
         Points nearer to each other in plan than this many metres are coincident: if their elevations
         differ they are resolved by accuracy, and listed.
@@ -84,6 +89,8 @@ class FitSettings:
     strict: bool = False
     max_iterations: int = 20
     max_control_points: int | None = None
+    dips: Literal["check", "fit"] = "check"
+    dip_accuracy: float = 5.0
     coincidence_distance: float = 0.01
 
     def __repr__(self) -> str:
@@ -119,6 +126,8 @@ def _require(name: str, value: Any, text: SettingText) -> None:
         if is_finite(value) and value > 0:
             return
         unit = message("data.setting-unit-metres", "metres")
+        if text.unit == "°":
+            unit = message("data.setting-unit-degrees", "degrees")
         if not text.unit:
             unit = message("data.setting-auto-or-value", "the auto value's unit, or the word 'auto'")
         refused = message(

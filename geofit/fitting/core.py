@@ -22,6 +22,7 @@ from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes, som
 from geofit.fitting.net import Data, Net, Periphery, cap_for, choose_field, degree_for, gather, in_patches, smoothed
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
+from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -62,6 +63,7 @@ def fit_with_core(
     kept: NDArray[np.bool_],
     settings: FitSettings,
     stage: Callable[[str, float], None],
+    slopes: Slopes | None = None,
 ) -> Net:
     """Fit a surface whose core passes through its points.
 
@@ -71,7 +73,7 @@ def fit_with_core(
         If no control net within the cap passes through them without swinging between them.
     """
     assert split.core is not None
-    data = gather(points, parametrization, kept, split)
+    data = gather(points, parametrization, kept, split, slopes)
     inside = split.inside[kept]
     scaled = [x / data.unit for x in split.core]
     core = (scaled[0], scaled[1], scaled[2], scaled[3])

@@ -21,6 +21,7 @@ from geofit.data.errors import FitError
 from geofit.data.long_arrays import BLOCK, Rows, blocks, covariance, everywhere, inverse_squares, spread, sum_squares
 from geofit.data.messages import message
 from geofit.fitting.likelihood import FINEST, UNSOLVABLE, Likelihood, Optimum, Slope, plane_coefficients
+from geofit.fitting.slopes import Slopes
 from geofit.splines import bspline
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import Factor, TensorSpace
@@ -142,10 +143,10 @@ def precision_band(space: TensorSpace, field: Field) -> Floats:
     return field.rho * MaternPrecision(space, field.alpha).band(field.kappa, field.stretch)
 
 
-def drift_of(plane: Rows, moments: tuple[Floats, Floats] | None = None) -> Floats:
+def drift_of(plane: Rows, moments: tuple[Floats, Floats] | None = None, *, sloped: bool = False) -> Floats:
     """Return (3, r) the combinations of 1, u, v that (n, 2) places determine: no slope across a line of points.
 
-    ``moments`` is their :func:`covariance` where it is known.
+    Unless it was measured (``sloped``). ``moments`` is the places' :func:`covariance` where it is known.
     """
     if len(plane) <= BLOCK:
         centre = plane[:BLOCK].mean(axis=0)
@@ -154,17 +155,18 @@ def drift_of(plane: Rows, moments: tuple[Floats, Floats] | None = None) -> Float
         centre, products = covariance(plane) if moments is None else moments
         squares, columns = np.linalg.eigh(products)
         size, axes = np.sqrt(np.maximum(squares[::-1], 0.0)), columns.T[::-1]
-    known = axes[size > _NARROW * math.sqrt(len(plane))]
+    known = axes if sloped else axes[size > _NARROW * math.sqrt(len(plane))]
     return np.column_stack([[1.0, 0.0, 0.0], *([-(centre @ axis), *axis] for axis in known)])
 
 
-def slope_of(plane: Rows, trend: Floats | None) -> Slope:
+def slope_of(plane: Rows, trend: Floats | None, measured: Slopes | None = None) -> Slope:
     """Return what the slope of (n,) heights at (n, 2) places, given about a trend (3,), is held to: none in all.
 
-    Without a trend nothing holds it, nor that of coordinates, of which a trend is (3, k).
+    Measured slopes determine the plane's slope where the places do not: across a line of points. Without a trend
+    nothing holds it, nor that of coordinates, of which a trend is (3, k).
     """
     moments = covariance(plane)
-    directions = drift_of(plane, moments)
+    directions = drift_of(plane, moments, sloped=measured is not None)
     if trend is None or trend.ndim > 1:
         return Slope(directions, np.zeros(directions.shape[1]), 0.0)
     extent = float(np.trace(moments[1])) / len(plane)
@@ -179,6 +181,8 @@ def choose(
     smoothing: float | None = None,
     known: Sequence[Field] = (),
     trend: Floats | None = None,
+    measured: Slopes | None = None,
+    expected: float = 0.0,
 ) -> list[tuple[Field, float]]:
     """Choose the covariance and the noise for data about their trend.
 
@@ -198,6 +202,8 @@ def choose(
         What a coarser space gave: the search starts there.
     trend : (3,) or (3, k) array, optional
         The trend that was removed, coefficients of 1, u, v; without it nothing holds the plane's slope.
+    measured : Slopes, optional
+        Measured slopes about the trend, weighted as if the noise were ``expected``, metres.
 
     Returns
     -------
@@ -214,13 +220,22 @@ def choose(
     turned = wide.shape[1] > wide.shape[0]
     if turned:
         wide, plane, trend, known = wide.turned, plane[:, ::-1], _exchanged(trend), [one.turned for one in known]
+        measured = None if measured is None else measured.turned
     weight = inverse_squares(noise)
     band, right = wide.normal_equations(plane, z, weight)
     square = sum_squares(z, weight)
-    slope = slope_of(plane, trend)
+    slope, count = slope_of(plane, trend, measured), len(plane)
+    if measured is not None:
+        of_slopes = measured.equations(wide, expected)
+        band, right, square, count = (
+            band + of_slopes[0],
+            right + of_slopes[1],
+            square + of_slopes[2],
+            count + len(measured),
+        )
 
     def likelihood(alpha: int) -> Likelihood:
-        return Likelihood(wide, alpha, band, right, square, slope, len(plane))
+        return Likelihood(wide, alpha, band, right, square, slope, count)
 
     few = len(plane) < ENOUGH
     log_rho = None if smoothing is None else math.log(smoothing)
@@ -307,15 +322,28 @@ def restricted(space: TensorSpace, coefficients: Floats) -> Floats:
 
 
 def smooth(
-    space: TensorSpace, field: Field, plane: Rows, z: Rows, weight: Floats, trend: Floats | None = None
+    space: TensorSpace,
+    field: Field,
+    plane: Rows,
+    z: Rows,
+    weight: Floats,
+    trend: Floats | None = None,
+    measured: Slopes | None = None,
 ) -> Smoothed:
-    """Return a chosen field on any space: heights about the trend, metres, with the plane of the likelihood."""
+    """Return a chosen field on any space: heights about the trend, metres, with the plane of the likelihood.
+
+    ``measured`` slopes, about the trend as well, join the heights by their own accuracy.
+    """
     wide = widened(space)
     turned = wide.shape[1] > wide.shape[0]
     if turned:
         wide, plane, trend, field = wide.turned, plane[:, ::-1], _exchanged(trend), field.turned
+        measured = None if measured is None else measured.turned
     band, right = wide.normal_equations(plane, z, weight)
-    precision, slope = MaternPrecision(wide, field.alpha), slope_of(plane, trend)
+    if measured is not None:
+        of_slopes = measured.equations(wide, field.noise)
+        band, right = band + of_slopes[0], right + of_slopes[1]
+    precision, slope = MaternPrecision(wide, field.alpha), slope_of(plane, trend, measured)
     band += field.rho * precision.band(field.kappa, field.stretch)
     held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
     columns = right.reshape(len(right), -1)

@@ -14,8 +14,9 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.assemble import patches_of
 from geofit.fitting.core import fit_with_core
-from geofit.fitting.net import Net, approximate_all
+from geofit.fitting.net import Net, approximate_all, gather
 from geofit.fitting.parametrize import Parametrization
+from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
@@ -30,7 +31,8 @@ class Problem:
     """What stays the same while a horizon's control points are fitted and adjusted.
 
     ``kept`` (n,) marks the points that conflicts left; ``boundary`` (k, 2) is the study area in map coordinates;
-    ``outline`` (k, 2) is where the surface ends if that is not the study area: at faults.
+    ``outline`` (k, 2) is where the surface ends if that is not the study area: at faults. ``slopes`` are the measured
+    dips that the fit uses, in the frame.
     """
 
     points: PointSet
@@ -42,12 +44,17 @@ class Problem:
     conflicts: tuple[Conflict, ...]
     name: str
     outline: Floats | None = None
+    slopes: Slopes | None = None
 
     def fit(self, active: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
         """Return the control net that meets the core's points and approximates the other active ones."""
         if self.split.core is None:
-            return Model(self, approximate_all(self.points, self.parametrization, active, self.settings, stage))
-        return Model(self, fit_with_core(self.points, self.parametrization, self.split, active, self.settings, stage))
+            given = gather(self.points, self.parametrization, active, None, self.slopes)
+            return Model(self, approximate_all(given, self.settings, stage))
+        return Model(
+            self,
+            fit_with_core(self.points, self.parametrization, self.split, active, self.settings, stage, self.slopes),
+        )
 
     def partition(self) -> Partition:
         """Return the split in map coordinates."""

@@ -24,6 +24,7 @@ from geofit.fitting.density import CLOUD
 from geofit.fitting.field import ENOUGH, Field, Smoothed, choose, plane_trend, precision_band, relative_noise, smooth
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.parametrize import Parametrization
+from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
 from geofit.geometry.cells import tabulate
 from geofit.splines import bspline
@@ -94,7 +95,10 @@ class Net:
 
 @dataclass(frozen=True, eq=False)
 class Data:
-    """The points that the fit honours, in units, about their trend; the places of a cloud are made when read."""
+    """The points that the fit honours, and measured slopes, in units, about the points' trend.
+
+    The places of a cloud are made when read.
+    """
 
     plane: Rows
     value: Rows
@@ -102,13 +106,20 @@ class Data:
     area: Rectangle
     unit: float
     trend: Floats
+    slopes: Slopes | None = None
 
     def over_trend(self, space: TensorSpace) -> Floats:
         """Return the trend's coefficients on a space."""
         return np.asarray(plane_coefficients(space) @ self.trend)
 
 
-def gather(points: PointSet, parametrization: Parametrization, kept: NDArray[np.bool_], split: Split | None) -> Data:
+def gather(
+    points: PointSet,
+    parametrization: Parametrization,
+    kept: NDArray[np.bool_],
+    split: Split | None,
+    slopes: Slopes | None = None,
+) -> Data:
     """Return the points that the fit honours, in units of the spacing of the sparse ones, about their trend."""
     area = parametrization.area
     size, n = (area[1] - area[0]) * (area[3] - area[2]), int(kept.sum())
@@ -124,7 +135,9 @@ def gather(points: PointSet, parametrization: Parametrization, kept: NDArray[np.
     for rest, heights, places in blocks(about, value, plane):
         np.subtract(heights, trend[0] + places @ trend[1:], out=rest)
     known = np.isfinite(points.accuracy).any()
-    return Data(plane, about, points.accuracy[kept] if known else everywhere(np.nan, len(plane)), scaled, unit, trend)
+    accuracy = points.accuracy[kept] if known else everywhere(np.nan, len(plane))
+    turned = None if slopes is None else slopes.in_units(unit, trend)
+    return Data(plane, about, accuracy, scaled, unit, trend, turned)
 
 
 def _active_rows(parametrization: Parametrization, kept: NDArray[np.bool_], unit: float) -> tuple[Rows, Rows]:
@@ -199,19 +212,19 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, T
         if reached > value - GAIN:
             break
         space, field, value = finer, better, reached
+    if data.slopes is not None and len(data.slopes):
+        field = choose(space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise)[0][0]
     return field, space
 
 
 def smoothed(data: Data, space: TensorSpace, field: Field) -> Smoothed:
     """Return a chosen field on a space."""
-    return smooth(space, field, data.plane, data.value, inverse_squares(relative_noise(data.accuracy)), data.trend)
+    weight = inverse_squares(relative_noise(data.accuracy))
+    return smooth(space, field, data.plane, data.value, weight, data.trend, data.slopes)
 
 
-def approximate_all(
-    points: PointSet, parametrization: Parametrization, kept: NDArray[np.bool_], settings: FitSettings, stage: Stage
-) -> Net:
+def approximate_all(data: Data, settings: FitSettings, stage: Stage) -> Net:
     """Fit a surface without a core: the field, brought within the interior tolerance of sparse points."""
-    data = gather(points, parametrization, kept, None)
     n = len(data.plane)
     most = cap_for(settings, n)
     stage("field", 0.25)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from numpy.typing import ArrayLike
 
 from geofit.data.given import SETTINGS, require_kind
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress
 from geofit.data.settings import FitSettings
+from geofit.data.site import Orientations
 from geofit.data.threads import one_thread
 from geofit.fitting.adjust import adjust
 from geofit.fitting.conflicts import resolve_conflicts
@@ -17,6 +20,7 @@ from geofit.fitting.model import Problem
 from geofit.fitting.parametrize import parametrize
 from geofit.fitting.partition import partition
 from geofit.fitting.request import require
+from geofit.fitting.slopes import slopes_of
 from geofit.fitting.solve import solve
 from geofit.fitting.stages import Stages
 
@@ -30,6 +34,7 @@ def fit_horizon(
     progress: Progress | None = None,
     *,
     name: str = "horizon",
+    orientations: Orientations | None = None,
 ) -> HorizonFit:
     """Fit one horizon: interpolate its dense core, approximate its periphery, check the result.
 
@@ -45,6 +50,8 @@ def fit_horizon(
         Called as ``progress(stage, fraction)``; returning False stops the fit.
     name : str
         Name of the horizon.
+    orientations : Orientations, optional
+        Dips measured at the site. Those that name the horizon are data of the fit where ``settings.dips`` is "fit".
 
     Returns
     -------
@@ -81,7 +88,10 @@ def fit_horizon(
         stage("partition", 0.1)
         split = partition(parametrization, settings, kept)
         stage("fit", 0.2)
-        model = solve(Problem(points, settings, corners, parametrization, split, kept, conflicts, name), stage)
+        slopes, notes = slopes_of(orientations, name, parametrization, settings)
+        parametrization = replace(parametrization, notes=(*parametrization.notes, *notes))
+        given = Problem(points, settings, corners, parametrization, split, kept, conflicts, name, slopes=slopes)
+        model = solve(given, stage)
         stage("check", 0.8)
         surface = fit_of(model)
         stage("adjust", 0.9)

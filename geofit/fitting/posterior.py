@@ -1,8 +1,9 @@
 """How sure the regional field is of itself: the posterior of the smoothing spline.
 
 The field is Gaussian, so its coefficients have the posterior covariance noise^2 P^-1 with P = A' W A + rho E, A the
-collocation matrix of the points, W their weights. The plane under it, which no prior holds, adds noise^2 D M^-1 D',
-where D = P^-1 rho E B is what the field leaves of the planes B, and M = B' rho E (B - D) their normal matrix
+collocation matrix of the points (below it the rows of measured slopes), W their weights. The plane under it, which no
+prior holds, adds noise^2 D M^-1 D', where D = P^-1 rho E B is what the field leaves of the planes B, and
+M = B' rho E (B - D) their normal matrix
 (G. Wahba, J. R. Stat. Soc. B 45, 1983, 133-150). A variance b' P^-1 b asks for the band of P^-1 alone (Takahashi,
 Fagan & Chin 1973).
 """
@@ -159,7 +160,7 @@ def posterior(model: Model) -> Posterior:
         )
     kept = given.kept & given.parametrization.parametrized
     split = given.split if given.split.core is not None else None
-    data = gather(given.points, given.parametrization, kept, split)
+    data = gather(given.points, given.parametrization, kept, split, given.slopes)
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
     space, field = widened(space), net.field
     turned = space.shape[1] > space.shape[0]
@@ -168,7 +169,11 @@ def posterior(model: Model) -> Posterior:
     plane, trend = (data.plane[:, ::-1], data.trend[[0, 2, 1]]) if turned else (data.plane, data.trend)
     weight = 1 / relative_noise(data.accuracy) ** 2
     band, right = space.normal_equations(plane, data.value, weight)
-    precision, slope = MaternPrecision(space, field.alpha), slope_of(plane, trend)
+    measured, weighed = data.slopes.turned if turned and data.slopes is not None else data.slopes, 0.0
+    if measured is not None:
+        of_slopes = measured.equations(space, field.noise)
+        band, right, weighed = band + of_slopes[0], right + of_slopes[1], of_slopes[2]
+    precision, slope = MaternPrecision(space, field.alpha), slope_of(plane, trend, measured)
     prior = field.rho * precision.band(field.kappa, field.stretch)
     held = field.rho * precision.times_planes(field.kappa, field.stretch) @ slope.directions
     factor = BlockFactor(band + prior)
@@ -178,7 +183,9 @@ def posterior(model: Model) -> Posterior:
     slopes = np.linalg.solve(moment, cross)
     coefficients = (free + drift @ slopes)[:, 0]
     off = slopes[:, 0] - slope.aim
-    square = float(weight @ data.value**2 - right @ coefficients - slope.aim @ slope.precision(field.hold) @ off)
+    square = float(
+        weight @ data.value**2 + weighed - right @ coefficients - slope.aim @ slope.precision(field.hold) @ off
+    )
     return Posterior(
         np.flatnonzero(kept), data.plane, data.value, weight, space, turned, factor, drift, moment, coefficients,
         field, square, data.trend,

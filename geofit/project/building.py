@@ -56,7 +56,14 @@ def make(provenance: Provenance, given: Given, progress: Progress | None = None)
 
     points = without_rows(given.site.horizons[provenance.horizon], provenance.excluded)
     if provenance.part is None:
-        surface = fit_horizon(points, provenance.settings, given.site.boundary, progress, name=provenance.horizon)
+        surface = fit_horizon(
+            points,
+            provenance.settings,
+            given.site.boundary,
+            progress,
+            name=provenance.horizon,
+            orientations=given.site.orientations,
+        )
     else:
         surface = _block(provenance, provenance.part, points, given, progress)
     for edit in provenance.edits:
@@ -92,7 +99,8 @@ def _block(provenance: Provenance, part: Part, points: PointSet, given: Given, p
     )
     faults = [Fault.of(surface, k, area) for k, surface in enumerate(surfaces.values())]
     sides = tuple(side for side in part.sides if side >= 0)
-    return fit_block(points, faults, sides, provenance.settings, area, progress, name=provenance.horizon)
+    dips = (given.site.orientations, part.horizon)
+    return fit_block(points, faults, sides, provenance.settings, area, progress, name=provenance.horizon, dips=dips)
 
 
 def _pushed(surface: HorizonFit, edit: SeparationEdit, given: Given, progress: Progress | None) -> HorizonFit:

@@ -16,6 +16,7 @@ from geofit.project.area_command import SetArea
 from geofit.project.body_commands import DeleteBody, RenameBody, SetBody, StyleBody
 from geofit.project.command import Command, known
 from geofit.project.data_commands import ChangeData
+from geofit.project.fit_command import TakeFit
 from geofit.project.horizon_commands import MergeHorizons, RemoveHorizons, RenameHorizon
 from geofit.project.provenance import (
     DocumentError,
@@ -342,7 +343,7 @@ COMMANDS: dict[str, type[Command]] = {
     for command in (
         SetSettings, SetCore, ExcludeRows, IncludeRows, SetSurface, SplitAtFaults, AdjustControlPoint, ChangeWeight,
         MoveToPoint, SeparateHorizons, SetOrder, RenameSite, ChangeData, SetArea,
-        RenameHorizon, RemoveHorizons, MergeHorizons, SetBody, RenameBody, DeleteBody, StyleBody,
+        RenameHorizon, RemoveHorizons, MergeHorizons, SetBody, RenameBody, DeleteBody, StyleBody, TakeFit,
     )
 }  # fmt: skip
 

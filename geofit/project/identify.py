@@ -92,7 +92,7 @@ def surface_lines(surface: HorizonFit, xyz: Floats, uncertainty: Uncertainty | N
             dip = float(np.degrees(np.arctan(np.hypot(*slope))))
             azimuth = float(np.degrees(np.arctan2(-slope[0], -slope[1]))) % 360
             lines.append(
-                message("project.identified-dip", "dip {dip:.0f}° towards {azimuth:03.0f}°", dip=dip, azimuth=azimuth)
+                message("project.dip-towards", "dip {dip:.0f}° towards {azimuth:03.0f}°", dip=dip, azimuth=azimuth)
             )
         if uncertainty is not None and uncertainty.frame == "map":
             i, j = (int(np.abs(axis - value).argmin()) for axis, value in ((uncertainty.x, x), (uncertainty.y, y)))

@@ -49,6 +49,10 @@ class Shelf:
         found = None if provenance is None else self._results.get(provenance)
         return None if found is None else found.surface
 
+    def fits_of(self, horizon: str) -> tuple[Provenance, ...]:
+        """Return what the surfaces of a horizon that are available were made from, the oldest first."""
+        return tuple(one for one in self._results if one.horizon == horizon)
+
     def examined(self, provenance: Provenance, prediction: PredictionResult) -> None:
         """Keep what was found out about the surface away from its data."""
         if provenance in self._results:

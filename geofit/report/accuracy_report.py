@@ -24,6 +24,7 @@ __all__ = [
     "ContradictionLine",
     "CutLine",
     "CutPlace",
+    "DipLine",
     "FileCheck",
     "GroupLine",
     "HorizonReport",
@@ -359,6 +360,22 @@ class ChangeReport:
 
 
 @dataclass(frozen=True)
+class DipLine:
+    """A measured dip and the surface's own at the nearest place; degrees, map coordinates in metres."""
+
+    x: float
+    y: float
+    z: float
+    azimuth: float
+    dip: float
+    surface_azimuth: float
+    surface_dip: float
+    angle: float
+    file: str
+    row: int
+
+
+@dataclass(frozen=True)
 class PlanSheet:
     """A contour plan to scale: the denominator, and metres between contours."""
 
@@ -375,7 +392,7 @@ class HorizonReport:
     ``over`` counts points beyond tolerances, by the name of the setting. ``pictures`` names those that
     belong here, by what they show. ``plan`` is None for a folded surface, of which contours would cross.
     ``excluded`` are points that a person left out, ``edits`` manual edits. ``change`` is how the horizon moved since
-    its data changed; None where no earlier state is known.
+    its data changed; None where no earlier state is known. ``dips`` were measured on the horizon.
     """
 
     horizon: str
@@ -411,6 +428,7 @@ class HorizonReport:
     excluded: tuple[PointLine, ...] = ()
     edits: tuple[Message, ...] = ()
     change: ChangeReport | None = None
+    dips: tuple[DipLine, ...] = ()
 
     @property
     def name(self) -> str:

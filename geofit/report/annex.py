@@ -22,7 +22,7 @@ __all__ = ["horizon_annex", "inputs_annex"]
 #: Rows of a list in the document; the JSON and the CSV hold all of them.
 LONGEST = 40
 _FIT = {
-    "control_points": message("report.control-points", "Control points"),
+    "control_points": message("data.control-points", "Control points"),
     "energy": message("report.bending-energy", "Bending energy"),
     "iterations": message("report.iterations", "Iterations"),
     "order": message("report.derivative-energy", "Derivative in the energy"),

@@ -13,14 +13,14 @@ __all__ = ["cover", "reference"]
 _ROLES = {
     "en": (
         (message("report.prepared", "Prepared"), "author"),
-        (message("report.checked", "Checked"), "checker"),
+        (message("data.checked", "Checked"), "checker"),
         (message("report.approved", "Approved"), "approver"),
     ),
     "zh": (
         (message("report.authorised", "Authorised"), ""),
         (message("report.approved", "Approved"), "approver"),
         (message("report.reviewed", "Reviewed"), ""),
-        (message("report.checked", "Checked"), "checker"),
+        (message("data.checked", "Checked"), "checker"),
         (message("report.prepared", "Prepared"), "author"),
     ),
 }

@@ -29,6 +29,7 @@ from geofit.report.accuracy_report import (
     ContradictionLine,
     CutLine,
     CutPlace,
+    DipLine,
     FileCheck,
     GroupLine,
     HorizonReport,
@@ -74,7 +75,7 @@ __all__ = [
 ]
 
 #: What the pictures of a horizon show, in the order of the report.
-PICTURES = ("plan", "view", "deviation", "residuals", "uncertainty", "change")
+PICTURES = ("plan", "view", "deviation", "residuals", "uncertainty", "dips", "change")
 SITE_PICTURE = "site"
 WORST = 20
 _PROGRAMS = ("numpy", "scipy")
@@ -220,6 +221,29 @@ def horizon_report(result: HorizonResult) -> HorizonReport:
         else tuple(_excluded(result.excluded, i) for i in range(len(result.excluded))),
         edits=result.edits,
         change=None if result.change is None else change_report(result.change),
+        dips=_dips(result),
+    )
+
+
+def _dips(result: HorizonResult) -> tuple[DipLine, ...]:
+    """Return the dips that were measured on the horizon, in the order of their files."""
+    measured = result.site.orientations
+    if measured is None:
+        return ()
+    return tuple(
+        DipLine(
+            float(measured.xyz[one.index, 0]),
+            float(measured.xyz[one.index, 1]),
+            float(measured.xyz[one.index, 2]),
+            one.azimuth,
+            one.dip,
+            one.surface_azimuth,
+            one.surface_dip,
+            one.angle,
+            str(measured.file[one.index]),
+            int(measured.row[one.index]),
+        )
+        for one in result.dips
     )
 
 
@@ -258,6 +282,8 @@ def _shown(what: str, result: HorizonResult, approximated: NDArray[np.float64]) 
         return bool(np.abs(approximated).max(initial=0.0) >= NOISE)
     if what == "change":
         return result.change is not None
+    if what == "dips":
+        return bool(result.dips)
     return what != "uncertainty" or _has_uncertainty(result.prediction)
 
 

@@ -11,6 +11,7 @@ from geofit.report.accuracy_report import FileCheck, HorizonReport
 from geofit.report.change_blocks import change_blocks
 from geofit.report.checks_table import check_table
 from geofit.report.contour_plan import plan_caption
+from geofit.report.dip_blocks import dip_blocks
 from geofit.report.document import (
     Block,
     Chapter,
@@ -39,6 +40,7 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
         *_view(h, t, missing_picture),
         *_deviations(h, t),
         *_checked(h, t),
+        *dip_blocks(h, t),
         *_read_back(h.read_back, t),
         *prediction_blocks(h, t),
         *change_blocks(h.change, h.pictures.get("change", ""), t),

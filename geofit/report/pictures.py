@@ -23,7 +23,8 @@ from geofit.report.gather import SITE_PICTURE, cut_of, picture_name, section_pic
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
 from geofit.report.section_sheet import draw_section, section_sheet
-from geofit.report.style import FAIL, HORIZONS, MUTED, PASS, TEXT, WARNING, drawing
+from geofit.report.stereonet import Net, angles, stereonet
+from geofit.report.style import CORE, FAIL, HORIZONS, MUTED, PASS, TEXT, WARNING, drawing
 from geofit.report.uncertainty import uncertainty_map
 
 if TYPE_CHECKING:
@@ -38,6 +39,8 @@ __all__ = ["Pictures", "draw", "draw_change", "draw_sections", "draw_site", "png
 #: Width of the report's pictures, inches: what an A4 page has between its margins; their dots an inch; height of the
 #: picture of the cover, inches.
 WIDTH, DOTS, COVER = 6.85, 200, 4.15
+#: Side of a stereonet, inches.
+NET = 3.0
 #: Type of those pictures, points: that of the page around them.
 TYPE = 8.0
 
@@ -71,9 +74,24 @@ def draw(result: HorizonResult, t: Language = EN) -> Pictures:
     if result.prediction is not None and result.prediction.uncertainty is not None:
         field = result.prediction.uncertainty
         flat["uncertainty"] = _map(uncertainty_map, result, t, float(np.ptp(field.y) / np.ptp(field.x)))
+    if result.dips:
+        flat["dips"] = _dips(result, t)
     if result.change is not None:
         flat["change"] = draw_change(result.change, t)
     return Pictures({picture_name(what, result.name): data for what, data in flat.items()}, view, missing)
+
+
+def _dips(result: HorizonResult, t: Language) -> bytes:
+    from matplotlib.figure import Figure
+
+    found = np.array([(d.azimuth, d.dip, d.surface_azimuth, d.surface_dip) for d in result.dips]).T
+    with drawing(TYPE):
+        figure = Figure(figsize=(WIDTH, NET), dpi=DOTS)
+        colours = [CORE] * len(result.dips)
+        net = figure.add_axes((0, 0, NET / WIDTH, 1))
+        stereonet(net, Net(found[0], found[1], colours, (found[2], found[3])), t)
+        angles(figure.add_axes((0.56, 0.17, 0.42, 0.7)), np.array([one.angle for one in result.dips]), t)
+        return png(figure, margin=8)
 
 
 def draw_change(comparison: Comparison, t: Language = EN) -> bytes:

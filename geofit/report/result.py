@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from geofit.data.site import ImportIssue, Site
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.profile import Profile
+from geofit.site.dips import DipDeviation, check_dips
 from geofit.site.states import Comparison
 
 __all__ = ["HorizonResult", "sigma_of"]
@@ -83,6 +85,11 @@ class HorizonResult:
         if self.surface.accuracy is None:
             raise ValueError(f"horizon '{self.name}' has not been checked; fit_horizon() does that.")
         return self.surface.accuracy
+
+    @cached_property
+    def dips(self) -> tuple[DipDeviation, ...]:
+        """The dips that were measured on the horizon, compared with its surface."""
+        return check_dips(self.surface, self.site.orientations)[0]
 
     @property
     def core(self) -> NDArray[np.bool_]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,13 @@ from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.data.site import Orientations
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.geometry.attitudes import attitudes, plane_normals
 from geofit.geometry.projection import project
 
-__all__ = ["DipDeviation", "check_dips"]
+if TYPE_CHECKING:
+    from shapely import Polygon
+
+__all__ = ["DipDeviation", "check_dips", "within"]
 
 Floats = NDArray[np.float64]
 
@@ -68,14 +73,23 @@ def check_dips(surface: HorizonFit, orientations: Orientations | None) -> tuple[
     if not len(mine):
         return (), None
     normal, distance = _at_the_surface(surface, orientations.xyz[mine])
-    measured = _normal(orientations.azimuth[mine], orientations.dip[mine])
+    measured = plane_normals(orientations.azimuth[mine], orientations.dip[mine])
     sine = np.linalg.norm(np.cross(measured, normal), axis=1)
     angle = np.degrees(np.arctan2(sine, np.abs((measured * normal).sum(axis=1))))
-    azimuth = np.degrees(np.arctan2(normal[:, 0], normal[:, 1])) % 360.0
-    dip = np.degrees(np.arctan2(np.hypot(normal[:, 0], normal[:, 1]), normal[:, 2]))
+    azimuth, dip = attitudes(normal)
     rows = zip(mine, orientations.azimuth[mine], orientations.dip[mine], azimuth, dip, angle, distance, strict=True)
     deviations = tuple(DipDeviation(int(index), *(float(x) for x in values)) for index, *values in rows)
     return deviations, _check(deviations, orientations)
+
+
+def within(orientations: Orientations | None, horizon: str, area: Polygon, name: str) -> Orientations | None:
+    """Return the measurements with those of a horizon inside an area (shapely.Polygon, map) under another name."""
+    import shapely
+
+    if orientations is None:
+        return None
+    mine = (orientations.horizon == horizon) & shapely.contains_xy(area, *orientations.xyz[:, :2].T)
+    return replace(orientations, horizon=np.where(mine, name, ""))
 
 
 def _at_the_surface(surface: HorizonFit, xyz: Floats) -> tuple[Floats, Floats]:
@@ -89,12 +103,6 @@ def _at_the_surface(surface: HorizonFit, xyz: Floats) -> tuple[Floats, Floats]:
             normal[here] = np.cross(patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1))
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
     return np.where(normal[:, 2:] < 0, -normal, normal), projection.distance
-
-
-def _normal(azimuth: Floats, dip: Floats) -> Floats:
-    """Upward unit normal of planes; it leans the way they dip."""
-    a, d = np.radians(azimuth), np.radians(dip)
-    return np.stack([np.sin(a) * np.sin(d), np.cos(a) * np.sin(d), np.cos(d)], axis=1)
 
 
 def _check(deviations: tuple[DipDeviation, ...], orientations: Orientations) -> Check:

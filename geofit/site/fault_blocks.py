@@ -19,9 +19,10 @@ from geofit.data.messages import Message, message, plural_message
 from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
-from geofit.data.site import Site
+from geofit.data.site import Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
+from geofit.site.dips import within
 from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, size
 from geofit.site.height_field import HeightField
 from geofit.site.throw import FaultCut, Sides, throws
@@ -93,9 +94,19 @@ def fit_faulted(site: Site, name: str, progress: Progress | None = None) -> Bloc
     for k, fault in enumerate(cutting):
         tell(progress, message("site.fault-name", "fault {name}", name=fault), 0.5 * k / len(cutting))
         settings = site.settings.get(fault, FitSettings())
-        faults.append(fit_horizon(site.horizons[fault], settings, site.boundary, name=fault))
+        faults.append(
+            fit_horizon(site.horizons[fault], settings, site.boundary, name=fault, orientations=site.orientations)
+        )
     settings = site.settings.get(name, FitSettings())
-    return fit_blocks(site.horizons[name], faults, settings, site.boundary, name=name, progress=progress)
+    return fit_blocks(
+        site.horizons[name],
+        faults,
+        settings,
+        site.boundary,
+        name=name,
+        progress=progress,
+        orientations=site.orientations,
+    )
 
 
 def fit_blocks(
@@ -106,6 +117,7 @@ def fit_blocks(
     *,
     name: str = "horizon",
     progress: Progress | None = None,
+    orientations: Orientations | None = None,
 ) -> BlockFit:
     """Fit a horizon apart on each side of its faults, and measure how far they displace it.
 
@@ -123,6 +135,8 @@ def fit_blocks(
         Name of the horizon; its blocks are called "NAME (A)", "NAME (B)", ...
     progress : callable, optional
         Called as ``progress(stage, fraction)``.
+    orientations : Orientations, optional
+        Measured dips of the site; those that name the horizon go to the block that they lie in.
 
     Returns
     -------
@@ -146,7 +160,8 @@ def fit_blocks(
     for k, (title, sides) in enumerate(zip(members.names, members.sides, strict=True)):
         tell(progress, message("site.block-name", "block {name}", name=title), 0.5 + 0.5 * k / len(members.names))
         mine = points[np.flatnonzero(members.block == k)]
-        blocks[sides] = fit_block(mine, members.faults, sides, settings, area, name=title)
+        dips = (orientations, name)
+        blocks[sides] = fit_block(mine, members.faults, sides, settings, area, name=title, dips=dips)
     cuts = throws(blocks, members.faults, name, area)
     return BlockFit(tuple(blocks.values()), members.block, cuts, members.notes)
 
@@ -224,6 +239,7 @@ def fit_block(
     progress: Progress | None = None,
     *,
     name: str,
+    dips: tuple[Orientations | None, str] = (None, ""),
 ) -> HorizonFit:
     """Fit one block to somewhat beyond its faults, then cut it where its surface meets them.
 
@@ -241,6 +257,8 @@ def fit_block(
         Called as ``progress(stage, fraction)``.
     name : str
         Name of the block.
+    dips : tuple of Orientations and str
+        Measured dips of the site, and the name of the horizon that the block belongs to.
 
     Raises
     ------
@@ -257,7 +275,9 @@ def fit_block(
 
     guess = _cut(area, plane, faults, sides, name)
     widened = _largest(shapely.intersection(shapely.buffer(guess, BEYOND * size(area), join_style="mitre"), area))
-    surface = fit_horizon(points, settings, shapely.get_coordinates(widened.exterior)[:-1], progress, name=name)
+    corners = shapely.get_coordinates(widened.exterior)[:-1]
+    measured = within(*dips, guess, name)
+    surface = fit_horizon(points, settings, corners, progress, name=name, orientations=measured)
     height_field = HeightField(surface)
     held = _largest(shapely.intersection(area, height_field.area()))
     outline = _cut(held, height_field, faults, sides, name)

@@ -190,6 +190,7 @@ class _Fits:
                 self._site.boundary,
                 name=name,
                 progress=listen,
+                orientations=self._site.orientations,
             )
             surfaces = [_noted(block, blocks.notes) for block in blocks.blocks]
             found.cuts += blocks.cuts
@@ -226,8 +227,15 @@ class _Fits:
 
     def _whole(self, name: str, listen: Progress) -> HorizonFit:
         if name not in self._known:
-            points = self._site.horizons[name]
-            self._known[name] = fit_horizon(points, self._settings(name), self._site.boundary, listen, name=name)
+            site = self._site
+            self._known[name] = fit_horizon(
+                site.horizons[name],
+                self._settings(name),
+                site.boundary,
+                listen,
+                name=name,
+                orientations=site.orientations,
+            )
         return self._known[name]
 
     def _settings(self, name: str) -> FitSettings:

@@ -14,7 +14,7 @@ from geofit.geometry.clip import inside
 from geofit.site.dips import check_dips
 from geofit.site.topography import check_ground
 
-__all__ = ["add_site_checks", "ground_tolerance"]
+__all__ = ["add_site_checks", "ground_tolerance", "measured_on"]
 
 #: What a grid of the ground does not show between its nodes, as a share of its cell: 2 m at cells of 20 m. So far off
 #: is a bilinear cell where the slope changes by 40 % from one cell to the next, along both axes (cell^2 / 8 times the
@@ -42,7 +42,7 @@ def add_site_checks(surface: HorizonFit, site: Site, horizon: str = "") -> Horiz
     measured = site.orientations
     asked = (
         guarded(
-            lambda: check_dips(surface, _of_block(measured, surface, horizon) if horizon else measured)[1],
+            lambda: check_dips(surface, measured_on(measured, surface, horizon) if horizon else measured)[1],
             None,
             lambda reason: missing.append(
                 message("site.dips-not-compared", "the dips were not compared: {reason}", reason=reason)
@@ -76,7 +76,7 @@ def ground_tolerance(ground: Ground, least: float) -> float:
     return max(CELL_SHARE * cell, least)
 
 
-def _of_block(orientations: Orientations | None, block: HorizonFit, horizon: str) -> Orientations | None:
+def measured_on(orientations: Orientations | None, block: HorizonFit, horizon: str) -> Orientations | None:
     """Return the measurements of a horizon that stand within a block's outline, as the block's own."""
     if orientations is None or block.outline is None:
         return None

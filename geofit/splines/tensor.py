@@ -81,6 +81,22 @@ class TensorSpace:
         count = (self.degree + 1) ** 2
         return index.reshape(-1, count), (bu[:, :, None] * bv[:, None, :]).reshape(-1, count)
 
+    def gradient_rows(self, plane: Floats, along: Floats) -> tuple[Ints, Floats]:
+        """Return the coefficients that act on the derivative along (n, 2) vectors at (n, 2) places, and their values.
+
+        The derivative is ``along . gradient``: vectors are not scaled to a length of 1.
+        """
+        index, _ = self.rows(plane)
+        (_, bu), (_, bv) = (bspline.basis(k, self.degree, x) for k, x in zip(self._knots, plane.T, strict=True))
+        (_, du), (_, dv) = (bspline.basis(k, self.degree, x, 1) for k, x in zip(self._knots, plane.T, strict=True))
+        values = along[:, 0, None, None] * du[:, :, None] * bv[:, None, :]
+        values += along[:, 1, None, None] * bu[:, :, None] * dv[:, None, :]
+        return index, values.reshape(len(plane), -1)
+
+    @property
+    def _knots(self) -> tuple[Floats, Floats]:
+        return self.knots_u, self.knots_v
+
     def matrix(self, plane: Floats) -> csr_array:
         """Return the sparse (n, size) collocation matrix of (n, 2) places."""
         index, values = self.rows(plane)
@@ -94,7 +110,10 @@ class TensorSpace:
         return self.equations(self.sums(plane, z, weight))
 
     def _by_points(self, plane: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
-        index, values = self.rows(plane)
+        return self.equations_of(*self.rows(plane), z, weight)
+
+    def equations_of(self, index: Ints, values: Floats, z: Floats, weight: Floats) -> tuple[Floats, Floats]:
+        """Return the normal equations of any rows, given as :meth:`rows` returns them, with (n,) or (n, k) values."""
         weighted = values * weight[:, None]
         blocks = weighted[:, :, None] * values[:, None, :]
         columns = [_sums(index, weighted * column[:, None], self.size) for column in z.reshape(len(z), -1).T]

@@ -120,6 +120,8 @@ class FitPanel(QWidget):
         head(self.tr("Fit"))
         for name in ("robust", "strict"):
             add(name, ChoiceField(choices(name)))
+        add("dips", ChoiceField(choices("dips")))
+        add("dip_accuracy", NumberField("°"))
         add("max_iterations", NumberField(whole=True))
         add("max_control_points", AutoField(None, at_most, whole=True, start=2000))
         add("coincidence_distance", NumberField(unit))

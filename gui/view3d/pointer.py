@@ -44,6 +44,7 @@ class Pointer(QObject):
     point_picked = Signal(str, object)
     control_picked = Signal(str, str, int, int)
     hole_picked = Signal(str)
+    dip_picked = Signal(int)
     moved = Signal(float, float, float)
     measured = Signal(str)
     changed = Signal()
@@ -163,6 +164,8 @@ class Pointer(QObject):
             patch, i, j = self._contents.control[hit.layer.horizon][hit.which]
             self.choose_control(hit.layer.horizon, patch, i, j)
             self.control_picked.emit(hit.layer.horizon, patch, i, j)
+        elif hit.layer.kind == "dips":
+            self.dip_picked.emit(int(hit.which))
         else:
             self.surround(hit.xyz, str(hit.which))
             self.hole_picked.emit(hit.which)

@@ -160,4 +160,4 @@ def dips_item(dips: Orientations, width: float, layer: Layer, look: Look) -> Ite
         Part(lines(poly(xyz - look.origin, runs=rings), look.text), width=1.0),
     ]
     names = [f"{azimuth:03.0f}/{dip:02.0f}" for azimuth, dip in zip(dips.azimuth, dips.dip, strict=True)]
-    return Item(parts, extent(xyz), places=dips.xyz, names=tuple(names) if layer.labels else ())
+    return Item(parts, extent(xyz), places=dips.xyz, names=tuple(names) if layer.labels else (), targets=dips.xyz)

@@ -79,7 +79,7 @@ def test_outlines_of_a_drawing_become_a_body_with_questions(opened, monkeypatch)
     figures = opened.panels.body_figures
     assert "Questions between sections: 1" in figures.count.text()
     assert figures.violations.rows.index(0, 0).data() == "Question"
-    figures.violation_chosen.emit(figures._found[0])
+    figures.violations.chosen.emit(0)
     assert panel.badge.isVisibleTo(panel)
 
 
