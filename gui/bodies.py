@@ -24,6 +24,7 @@ from geofit.gui.session import Session
 from geofit.gui.showing import Showing
 from geofit.gui.translate import shown_error, translated
 from geofit.gui.workspace import Workspace
+from geofit.io.bodies import BODY_ENDINGS
 from geofit.project.body_building import BodyResult, made_body, measured_strata, site_codes
 from geofit.project.body_commands import SetBody
 from geofit.project.body_export import BLOCK_ENDINGS, TRIANGLE_ENDINGS, BodyExport, export_body
@@ -36,7 +37,7 @@ from geofit.project.body_record import (
     Intervals,
     next_colour,
 )
-from geofit.project.body_saving import difference
+from geofit.project.body_saving import largest_difference
 from geofit.project.provenance import Provenance
 
 __all__ = ["Bodies"]
@@ -208,7 +209,7 @@ class Bodies(QObject):
             self._lost(name, wanted, None)
             return
         former = self._document.bodies.get(wanted)
-        apart = float("nan") if former is None else difference(former, result)
+        apart = float("nan") if former is None else largest_difference(former, result)
         self._put(wanted, replace(result, origin="again", difference=apart))
 
     def _lost(self, name: str, provenance: BodyProvenance, error: Exception | None) -> None:
@@ -269,18 +270,25 @@ class Bodies(QObject):
         self.reported.emit(text)
 
     def _ask_file(self, kind: str) -> None:
-        folder = str(self._document.folder or self._preferences.folder)
         if kind == MESH:
-            words, kinds = self.tr("Open a closed body"), self.tr("Bodies (*.stl *.obj *.ply *.ts *.step *.stp)")
-        else:
-            words, kinds = self.tr("Open another site file"), self.tr("Site files (*.toml)")
-        path, _ = QFileDialog.getOpenFileName(self._window, words, folder, kinds)
-        if not path:
+            file = self.ask_mesh()
+            if file is not None:
+                self._panels.bodies.source.show_mesh(self._relative(file))
             return
-        if kind == MESH:
-            self._panels.bodies.source.show_mesh(self._relative(Path(path)))
-        else:
+        path, _ = QFileDialog.getOpenFileName(
+            self._window, self.tr("Open another site file"), self._start(), self.tr("Site files (*.toml)")
+        )
+        if path:
             self.read_codes(Path(path))
+
+    def ask_mesh(self) -> Path | None:
+        """Ask for a file with a closed body; None if none is chosen."""
+        kinds = self.tr("Bodies ({endings})").format(endings=" ".join(f"*{ending}" for ending in BODY_ENDINGS))
+        path, _ = QFileDialog.getOpenFileName(self._window, self.tr("Open a closed body"), self._start(), kinds)
+        return Path(path) if path else None
+
+    def _start(self) -> str:
+        return str(self._document.folder or self._preferences.folder)
 
     def take_mesh(self, file: Path, name: str = "") -> None:
         """Take a closed body from a file."""

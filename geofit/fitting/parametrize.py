@@ -20,7 +20,7 @@ from geofit.fitting.fold import Loft, backtracking, loft
 from geofit.fitting.sections import section_labels
 from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
 
-__all__ = ["STEEP", "Parametrization", "box_of", "direction_of", "parametrize"]
+__all__ = ["STEEP", "Parametrization", "direction_of", "parametrize", "plan_box"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -123,7 +123,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)
     return Parametrization(
-        frame, local[:, :2], local[:, 2], box_of(np.concatenate(places)), tuple(notes), placed, section
+        frame, local[:, :2], local[:, 2], plan_box(np.concatenate(places)), tuple(notes), placed, section
     )
 
 
@@ -214,11 +214,11 @@ def _parametrize_over_sections(points: PointSet, reason: Message) -> Parametriza
         raise FitError(text)
     frame = replace(map_frame(points), kind="sections")
     local = frame.to_local(points.xyz)
-    area = box_of(surface.plane[surface.on_line])
+    area = plan_box(surface.plane[surface.on_line])
     return Parametrization(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
 
 
-def box_of(plane: Floats) -> Rectangle:
+def plan_box(plane: Floats) -> Rectangle:
     """Return the rectangle of (n, 2) places, at least a strip wide."""
     low, high = (np.array([end(axis) for axis in plane.T]) for end in (np.min, np.max))
     # A line of points still needs a strip to stand on.
