@@ -38,7 +38,7 @@ def random_balls(count: int = 500, seed: int = 0) -> implicit.Metaballs:
     rng = np.random.default_rng(seed)
     steps = rng.normal(0, 0.035, (count // 50, 50, 3))
     centres = np.clip(0.5 + rng.uniform(-0.3, 0.3, (count // 50, 1, 3)) + steps.cumsum(axis=1), 0.1, 0.9).reshape(-1, 3)
-    return implicit.metaballs(centres, rng.uniform(0.05, 0.09, len(centres)))
+    return implicit.spherical_metaballs(centres, rng.uniform(0.05, 0.09, len(centres)))
 
 
 def all_balls(body: implicit.Metaballs, lattice: implicit.Lattice) -> np.ndarray:

@@ -46,7 +46,9 @@ def modes() -> None:
         print(f"| ball to ring, {mode} | opens at {m.events[0].tau:.4f}, dip {dip:.1%}, drift {drift:.1g} |")
         for tau, shade in zip((0.0, 0.3, 0.6, 0.8, 1.0), np.linspace(0.35, 1.0, 5), strict=True):
             field = m(tau).field
-            for line in implicit.contours(field, [-0.85, 0, -0.6], [1, 0, 0], [0, 0, 1], size=(1.7, 1.2), spacing=0.02):
+            for line in implicit.field_contours(
+                field, [-0.85, 0, -0.6], [1, 0, 0], [0, 0, 1], size=(1.7, 1.2), spacing=0.02
+            ):
                 x, z = np.vstack([line.xyz, line.xyz[:1]])[:, [0, 2]].T
                 axis.plot(x, z, color=colour, alpha=float(shade), linewidth=1.4)
         axis.set(

@@ -39,7 +39,7 @@ print("hole:", ", ".join(f"{'in' if c.entering else 'out'} at {c.depth:.2f} m" f
 plotter = pv.Plotter(off_screen=True, window_size=(1100, 700))
 faces = np.insert(mesh.triangles, 0, 3, axis=1)
 plotter.add_mesh(pv.PolyData(mesh.vertices, faces.ravel()), color="#c9b79c", specular=0.2)
-for line in implicit.contours(cavern, [-72, -60, 4], [1, 0, 0], [0, 1, 0], size=(140, 130), spacing=1.0):
+for line in implicit.field_contours(cavern, [-72, -60, 4], [1, 0, 0], [0, 1, 0], size=(140, 130), spacing=1.0):
     plotter.add_mesh(pv.lines_from_points(line.xyz, close=line.closed), color="#b03a2e", line_width=4)
 along = np.array([0.25, 0.1, -1]) / np.linalg.norm([0.25, 0.1, -1])
 plotter.add_mesh(pv.Line([-15, -20, 60], np.array([-15, -20, 60]) + 90 * along), color="black", line_width=5)

@@ -41,7 +41,7 @@ geofit.write_film(m.frames(9), out / "morph_section_bodies.gif")
 figure, axes = plt.subplots(1, 2, figsize=(12, 4.2), layout="constrained", width_ratios=(2, 1))
 corner = place + np.array([-30.0, -45, -8]) - m.origin
 for tau, colour in zip(np.linspace(0, 1, 5), plt.cm.cividis(np.linspace(0, 0.9, 5)), strict=True):
-    lines = geofit.implicit.contours(m(tau).field, corner, [1, 0, 0], [0, 1, 0], size=(220, 90), spacing=2.0)
+    lines = geofit.implicit.field_contours(m(tau).field, corner, [1, 0, 0], [0, 1, 0], size=(220, 90), spacing=2.0)
     for k, line in enumerate(lines):
         label = None if k else f"tau {tau:.2f}"
         axes[0].plot(*np.vstack([line.xyz, line.xyz[:1]])[:, :2].T, color=colour, label=label)

@@ -24,6 +24,7 @@ from geofit.gui.session import Session
 from geofit.gui.showing import Showing
 from geofit.gui.translate import shown_error, translated
 from geofit.gui.workspace import Workspace
+from geofit.io.bodies import BODY_ENDINGS
 from geofit.project.body_building import BodyResult, made_body, measured_strata
 from geofit.project.body_commands import SetBody
 from geofit.project.body_export import BLOCK_ENDINGS, TRIANGLE_ENDINGS, BodyExport, export_body
@@ -36,7 +37,7 @@ from geofit.project.body_record import (
     Intervals,
     next_colour,
 )
-from geofit.project.body_saving import difference
+from geofit.project.body_saving import largest_difference
 from geofit.project.body_sources import outline_layers, site_codes
 from geofit.project.provenance import Provenance
 
@@ -212,7 +213,7 @@ class Bodies(QObject):
             self._lost(name, wanted, None)
             return
         former = self._document.bodies.get(wanted)
-        apart = float("nan") if former is None else difference(former, result)
+        apart = float("nan") if former is None else largest_difference(former, result)
         self._put(wanted, replace(result, origin="again", difference=apart))
 
     def _lost(self, name: str, provenance: BodyProvenance, error: Exception | None) -> None:
@@ -273,18 +274,30 @@ class Bodies(QObject):
         self.reported.emit(text)
 
     def _ask_file(self, kind: str) -> None:
-        folder = str(self._document.folder or self._preferences.folder)
+        if kind == MESH:
+            file = self.ask_mesh()
+            if file is not None:
+                self.read_file(kind, file)
+            return
         words, kinds = {
             OTHER: (self.tr("Open another site file"), self.tr("Site files (*.toml)")),
             OUTLINES: (self.tr("Open outlines on sections"), self.tr("Outlines (*.dxf *.geojson *.json)")),
             POINTS: (self.tr("Open points of a body"), self.tr("Tables of points (*.csv *.txt *.xyz *.xlsx)")),
-            MESH: (self.tr("Open a closed body"), self.tr("Bodies (*.stl *.obj *.ply *.ts *.step *.stp)")),
         }[kind]
         path, _ = QFileDialog.getOpenFileName(
-            self._window, words, folder, f"{kinds};;{self.tr('All files (*)')}" if kind == POINTS else kinds
+            self._window, words, self._start(), f"{kinds};;{self.tr('All files (*)')}" if kind == POINTS else kinds
         )
         if path:
             self.read_file(kind, Path(path))
+
+    def ask_mesh(self) -> Path | None:
+        """Ask for a file with a closed body; None if none is chosen."""
+        kinds = self.tr("Bodies ({endings})").format(endings=" ".join(f"*{ending}" for ending in BODY_ENDINGS))
+        path, _ = QFileDialog.getOpenFileName(self._window, self.tr("Open a closed body"), self._start(), kinds)
+        return Path(path) if path else None
+
+    def _start(self) -> str:
+        return str(self._document.folder or self._preferences.folder)
 
     def take_mesh(self, file: Path, name: str = "") -> None:
         """Take a closed body from a file."""

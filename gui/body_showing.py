@@ -19,7 +19,7 @@ from geofit.gui.workspace import Workspace
 from geofit.implicit.mesh import TriangleMesh
 from geofit.project.body_building import BodyResult, origin_text
 from geofit.project.body_record import FITTED, BodyProvenance, BodyRecord, Intervals
-from geofit.project.body_sources import codes_of, given_of_logs
+from geofit.project.body_sources import given_of_logs, interval_codes
 from geofit.project.document import Document
 from geofit.project.provenance import Provenance
 
@@ -89,7 +89,7 @@ class BodyShowing(QObject):
             return
         if self._site:
             self._site = False
-            panel.source.show_own(codes_of(document.site.boreholes))
+            panel.source.show_own(interval_codes(document.site.boreholes))
             if not document.site.horizons:
                 self._panels.reveal("bodies")
         if self.chosen not in document.state.bodies:

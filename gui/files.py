@@ -22,7 +22,15 @@ from geofit.gui.translate import translated
 from geofit.project.body_saving import saved_body
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Provenance
-from geofit.project.saving import Opened, Written, earlier_data, read_again, read_project, read_surfaces, save_state
+from geofit.project.saving import (
+    Opened,
+    Written,
+    earlier_data,
+    read_again,
+    read_project,
+    read_saved_surfaces,
+    save_state,
+)
 
 __all__ = ["Files"]
 
@@ -229,7 +237,7 @@ class Files(QObject):
                 blocks_site = self._document.site
                 self._activity.do(
                     title,
-                    read_surfaces,
+                    read_saved_surfaces,
                     found.project,
                     path.parent,
                     blocks_site,

@@ -30,7 +30,7 @@ from geofit.project.commands import (
     SetSurface,
     SplitAtFaults,
 )
-from geofit.project.fault_blocks import SplitHorizon, measured, split_at_faults
+from geofit.project.fault_blocks import SplitHorizon, cuts_measured, split_at_faults
 from geofit.project.provenance import Corners, DocumentError, Provenance, Row
 from geofit.site.throw import FaultCut
 
@@ -128,7 +128,7 @@ class Fitting(QObject):
         blocks = document.blocks(whole)
         if not names or len(blocks.surfaces) < len(names):
             return None
-        return measured, (blocks,)
+        return cuts_measured, (blocks,)
 
     def _thrown(self, cuts: tuple[FaultCut, ...]) -> None:
         for cut in cuts:

@@ -21,7 +21,7 @@ from geofit.io.contact_rules import ContactRule
 from geofit.project.adding import Added, add_files
 from geofit.project.comparing import made_comparison
 from geofit.project.data_change import DataChange, arrivals, change_of_data, changed_files
-from geofit.project.horizon_builder import Picks, horizon_table
+from geofit.project.horizon_builder import RulePicks, horizon_table
 from geofit.project.listing import listing
 from geofit.project.provenance import Provenance
 from geofit.project.saving import read_again
@@ -100,7 +100,7 @@ class Living(QObject):
         dialog.built.connect(self._build)
         dialog.exec()
 
-    def _preview(self, picks: Picks | None) -> None:
+    def _preview(self, picks: RulePicks | None) -> None:
         """Show picks in the scene, or take them away."""
         name, view = self.tr("Preview"), self._panels.view
         if picks is None or not len(picks.points):

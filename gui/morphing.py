@@ -27,9 +27,9 @@ from geofit.project.morph_view import (
     end_shape,
     export_frames,
     finished,
+    frame_as_body,
     frame_body,
     previewed,
-    taken,
 )
 
 __all__ = ["Morphing"]
@@ -137,7 +137,7 @@ class Morphing(QObject):
         if view is None or view.full is None:
             return
         given = [end.given for end in view.way.ends]
-        provenance, result = taken(view, self._panel.timeline.tau, name, given)
+        provenance, result = frame_as_body(view, self._panel.timeline.tau, name, given)
         self._document.put_body(provenance, result)
         style = BodyStyle(next_colour(self._document.state.bodies))
         self._fitting.push(SetBody(name, BodyRecord(provenance, style)))
@@ -159,12 +159,9 @@ class Morphing(QObject):
 
     def ask_file(self) -> None:
         """Ask for a closed body, and take it into the document."""
-        path, _ = QFileDialog.getOpenFileName(
-            self._window, self.tr("Open a closed body"), str(self._document.folder or ""),
-            self.tr("Bodies (*.stl *.obj *.ply *.ts *.step *.stp)"),
-        )  # fmt: skip
-        if path:
-            self._bodies.take_mesh(Path(path))
+        file = self._bodies.ask_mesh()
+        if file is not None:
+            self._bodies.take_mesh(file)
 
     def _previewed(self, view: MorphView, shapes: list[Any]) -> None:
         self.view = view

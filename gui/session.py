@@ -16,7 +16,7 @@ from geofit.data.verdict import verdict_of
 from geofit.gui.translate import shown_error, translated
 from geofit.project.commands import ChangeData, Command, SetSurface
 from geofit.project.document import Document
-from geofit.project.journal import Journal, Unfinished
+from geofit.project.journal import SessionJournal, Unfinished
 from geofit.project.state import State
 
 __all__ = ["Session"]
@@ -37,7 +37,7 @@ class Session(QObject):
         self.document = Document()
         self.stack = QUndoStack(self)
         self.folder = folder
-        self._journal: Journal | None = None
+        self._journal: SessionJournal | None = None
 
     def begin(
         self,
@@ -52,7 +52,7 @@ class Session(QObject):
         self.stack.clear()
         self.document.open(site, site_file, state, project_file, data)
         try:
-            self._journal = Journal(self.folder, self.document.state, site_file, project_file)
+            self._journal = SessionJournal(self.folder, self.document.state, site_file, project_file)
         except OSError as error:
             _LOG.warning(
                 message(

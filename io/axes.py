@@ -11,7 +11,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.io.rows import Rows
 
-__all__ = ["Region", "check_axes", "place_in", "region_of"]
+__all__ = ["Region", "check_axes", "grown_box", "place_in"]
 
 Floats = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ _CHUNK = 1 << 16
 Region = tuple[float, float, float, float]
 
 
-def region_of(xy: Floats) -> Region:
+def grown_box(xy: Floats) -> Region:
     """Return the box of (n, 2) places, grown on every side by its own diagonal."""
     low, high = xy.min(axis=0), xy.max(axis=0)
     margin = max(float(np.hypot(*(high - low))), 1.0)

@@ -224,7 +224,14 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
 
 
 def _angle(
-    fore: float, back: float, correct: float, correct_back: float, circular: bool, row: int, file: str, journal: Journal
+    fore: float,
+    back: float,
+    correct: float,
+    correct_back: float,
+    circular: bool,
+    row: int,
+    file: str,
+    journal: Journal,
 ) -> float:
     """Return the mean of foresight and backsight, corrected; nan if both are missing."""
     fore = fore + correct if abs(fore) < _MISSING else np.nan

@@ -14,7 +14,7 @@ from geofit.data.points import PointSet
 from geofit.data.site import ImportIssue
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
 from geofit.io.contact_rules import ContactRule, Limit, simplified
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.journal import Journal
 
 __all__ = ["Contacts", "Limit", "load_contacts", "load_rule", "take_contacts"]
@@ -85,7 +85,7 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
                 code=Untranslated(code),
                 names=", ".join(codes[:40]) or message("data.none", "none"),
             ),
-            nearest(code, codes, message("data.name-one", "Name one of them.")),
+            nearest_name(code, codes, message("data.name-one", "Name one of them.")),
             file=", ".join(log.file for log in boreholes.logs) or None,
         )
     for code in (one for one in rule.codes if one not in codes):
@@ -98,7 +98,7 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
                 code=Untranslated(code),
                 others=", ".join(one for one in rule.codes if one in codes),
             ),
-            nearest(code, codes, message("data.name-one", "Name one of them.")),
+            nearest_name(code, codes, message("data.name-one", "Name one of them.")),
             value=code,
         )
     found = []

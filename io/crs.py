@@ -12,7 +12,7 @@ from geofit.data.errors import InputError, MissingDependencyError
 from geofit.data.messages import message
 from geofit.io.extra import need
 
-__all__ = ["WGS84", "is_code", "project", "refuse_degrees"]
+__all__ = ["WGS84", "is_code", "project_places", "refuse_degrees"]
 
 Floats = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ def is_code(label: str | None) -> bool:
     )
 
 
-def project(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[Floats, Floats]:
+def project_places(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[Floats, Floats]:
     """Return easting and northing (n,) in metres; nan where a place is outside the projection.
 
     ``x`` is the easting or longitude, ``y`` the northing or latitude, whatever order the system itself has.

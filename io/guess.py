@@ -13,10 +13,10 @@ from geofit.data.errors import InputError
 from geofit.data.messages import Message, Untranslated, message
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, Schema, plain_name
 from geofit.io.guess_values import by_values
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.io.tables import Table, parse_numbers, shown
+from geofit.io.tables import Table, first_names, parse_numbers
 
 __all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as"]
 
@@ -299,7 +299,7 @@ def _stated(table: Table, schema: Schema, source: Source) -> dict[str, int]:
                     kind=schema.name,
                     role=Untranslated(role),
                 ),
-                nearest(role, roles, message("io.known-roles", "The roles are {names}.", names=", ".join(roles))),
+                nearest_name(role, roles, message("io.known-roles", "The roles are {names}.", names=", ".join(roles))),
                 file=table.name,
             )
         columns[role] = locate(table, role, wanted)
@@ -329,7 +329,7 @@ def locate(table: Table, role: str, wanted: str | int) -> int:
             "There is no column '{wanted}' for {role}; the columns are {names}",
             wanted=Untranslated(wanted),
             role=Untranslated(role),
-            names=shown(table.header),
+            names=first_names(table.header),
         ),
         message(
             "io.name-or-number-column",
@@ -361,7 +361,7 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
             "No column for {names} was found in this {kind} table; its columns are {found}",
             names=names,
             kind=schema.name,
-            found=shown(table.header),
+            found=first_names(table.header),
         )
         if table.named
         else message(

@@ -7,10 +7,10 @@ from difflib import get_close_matches
 
 from geofit.data.messages import Message, Untranslated, message
 
-__all__ = ["nearest"]
+__all__ = ["nearest_name"]
 
 
-def nearest(wanted: str, known: Iterable[str], all_of_them: Message, cutoff: float = 0.6) -> Message:
+def nearest_name(wanted: str, known: Iterable[str], all_of_them: Message, cutoff: float = 0.6) -> Message:
     """Return a remedy: the nearest of the known names where one comes near, then the sentence that names them all."""
     near = get_close_matches(wanted, list(known), 1, cutoff)
     if not near:

@@ -21,14 +21,14 @@ from geofit.io.rows import read_rows
 from geofit.io.sections import load_lines
 from geofit.io.source import Source
 
-__all__ = ["Part", "Plan", "campaigns", "complete", "look_at"]
+__all__ = ["ImportPlan", "TablePart", "campaigns", "complete", "look_at"]
 
 #: Kinds of which a site has one table.
 SINGLE = ("boundary", "ground", "adit path", "adit contacts")
 
 
 @dataclass
-class Part:
+class TablePart:
     """One table of one file, under the name that the site file uses; ``section`` is the line that it lies on."""
 
     name: str
@@ -39,14 +39,14 @@ class Part:
 
 
 @dataclass
-class Plan:
+class ImportPlan:
     """The parts that are used by kind, and what was set aside."""
 
-    parts: dict[str, list[Part]] = field(default_factory=dict)
+    parts: dict[str, list[TablePart]] = field(default_factory=dict)
     issues: list[ImportIssue] = field(default_factory=list)
     counts: list[TableCount] = field(default_factory=list)
 
-    def of(self, kind: str) -> list[Part]:
+    def of(self, kind: str) -> list[TablePart]:
         """Return the tables of a kind, in the order of the files."""
         return self.parts.get(kind, [])
 
@@ -77,7 +77,7 @@ class Plan:
         return False
 
 
-def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, plan: Plan) -> None:
+def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, plan: ImportPlan) -> None:
     """Preview a file and put its tables where they belong."""
     name = _relative(path, folder)
     if legible(name) != name:
@@ -101,7 +101,7 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
         mapping = replace(preview.mapping, file=name)
         if own is not None:
             mapping = replace(own, file=name, table=preview.table, columns={**mapping.columns, **own.columns})
-        part = Part(name, preview, mapping, part_source)
+        part = TablePart(name, preview, mapping, part_source)
         if preview.kind == "skip":
             plan.set_aside(
                 part_source.name,
@@ -160,7 +160,7 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
 _REMEDY = message("io.name-kind-in-mapping", "Name its kind and columns in a mapping file (--mapping).")
 
 
-def complete(plan: Plan) -> None:
+def complete(plan: ImportPlan) -> None:
     """Set aside what a site has no place for: second boundaries, surveys and sections without a line."""
     plan.of("ground").sort(key=lambda part: not any(word in part.source.path.stem.casefold() for word in _GROUND))
     for kind in SINGLE:
@@ -198,7 +198,7 @@ def complete(plan: Plan) -> None:
 _GROUND = ("ground", "dem", "dtm", "dgm", "topo", "terrain", "surface", "地面", "地形")
 
 
-def _rows_of(part: Part) -> int:
+def _rows_of(part: TablePart) -> int:
     """Return the rows of a table, and those of a grid, which a preview does not read."""
     if part.preview.kind != "ground":
         return part.preview.read
@@ -210,7 +210,7 @@ def _rows_of(part: Part) -> int:
     return journal.counts[0].read
 
 
-def _place_sections(plan: Plan) -> None:
+def _place_sections(plan: ImportPlan) -> None:
     """Keep sections and drawings whose file is named like a section line; other drawings are of unknown place."""
     lines: set[str] = set()
     for part in plan.of("section lines"):
@@ -253,11 +253,11 @@ def _place_sections(plan: Plan) -> None:
             plan.set_aside(part.source.name, part.preview.read, reason, remedy)
 
 
-def campaigns(plan: Plan) -> list[tuple[Part, Part | None, list[Part]]]:
+def campaigns(plan: ImportPlan) -> list[tuple[TablePart, TablePart | None, list[TablePart]]]:
     """Return each collar table with its survey and its interval tables: those that share most holes with it."""
     collars = plan.of("collar")
-    surveys: dict[int, Part] = {}
-    intervals: dict[int, list[Part]] = {}
+    surveys: dict[int, TablePart] = {}
+    intervals: dict[int, list[TablePart]] = {}
     holes = [_holes(part, "collar") for part in collars] if len(collars) > 1 else [set[str]()]
     for kind in ("survey", "intervals"):
         for part in list(plan.of(kind)):
@@ -283,7 +283,7 @@ def campaigns(plan: Plan) -> list[tuple[Part, Part | None, list[Part]]]:
     return [(collar, surveys.get(k), intervals.get(k, [])) for k, collar in enumerate(collars)]
 
 
-def _holes(part: Part, kind: str) -> set[str]:
+def _holes(part: TablePart, kind: str) -> set[str]:
     try:
         return set(read_rows(part.mapping.fill(part.source), SCHEMAS[kind], Journal()).text("hole"))
     except InputError:

@@ -13,7 +13,7 @@ from geofit.data.files import replacing
 from geofit.data.messages import Untranslated, message
 from geofit.data.numbers import shown
 from geofit.io.columns import SCHEMAS
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.source import Source
 from geofit.io.toml_file import parse_toml
 from geofit.io.toml_text import toml_key, toml_value
@@ -62,7 +62,9 @@ class ColumnMapping:
         if self.kind not in KINDS:
             raise InputError(
                 message("io.mapping-kind-unknown", "A mapping has no kind '{kind}'", kind=Untranslated(self.kind)),
-                nearest(self.kind, KINDS, message("io.known-kinds", "The kinds are {names}.", names=", ".join(KINDS))),
+                nearest_name(
+                    self.kind, KINDS, message("io.known-kinds", "The kinds are {names}.", names=", ".join(KINDS))
+                ),
                 file=self.file,
             )
 
@@ -200,7 +202,7 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
                 message(
                     "io.mapping-table-key-unknown", "[[table]] of a mapping has no key '{key}'", key=Untranslated(key)
                 ),
-                nearest(key, known, message("io.known-keys", "The keys are {names}.", names=", ".join(known))),
+                nearest_name(key, known, message("io.known-keys", "The keys are {names}.", names=", ".join(known))),
                 file=file,
                 column=key,
             )

@@ -14,7 +14,7 @@ from geofit.io.columns import ORIENTATIONS
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
-from geofit.io.tables import shown
+from geofit.io.tables import first_names
 
 __all__ = ["load_orientations"]
 
@@ -63,7 +63,7 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
             message(
                 "io.attitude-columns-missing",
                 "No columns for an attitude were found in this orientations table; its columns are {names}",
-                names=shown(rows.table.header),
+                names=first_names(rows.table.header),
             ),
             message("io.name-attitude-columns", "Name dip with azimuth or strike, or the normal nx, ny, nz."),
             file=rows.file,

@@ -12,8 +12,7 @@ from uuid import uuid4
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.files import file_stems
-from geofit.data.messages import message
+from geofit.data.files import file_stems, folder_for
 
 if TYPE_CHECKING:
     from geofit.fitting.horizon_fit import HorizonFit
@@ -56,15 +55,7 @@ def sha256_of(file: Path) -> str:
 
 
 def _stored(name: str, target: Path, ending: str, write: Callable[[Path], object]) -> tuple[str, str]:
-    folder, stem = file_folder(target), file_stems([name])[name]
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            message("data.folder-not-made", "The folder cannot be made: {error}", error=error.strerror or str(error)),
-            message("io.save-elsewhere", "Save elsewhere."),
-            file=str(folder),
-        ) from None
+    folder, stem = folder_for(file_folder(target)), file_stems([name])[name]
     # Its own name: another window may save the same project.
     draft = folder / f".{stem}.{uuid4().hex[:8]}.draft{ending}"
     try:

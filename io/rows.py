@@ -16,7 +16,7 @@ from geofit.data.labels import Labels
 from geofit.data.messages import EMPTY, Message, Untranslated, message
 from geofit.io.big_columns import BigColumn
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
-from geofit.io.crs import WGS84, is_code, project, refuse_degrees
+from geofit.io.crs import WGS84, is_code, project_places, refuse_degrees
 from geofit.io.formats import read_any_table
 from geofit.io.guess import WORDS, find_columns
 from geofit.io.journal import Journal, Severity
@@ -118,7 +118,7 @@ class Rows:
             refuse_degrees(crs, self.file)
         if not (is_code(crs) and is_code(target)) or crs is None or target is None:
             return x, y
-        east, north = project(x, y, crs, target, self.file)
+        east, north = project_places(x, y, crs, target, self.file)
         lost = np.isnan(east) & np.isfinite(x) & np.isfinite(y)
         for i in np.flatnonzero(lost & self.ok).tolist():
             reason = message(

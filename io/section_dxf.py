@@ -14,11 +14,11 @@ from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 
-__all__ = ["Drawn", "read_drawing"]
+__all__ = ["DrawnLines", "read_drawing"]
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class DrawnLines:
     """Vertices of the horizon lines in drawing order.
 
     ``xyz`` (n, 3) in drawing units, z nan where the drawing is flat; ``horizon`` the name of each, ``number``
@@ -39,7 +39,7 @@ class Drawn:
 
 def read_drawing(
     source: Source, horizons: HorizonNames, journal: Journal, *, scale_stated: bool, closed: bool = False
-) -> Drawn:
+) -> DrawnLines:
     """Read LWPOLYLINE, POLYLINE, LINE and POINT of the model space; everything else is listed.
 
     ``closed`` allows closed polylines (outcrops on a map). ``source.table`` chooses layers by a pattern.
@@ -106,4 +106,4 @@ def read_drawing(
             xyz.append(vertex)
             names.append(horizon)
             numbers.append(number)
-    return Drawn(np.array(xyz, dtype=np.float64).reshape(-1, 3), names, np.array(numbers, dtype=np.int64), listed)
+    return DrawnLines(np.array(xyz, dtype=np.float64).reshape(-1, 3), names, np.array(numbers, dtype=np.int64), listed)

@@ -19,7 +19,7 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Ground, Hole, Orientations, Site
 from geofit.io.added_tables import with_tables
 from geofit.io.adits import load_adit_contacts, load_adits
-from geofit.io.axes import Region, place_in, region_of
+from geofit.io.axes import Region, grown_box, place_in
 from geofit.io.boreholes import Boreholes, load_boreholes
 from geofit.io.boundary import load_boundary
 from geofit.io.contact_rules import ContactRule
@@ -27,7 +27,7 @@ from geofit.io.contacts import load_rule
 from geofit.io.crs import is_code
 from geofit.io.desurvey import METHODS
 from geofit.io.grid import load_grid, load_ground
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.horizon_columns import load_horizon_columns
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
@@ -247,12 +247,12 @@ def _site_area(
     boundary = ground = region = None
     if "ground" in top:
         ground = load_ground(reader.source(top["ground"], "[ground]", kind="ground"), journal)
-        region = region_of(np.array([[ground.x[0], ground.y[0]], [ground.x[-1], ground.y[-1]]]))
+        region = grown_box(np.array([[ground.x[0], ground.y[0]], [ground.x[-1], ground.y[-1]]]))
     if "boundary" in top:
         boundary = load_boundary(reader.source(top["boundary"], "[boundary]", kind="boundary"), journal)
         if region is not None:
             _compare(reader, boundary, region)
-        region = region_of(boundary)
+        region = grown_box(boundary)
     return boundary, ground, region
 
 
@@ -435,7 +435,7 @@ def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> Point
                     name=horizon.name,
                     kind=Untranslated(kind),
                 ),
-                nearest(kind, kinds, message("io.known-kinds", "The kinds are {names}.", names=", ".join(kinds))),
+                nearest_name(kind, kinds, message("io.known-kinds", "The kinds are {names}.", names=", ".join(kinds))),
                 kind,
             )
         accuracy[(points.kind == kind) & np.isnan(accuracy)] = value

@@ -11,7 +11,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.settings import FitSettings
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.mapping import ColumnMapping
 from geofit.io.source import Source
 
@@ -78,7 +78,7 @@ class Reader:
             if key not in allowed:
                 raise self.fail(
                     message("io.no-key", "{where} has no key '{key}'", where=where, key=Untranslated(key)),
-                    nearest(
+                    nearest_name(
                         key,
                         allowed,
                         message("io.known-keys", "The keys are {names}.", names=", ".join(allowed)),

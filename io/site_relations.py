@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from geofit.data.messages import Untranslated, message
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.site_keys import Reader
 
 __all__ = ["read_relations"]
@@ -53,7 +53,7 @@ def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horiz
                     where=where,
                     name=name,
                 ),
-                nearest(
+                nearest_name(
                     str(name),
                     horizons,
                     message("data.known-horizons", "The horizons are: {names}.", names=", ".join(horizons)),

@@ -17,7 +17,7 @@ from geofit.io.not_tables import require_table
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, quoted_cells, split_line
 from geofit.io.source import Source
 
-__all__ = ["MOST_COLUMNS", "Table", "parse_numbers", "read_table", "require_width", "shown", "unique_names"]
+__all__ = ["MOST_COLUMNS", "Table", "first_names", "parse_numbers", "read_table", "require_width", "unique_names"]
 
 Floats = NDArray[np.float64]
 
@@ -107,7 +107,7 @@ def read_table(source: Source, journal: Journal) -> Table:
     columns, numbers, malformed = _columns(lines, body, width, sep, source.name, journal)
     if not len(numbers) and not malformed:
         raise InputError(
-            message("io.file-without-rows", "The file has a header ({names}) but no rows", names=shown(header)),
+            message("io.file-without-rows", "The file has a header ({names}) but no rows", names=first_names(header)),
             message("io.export-table-with-rows", "Export the table again with its rows."),
             file=source.name,
         )
@@ -302,7 +302,7 @@ def require_width(width: int, file: str) -> None:
         )
 
 
-def shown(names: Sequence[str]) -> Message | str:
+def first_names(names: Sequence[str]) -> Message | str:
     """Return the first names of columns with commas, and how many there are more."""
     text = ", ".join(folded(name, 60) for name in names[:_SHOWN])
     return (

@@ -17,6 +17,7 @@ import try_wheel
 
 import geofit
 from geofit.data.distribution import DISTRIBUTION
+from geofit.data.terms import TERMS
 
 ROOT = Path(__file__).resolve().parents[1]
 
@@ -41,6 +42,8 @@ RESERVED = {
     "typer": ("geofit/cli/",),
     "rich": ("geofit/cli/",),
 }
+#: Names that are defined in several modules because they mean the same: a command is called what it runs.
+FAMILIES = {"main": "starts a program"} | dict.fromkeys(("check", "metaballs", "morph", "section"), "a command")
 HEAVY = ("scipy", "pandas", "shapely", "matplotlib", "pyvista", "vtkmodules", "OCP", "cadquery", "PySide6", "ezdxf")
 
 
@@ -199,6 +202,19 @@ def test_rooms_import_only_from_their_floor_and_below():
     assert not wrong, "\n".join(wrong)
 
 
+def test_a_public_name_is_defined_once():
+    """A reader who meets a name knows what it is, wherever it stands."""
+    homes = {}
+    for path, tree in sources().items():
+        for node in tree.body:
+            if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+                homes.setdefault(node.name, []).append(path)
+    twice = {name: paths for name, paths in homes.items() if len(paths) > 1 and name not in FAMILIES}
+    assert not twice, "say in the name what it is of:\n" + "\n".join(f"{n}: {', '.join(p)}" for n, p in twice.items())
+    gone = [name for name in FAMILIES if len(homes.get(name, ())) < 2]
+    assert not gone, f"no family any more: {gone}"
+
+
 def test_no_cycle_of_files():
     files = {module_of(path): tree for path, tree in sources().items()}
     graph = {}
@@ -332,6 +348,7 @@ def test_every_check_is_explained():
     assert not [
         name for name in names if f"| {name} |" not in page and f"{name}," not in page and f", {name} |" not in page
     ]
+    assert names <= TERMS, f"not in geofit/data/terms.py, so never translated: {sorted(names - TERMS)}"
 
 
 def test_the_readme_links_to_files_that_exist():

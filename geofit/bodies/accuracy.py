@@ -15,7 +15,7 @@ from geofit.data.messages import Message, message
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["BodyAccuracy", "crossed_pairs", "examine"]
+__all__ = ["BodyAccuracy", "crossed_pairs", "examine_body"]
 
 Floats = NDArray[np.float64]
 WORST = 20
@@ -53,7 +53,7 @@ class BodyAccuracy(Accuracy):
     open_sides: tuple[str, ...] = ()
 
 
-def examine(body: BodyFit) -> BodyAccuracy:
+def examine_body(body: BodyFit) -> BodyAccuracy:
     """Return the accuracy of a body."""
     data, settings = body.data, body.settings
     residuals = body.distance(data.contacts)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.posterior import Posterior
+from geofit.bodies.posterior import BodyPosterior
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.implicit.lattice import Lattice
@@ -88,5 +88,5 @@ def block_model(body: BodyFit, spacing: float | None = None) -> BlockModel:
     local = lattice.nodes()
     centres = local + body.origin
     return BlockModel(
-        centres, lattice.spacing, lattice.shape, body.field.value(local), Posterior(body).probability(centres)
+        centres, lattice.spacing, lattice.shape, body.field.value(local), BodyPosterior(body).probability(centres)
     )

@@ -99,9 +99,9 @@ class ImplicitBody:
 
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed orthogonal distance (n,) of (n, 3) places to the surface, metres, positive outside."""
-        from geofit.bodies.distance import signed_distance
+        from geofit.bodies.distance import body_distance
 
-        return signed_distance(self.field, self._local(xyz), self.spacing, lambda: self.overview)
+        return body_distance(self.field, self._local(xyz), self.spacing, lambda: self.overview)
 
     def triangulate(self, spacing: float | None = None) -> TriangleMesh:
         """Return the surface as a closed triangle mesh in map coordinates.

@@ -33,17 +33,6 @@ class _Path(Protocol):
         ...
 
 
-class _Log(Protocol):
-    @property
-    def hole(self) -> NDArray[np.str_]: ...
-    @property
-    def top(self) -> Floats: ...
-    @property
-    def base(self) -> Floats: ...
-    @property
-    def code(self) -> NDArray[np.str_]: ...
-
-
 class IntervalSource(Protocol):
     """Boreholes with their logs: :class:`geofit.io.boreholes.Boreholes`, or a campaign of a site."""
 

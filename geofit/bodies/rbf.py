@@ -165,10 +165,6 @@ class Saddle:
             parts.append(own - np.einsum("ij,ji->i", rows, self.solve_rows(rows)))
         return np.asarray(np.maximum(np.concatenate(parts), 0.0))
 
-    def weights_at(self, x: Floats) -> Floats:
-        """Return the (m, n + 3k) kriging weights: values at x per unit of each given value."""
-        return np.asarray(self.solve_rows(self.rows(x))[: len(self.points) + 3 * len(self.oriented)].T)
-
     def precision(self) -> Floats:
         """Return the diagonal (n + 3k,) of the inverse: one over the variance of each value left out."""
         size = len(self.points) + 3 * len(self.oriented)

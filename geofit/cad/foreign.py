@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from geofit.cad.handover import load_surfaces, refused, save_reason, save_surfaces
+from geofit.cad.handover import load_result, refused, save_reason, save_result
 from geofit.cad.imported import existing
 from geofit.data.errors import GeofitError, InputError, MissingDependencyError
 from geofit.data.legible import legible
@@ -94,7 +94,7 @@ def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
                     code=ended,
                 ),
             )
-        return load_surfaces(result, source)
+        return load_result(result, source)
 
 
 def child(arguments: Sequence[str]) -> int:
@@ -104,7 +104,7 @@ def child(arguments: Sequence[str]) -> int:
     module, function = READERS[reader]
     try:
         source = _readable(Path(path), Path(result).parent)
-        save_surfaces(Path(result), getattr(importlib.import_module(module), function)(source))
+        save_result(Path(result), getattr(importlib.import_module(module), function)(source))
     except InputError as error:
         save_reason(Path(result), reason=error.reason, remedy=error.remedy)
     except GeofitError as error:

@@ -21,7 +21,7 @@ from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.trimmed import TrimmedSurface
 
-__all__ = ["load_surfaces", "refused", "save_reason", "save_surfaces"]
+__all__ = ["load_result", "refused", "save_reason", "save_result"]
 
 
 def save_reason(target: Path, **reasons: Message) -> None:
@@ -38,7 +38,7 @@ def refused(source: Path, reason: Message) -> InputError:
     )
 
 
-def save_surfaces(target: Path, surfaces: Mapping[str, PatchSurface | TriangleMesh]) -> None:
+def save_result(target: Path, surfaces: Mapping[str, PatchSurface | TriangleMesh]) -> None:
     """Write surfaces, or that they have coordinates that are not finite."""
     arrays: list[NDArray[Any]] = []
 
@@ -103,7 +103,7 @@ def _write(target: Path, meta: Mapping[str, Any], arrays: Sequence[NDArray[Any]]
         np.savez(stream, allow_pickle=False, meta=text, **{f"a{k}": array for k, array in enumerate(arrays)})
 
 
-def load_surfaces(result: Path, source: Path) -> dict[str, Any]:
+def load_result(result: Path, source: Path) -> dict[str, Any]:
     """Return the surfaces that were read from ``source``.
 
     Raises

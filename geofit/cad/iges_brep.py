@@ -14,7 +14,7 @@ from typing import Any
 
 from geofit.cad.faces import faces_of
 from geofit.cad.foreign import read_in_child
-from geofit.cad.imported import FileShape, document, existing, no_faces, products, quiet, surface_of, unique_name
+from geofit.cad.imported import FileShape, empty_document, existing, no_faces, products, quiet, surface_of, unique_name
 from geofit.data.messages import message
 from geofit.surfaces.patch_surface import PatchSurface
 
@@ -45,7 +45,7 @@ def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     from OCP.IGESCAFControl import IGESCAFControl_Reader
 
     source = existing(path)
-    found = document()
+    found = empty_document()
     with _unit_of_metres(), quiet():
         reader = IGESCAFControl_Reader()
         reader.SetNameMode(True)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Self, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.cad.faces import along, edges_with_faces, faces_of, free_edges, free_loops
+from geofit.cad.faces import edge_places, edges_with_faces, faces_of, free_edges, free_loops
 from geofit.data.accuracy import Check, ReadBack, Seam
 from geofit.data.messages import Message, message
 from geofit.data.settings import FitSettings
@@ -364,7 +364,7 @@ def _outline_check(surface: Surface, shape: FileShape, free: list[Any], limit: f
     import shapely
 
     ring = shapely.LinearRing(surface.outline - surface.origin[:2])
-    points = np.concatenate([along(edge, 24)[:, :2] for edge in free])
+    points = np.concatenate([edge_places(edge, 24)[:, :2] for edge in free])
     off = float(shapely.distance(ring, shapely.points(points)).max())
     follows, short = (
         message("cad.free-edges-follow-outline", "the free edges follow the outline"),

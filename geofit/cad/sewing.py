@@ -74,7 +74,7 @@ def shell(surface: Surface) -> Any:
     sewing.Perform()
     sewn = sewing.SewedShape()
     if outline is not None and not exact:
-        sewn = trimming.cut(sewn, outline)
+        sewn = trimming.cut_along(sewn, outline)
     if sewn.IsNull():
         raise StitchError(
             message(

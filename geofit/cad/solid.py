@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from geofit.cad.faces import explore, faces_of, free_edges, from_geom, placement, to_geom
 from geofit.data.accuracy import Check
 from geofit.data.errors import InputError, StitchError
+from geofit.data.files import cannot_write
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
@@ -290,21 +291,17 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
     from geofit import __version__
-    from geofit.cad.imported import document, quiet
+    from geofit.cad.imported import empty_document, quiet
     from geofit.cad.step_text import canonical
 
     try:
         handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=".step")
     except OSError as error:
-        raise InputError(
-            message("data.file-not-written", "The file cannot be written: {error}", error=error.strerror or str(error)),
-            message("data.make-or-name-folder", "Make the folder, or name another."),
-            file=str(target),
-        ) from None
+        raise cannot_write(error, target) from None
     os.close(handle)
     try:
         with _parameters(nurbs=nurbs), quiet():
-            filled = document()
+            filled = empty_document()
             tool = XCAFDoc_DocumentTool.ShapeTool_s(filled.Main())
             assembly, product = tool.NewShape(), tool.AddShape(shape, False)
             for label, text in (

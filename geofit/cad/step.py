@@ -21,14 +21,14 @@ import numpy as np
 from geofit import __version__
 from geofit.cad.faces import faces_of, placement
 from geofit.cad.foreign import read_in_child
-from geofit.cad.imported import FileShape, document, existing, no_faces, products, quiet, surface_of
+from geofit.cad.imported import FileShape, empty_document, existing, no_faces, products, quiet, surface_of
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
 from geofit.cad.step_text import canonical
 from geofit.data.accuracy import ReadBack
 from geofit.data.columns import LARGEST
 from geofit.data.errors import InputError
-from geofit.data.files import replacing
+from geofit.data.files import cannot_write, replacing
 from geofit.data.legible import legible
 from geofit.data.messages import message
 from geofit.splines.patch import Patch
@@ -124,7 +124,7 @@ def store_step(surfaces: Mapping[str, Surface], path: str | PathLike[str], *, un
             )
     shells = {name: shell(surface) for name, surface in surfaces.items()}
     with _parameters(unit):
-        filled = document()
+        filled = empty_document()
         _fill(filled, surfaces, shells)
         _save(filled, [_patch_names(shells[name], s.patches) for name, s in surfaces.items()], target)
     return shells
@@ -169,7 +169,7 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
 
     source = existing(path)
     with _parameters(), quiet():
-        found = document()
+        found = empty_document()
         reader = STEPCAFControl_Reader()
         reader.SetNameMode(True)
         with _utf8_name(source) as name:
@@ -275,11 +275,7 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
         prefix = f".{target.stem if legible(target.stem) == target.stem else 'geofit'}-"
         handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=prefix, suffix=".step")
     except OSError as error:
-        raise InputError(
-            message("data.file-not-written", "The file cannot be written: {error}", error=error.strerror or str(error)),
-            message("data.make-or-name-folder", "Make the folder, or name another."),
-            file=str(target),
-        ) from None
+        raise cannot_write(error, target) from None
     os.close(handle)
     try:
         with quiet():

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.implicit_body import OwnField
-from geofit.caves.adjust import AdjustedSurvey, adjust
+from geofit.caves.adjust import AdjustedSurvey, adjust_survey
 from geofit.caves.sections import Sections, sections
 from geofit.caves.survey import Survey
 from geofit.data.errors import SettingsError
@@ -235,7 +235,7 @@ def centreline_body(
     Notes
     -----
     A section of four quarter ellipses at each station, swept to the next one, and a smooth union of the sweeps; loops
-    are adjusted first (:func:`geofit.caves.adjust`).
+    are adjusted first (:func:`geofit.caves.adjust_survey`).
     """
     if ends not in ("round", "flat"):
         raise SettingsError(
@@ -245,7 +245,7 @@ def centreline_body(
         raise SettingsError(
             message("caves.blend-or-radius-unusable", "The blend must be 0 or more, the radius above 0, in metres.")
         )
-    adjusted = adjust(survey) if isinstance(survey, Survey) else survey
+    adjusted = adjust_survey(survey) if isinstance(survey, Survey) else survey
     found = sections(adjusted, radius)
     sweeps = _sweeps(adjusted, found, ends)
     return PassageBody(adjusted, found, sweeps, float(np.median(sweeps.walls)) / 2 if blend is None else float(blend))

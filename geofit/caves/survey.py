@@ -112,7 +112,7 @@ class Survey:
                 message(
                     "caves.fixed-stations-unknown",
                     "The fixed stations {names} are not in the survey {survey}. Correct their names.",
-                    names=named(unknown),
+                    names=first_stations(unknown),
                     survey=Untranslated(self.name),
                 )
             )
@@ -177,7 +177,7 @@ class Survey:
         )
 
 
-def named(stations: list[str]) -> tuple[Untranslated, ...]:
+def first_stations(stations: list[str]) -> tuple[Untranslated, ...]:
     """Return station names for a message, the first few where there are many."""
     shown = [Untranslated(name) for name in stations[:_SHOWN]]
     if len(stations) > _SHOWN:

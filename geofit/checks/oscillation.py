@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from geofit.checks.lattice import Lattice
+from geofit.checks.lattice import PatchLattice
 from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
 from geofit.data.long_arrays import left_rows
@@ -49,7 +49,7 @@ NAMED = 20
 
 
 def oscillation(
-    surface: FittedSurface, parts: Sequence[Lattice], feet_of: Callable[[Ints], Projection], active: Bools
+    surface: FittedSurface, parts: Sequence[PatchLattice], feet_of: Callable[[Ints], Projection], active: Bools
 ) -> Check | None:
     """Compare the surface between its points with what the points support.
 
@@ -131,7 +131,7 @@ def _unit(vectors: Floats) -> Floats:
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300))
 
 
-def _places(parts: Sequence[Lattice]) -> tuple[Floats, Floats, Bools]:
+def _places(parts: Sequence[PatchLattice]) -> tuple[Floats, Floats, Bools]:
     """Choose middles of spans that show the gaps, and mark those that are asked: places, normals, asked."""
     points, normals, bends = [], [], []
     for part in (one.middles for one in parts):

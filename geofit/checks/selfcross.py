@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from geofit.checks.lattice import Lattice
+from geofit.checks.lattice import PatchLattice
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
@@ -27,7 +27,7 @@ TOUCH = 1e-6
 NAMED = 20
 
 
-def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
+def self_crossing(surface: FittedSurface, parts: Sequence[PatchLattice]) -> Check:
     """Look for places where the surface passes through itself.
 
     A height field over the map or over its best plane cannot: over each place of its frame it stands once. Any
@@ -71,7 +71,7 @@ def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     return Check("self-intersection", False, crossed, 0, "places", text, named)
 
 
-def _triangles(parts: Sequence[Lattice]) -> Floats:
+def _triangles(parts: Sequence[PatchLattice]) -> Floats:
     """Corners (m, 3, 3) of two triangles a cell of the lattices that the outline and the loops leave."""
     step = 1
     while sum(2 * (p.points.shape[0] // step) * (p.points.shape[1] // step) for p in parts) > MOST:

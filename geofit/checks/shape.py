@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.checks.lattice import Lattice, places
+from geofit.checks.lattice import PatchLattice, lattice_places
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
-from geofit.geometry.trim_loops import inside
+from geofit.geometry.trim_loops import inside_loops
 from geofit.splines.bspline import greville
 from geofit.splines.patch import Patch
 from geofit.surfaces.protocol import FittedSurface
@@ -37,7 +37,7 @@ NAMED = 20
 PIECES = 100
 
 
-def shape_checks(surface: FittedSurface, parts: Sequence[Lattice]) -> list[Check]:
+def shape_checks(surface: FittedSurface, parts: Sequence[PatchLattice]) -> list[Check]:
     """Look at the patches on their lattices: "normals", "patches", "elevation range", "area" where they apply."""
     checks = [_normals(surface, parts), _patches(surface)]
     if len(surface.points) and np.ptp(surface.points.xyz[:, 2]) > 0:
@@ -47,9 +47,9 @@ def shape_checks(surface: FittedSurface, parts: Sequence[Lattice]) -> list[Check
     return checks
 
 
-def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
+def _normals(surface: FittedSurface, parts: Sequence[PatchLattice]) -> Check:
     """Folds and flipped normals: a fold that is meant turns its normals; any other surface's look to one side."""
-    points, normal = places(parts)
+    points, normal = lattice_places(parts)
     if not len(points):
         points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
         normal = np.concatenate([p.normal.reshape(-1, 3) for p in parts])
@@ -134,7 +134,7 @@ def _collapsed(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
 def _held(patch: Patch, loops: tuple[Floats, ...]) -> NDArray[np.bool_]:
     """Which control points (nu, nv) stand inside the loops, by their Greville abscissae."""
     u, v = greville(patch.knots_u, patch.degree[0]), greville(patch.knots_v, patch.degree[1])
-    return inside(patch, loops, *np.meshgrid(u, v, indexing="ij"))
+    return inside_loops(patch, loops, *np.meshgrid(u, v, indexing="ij"))
 
 
 def _out_of_order(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
@@ -147,8 +147,8 @@ def _out_of_order(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
     return list(np.concatenate(found))
 
 
-def _elevation_range(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
-    points, _ = places(parts)
+def _elevation_range(surface: FittedSurface, parts: Sequence[PatchLattice]) -> Check:
+    points, _ = lattice_places(parts)
     if not len(points):
         points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
     z = surface.points.xyz[:, 2] - surface.origin[2]

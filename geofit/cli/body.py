@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
+from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
 from geofit.data.errors import InputError
 from geofit.data.messages import Message, message
@@ -25,7 +25,7 @@ __all__ = ["body", "print_body"]
 
 
 @app.command()
-@guarded
+@with_exit_code
 def body(
     source: Annotated[
         Path,

@@ -14,9 +14,9 @@ from uuid import uuid4
 
 from geofit.data.errors import InputError
 from geofit.data.legible import legible
-from geofit.data.messages import message
+from geofit.data.messages import Message, message
 
-__all__ = ["cannot_write", "file_stems", "is_file", "replacing", "spreadsheet_cell"]
+__all__ = ["cannot_write", "file_stems", "folder_for", "is_file", "replacing", "spreadsheet_cell"]
 
 _RESERVED = {"con", "prn", "aux", "nul", *(f"{port}{i}" for port in ("com", "lpt") for i in range(1, 10))}
 _LONGEST = 80
@@ -57,20 +57,42 @@ def replacing(path: str | os.PathLike[str]) -> Iterator[Path]:
 
 def cannot_write(error: OSError, path: str | os.PathLike[str]) -> InputError:
     """Return an error of the system as one that names the file and what to do about it."""
+    reason = message("data.file-not-written", "The file cannot be written: {error}", error=error.strerror or str(error))
+    return InputError(reason, _remedy(error), file=legible(str(path)))
+
+
+def folder_for(path: str | os.PathLike[str]) -> Path:
+    """Create a folder for results if it is missing, and return it.
+
+    Raises
+    ------
+    InputError
+        If the system refuses, with the folder's name and the remedy.
+    """
+    folder = Path(path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        reason = message(
+            "data.folder-not-made", "The folder cannot be made: {error}", error=error.strerror or str(error)
+        )
+        raise InputError(reason, _remedy(error), file=legible(str(folder))) from None
+    return folder
+
+
+def _remedy(error: OSError) -> Message:
     match error.errno:
         case errno.ENOSPC | errno.EDQUOT | errno.EFBIG:
-            remedy = message("data.make-room-on-disk", "Make room on the disk, or name another folder.")
+            return message("data.make-room-on-disk", "Make room on the disk, or name another folder.")
         case errno.ENOENT | errno.ENOTDIR:
-            remedy = message("data.make-or-name-folder", "Make the folder, or name another.")
-        case errno.ENAMETOOLONG | errno.EINVAL:
-            remedy = message("data.choose-another-name", "Choose another name.")
+            return message("data.make-or-name-folder", "Make the folder, or name another.")
+        case errno.ENAMETOOLONG | errno.EINVAL | errno.EEXIST:
+            return message("data.choose-another-name", "Choose another name.")
         case _:
-            remedy = message(
+            return message(
                 "data.name-writable-folder",
                 "Name a folder that you may write to, and close the file in other programs.",
             )
-    reason = message("data.file-not-written", "The file cannot be written: {error}", error=error.strerror or str(error))
-    return InputError(reason, remedy, file=legible(str(path)))
 
 
 def is_file(path: str | os.PathLike[str]) -> bool:

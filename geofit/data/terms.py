@@ -236,6 +236,7 @@ TERMS: frozenset[str] = frozenset(
         "sections",
         "self-intersection",
         "sides",
+        "sigma",
         "site file's [[horizon]] list",
         "smooth",
         "solids",

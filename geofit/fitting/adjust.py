@@ -15,7 +15,7 @@ from geofit.fitting.net import Net
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.skin import regularized_correction
 
-__all__ = ["adjust", "pull_to_worst"]
+__all__ = ["adjust_locally", "pull_to_worst"]
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 SHARE = 0.7
 
 
-def adjust(model: Model, surface: HorizonFit) -> HorizonFit:
+def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
     """Adjust locally until sigma is below epsilon or no step helps, and say which."""
     given = model.problem
     for step in range(given.settings.max_iterations + 1):

@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from geofit.data.messages import Message, message
-from geofit.fitting.split import Rectangle, Split, split_none, widened, within
+from geofit.fitting.split import Rectangle, Split, in_rectangle, split_none, widened
 
 __all__ = ["CLOUD", "split_auto"]
 
@@ -61,7 +61,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         )
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
     # The points of the box, not of the cluster: the edges may be drawn in to one section.
-    length, width = extents(plane[cluster][within(plane[cluster], (low[0], high[0], low[1], high[1]))])
+    length, width = extents(plane[cluster][in_rectangle(plane[cluster], (low[0], high[0], low[1], high[1]))])
     if width < LINE * length and drawn is not None and drawn.sum() >= FEWEST:
         # A few sections near to each other; the others are farther apart, and part of the core all the same.
         cluster = np.flatnonzero(drawn)
@@ -81,7 +81,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
             ),
         )
     core = widened((low[0], high[0], low[1], high[1]), plane, area)
-    inside = within(plane, core)
+    inside = in_rectangle(plane, core)
     if inside.all():
         return _uniform(plane, area, message("fitting.dense-points-fill-area", "the dense points fill the area"))
     if inside.sum() > MOST:

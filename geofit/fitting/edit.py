@@ -19,7 +19,7 @@ from geofit.data.columns import LARGEST
 from geofit.data.errors import ExactnessError, FitError
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite, shown
-from geofit.fitting.assemble import Part, divide
+from geofit.fitting.assemble import NetPart, divide
 from geofit.fitting.model import Model
 from geofit.fitting.skin import minimum_norm_correction
 from geofit.geometry.projection import project
@@ -341,7 +341,7 @@ def _straight() -> FitError:
     )
 
 
-def _part(model: Model, patch: str) -> Part:
+def _part(model: Model, patch: str) -> NetPart:
     given, net = model.problem, model.net
     parts = divide(net.space, net.core, given.parametrization.frame, given.split.core is not None).parts
     for part in parts:
@@ -357,11 +357,11 @@ def _part(model: Model, patch: str) -> Part:
     )
 
 
-def _shape(part: Part) -> tuple[int, int]:
+def _shape(part: NetPart) -> tuple[int, int]:
     return part.rows.stop - part.rows.start, part.columns.stop - part.columns.start
 
 
-def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
+def _coefficient(model: Model, part: NetPart, i: int, j: int) -> tuple[int, float]:
     """Return the coefficient of the whole net that moves a patch's control point most, and by which share."""
     rows, columns = _shape(part)
     whole = all(isinstance(k, (int, np.integer)) for k in (i, j))
@@ -407,11 +407,11 @@ def _exact(model: Model) -> NDArray[np.bool_]:
     return model.problem.split.inside & model.problem.kept
 
 
-def _weighed(model: Model) -> list[tuple[Part, Floats]]:
+def _weighed(model: Model) -> list[tuple[NetPart, Floats]]:
     return [(_part(model, name), weights) for name, weights in model.weights.items()]
 
 
-def _touches(part: Part, weights: Floats, acting: NDArray[np.bool_], model: Model) -> bool:
+def _touches(part: NetPart, weights: Floats, acting: NDArray[np.bool_], model: Model) -> bool:
     """Tell whether a weight other than 1 belongs to one of the coefficients."""
     return any(acting[_coefficient(model, part, int(i), int(j))[0]] for i, j in np.argwhere(weights != 1))
 

@@ -21,7 +21,16 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.fitting.assemble import multiply_knots
 from geofit.fitting.density import CLOUD
-from geofit.fitting.field import ENOUGH, Field, Smoothed, choose, plane_trend, precision_band, relative_noise, smooth
+from geofit.fitting.field import (
+    ENOUGH,
+    FieldChoice,
+    Smoothed,
+    choose_covariance,
+    plane_trend,
+    precision_band,
+    relative_noise,
+    smooth,
+)
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
@@ -40,7 +49,7 @@ __all__ = [
     "choose_field",
     "degree_for",
     "even_space",
-    "gather",
+    "gather_points",
     "in_patches",
 ]
 
@@ -87,7 +96,7 @@ class Net:
     core: Rectangle | None
     lines: Floats | None
     unit: float
-    field: Field
+    field: FieldChoice
     rounds: int
     limit: float
     notes: tuple[Message, ...]
@@ -113,7 +122,7 @@ class Data:
         return np.asarray(plane_coefficients(space) @ self.trend)
 
 
-def gather(
+def gather_points(
     points: PointSet,
     parametrization: Parametrization,
     kept: NDArray[np.bool_],
@@ -185,8 +194,8 @@ def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpac
     return rows[0] * rows[1]
 
 
-def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, TensorSpace]:
-    """Choose the regional field, and the even space that resolves it (see :func:`geofit.fitting.field.choose`).
+def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldChoice, TensorSpace]:
+    """Choose the regional field (:func:`geofit.fitting.field.choose_covariance`) and the even space that resolves it.
 
     Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and
     noise on the first level. Its spans are halved in area while the likelihood gains by it, down to those that the
@@ -197,27 +206,29 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, T
     limit = min(most, LAST_LEVEL)
     count = min(FIRST_LEVEL, limit)
     space, sketch = (even_space(data.area, EVEN, degree, most) for most in (count, SKETCH))
-    known: list[Field] = []
+    known: list[FieldChoice] = []
     if sketch.size < space.size:
         some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
-        found = choose(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
+        found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
         known = [one for one, _ in found]
-    field, value = choose(space, data.plane, data.value, noise, given, known, data.trend)[0]
+    field, value = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)[0]
     while 2 * count <= limit:
         count *= 2
         finer = even_space(data.area, EVEN, degree, count)
         if finer.size < 1.3 * space.size:
             break
-        better, reached = choose(finer, data.plane, data.value, noise, given, [field], data.trend)[0]
+        better, reached = choose_covariance(finer, data.plane, data.value, noise, given, [field], data.trend)[0]
         if reached > value - GAIN:
             break
         space, field, value = finer, better, reached
     if data.slopes is not None and len(data.slopes):
-        field = choose(space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise)[0][0]
+        field = choose_covariance(
+            space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise
+        )[0][0]
     return field, space
 
 
-def smoothed(data: Data, space: TensorSpace, field: Field) -> Smoothed:
+def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
     """Return a chosen field on a space."""
     weight = inverse_squares(relative_noise(data.accuracy))
     return smooth(space, field, data.plane, data.value, weight, data.trend, data.slopes)
@@ -262,7 +273,7 @@ class Periphery:
     data: Data
     outer: NDArray[np.bool_]
     core: Rectangle | None
-    field: Field
+    field: FieldChoice
     settings: FitSettings
     most: int
     refit: bool

@@ -20,7 +20,7 @@ from geofit.fitting.fold import Loft, backtracking, loft
 from geofit.fitting.sections import section_labels
 from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
 
-__all__ = ["STEEP", "Parametrization", "box_of", "direction_of", "parametrize"]
+__all__ = ["STEEP", "Parametrization", "direction_of", "parametrize", "plan_box"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -100,7 +100,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
     upright = kind == "best-plane"
     frame = best_plane_frame(points) if upright else map_frame(points, direction_of(section, points, boundary))
     local = frame.to_local(points.xyz)
-    area = box_of(local[:, :2])
+    area = plan_box(local[:, :2])
     notes = [reason]
     if section is not points.section and (section != "").any():
         lines = len(np.unique(section[section != ""]))
@@ -121,7 +121,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
                 ).with_severity("warning")
             )
         ends = [end(axis) for axis in local[:, :2].T for end in (np.min, np.max)]
-        area = box_of(np.concatenate([np.reshape(ends, (2, 2)).T, corners]))
+        area = plan_box(np.concatenate([np.reshape(ends, (2, 2)).T, corners]))
     placed = np.ones(len(points), bool)
     return Parametrization(frame, local[:, :2], local[:, 2], area, tuple(notes), placed, section)
 
@@ -213,11 +213,11 @@ def _parametrize_over_sections(points: PointSet, reason: Message) -> Parametriza
         raise FitError(text)
     frame = replace(map_frame(points), kind="sections")
     local = frame.to_local(points.xyz)
-    area = box_of(surface.plane[surface.on_line])
+    area = plan_box(surface.plane[surface.on_line])
     return Parametrization(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
 
 
-def box_of(plane: Floats) -> Rectangle:
+def plan_box(plane: Floats) -> Rectangle:
     """Return the rectangle of (n, 2) places, at least a strip wide."""
     low, high = (np.array([end(axis) for axis in plane.T]) for end in (np.min, np.max))
     # A line of points still needs a strip to stand on.

@@ -18,7 +18,7 @@ from geofit.data.messages import message
 from geofit.implicit.field import Box, points_of
 from geofit.implicit.kernels import Potential, potential
 
-__all__ = ["Metaballs", "metaballs"]
+__all__ = ["Metaballs", "spherical_metaballs"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -180,7 +180,7 @@ class Metaballs:
         return (self.threshold - highest) / self.slope_scale, (self.threshold - lowest) / self.slope_scale
 
 
-def metaballs(
+def spherical_metaballs(
     centres: ArrayLike,
     radii: ArrayLike,
     densities: ArrayLike = 1.0,

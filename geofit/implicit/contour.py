@@ -9,10 +9,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
+from geofit.geometry.chains import chains_of
 from geofit.implicit.field import Field
 from geofit.implicit.roots import roots_between
 
-__all__ = ["Contour", "contours"]
+__all__ = ["Contour", "field_contours"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -34,7 +35,7 @@ class Contour:
     closed: bool
 
 
-def contours(
+def field_contours(
     field: Field, origin: ArrayLike, along: ArrayLike, up: ArrayLike, *, size: tuple[float, float], spacing: float
 ) -> tuple[Contour, ...]:
     """Return the lines in which the surface of a field meets a rectangle of a plane.
@@ -94,7 +95,8 @@ def contours(
     xyz = flat[first] + share[:, None] * step
     pairs = _segments(field, nodes, inside, number)
     order = np.argsort(edge)
-    return _lines(xyz, order[np.searchsorted(edge[order], pairs)])
+    pairs = order[np.searchsorted(edge[order], pairs)]
+    return tuple(_line(xyz, chain) for chain in chains_of(pairs, len(xyz)))
 
 
 def _segments(field: Field, nodes: Floats, inside: NDArray[np.bool_], number: Ints) -> Ints:
@@ -117,25 +119,6 @@ def _segments(field: Field, nodes: Floats, inside: NDArray[np.bool_], number: In
     return np.concatenate(pairs)
 
 
-def _lines(xyz: Floats, pairs: Ints) -> tuple[Contour, ...]:
-    """Join pairs of vertices to lines; every vertex is in one or two pairs."""
-    joined: list[list[int]] = [[] for _ in xyz]
-    for i, j in pairs.tolist():
-        joined[i].append(j)
-        joined[j].append(i)
-    seen = np.zeros(len(xyz), bool)
-    lines = []
-    ends = [i for i, others in enumerate(joined) if len(others) == 1]
-    for begin in [*ends, *range(len(xyz))]:
-        if seen[begin] or not joined[begin]:
-            continue
-        line = [begin]
-        seen[begin] = True
-        while True:
-            onward = [j for j in joined[line[-1]] if not seen[j]]
-            if not onward:
-                break
-            line.append(onward[0])
-            seen[onward[0]] = True
-        lines.append(Contour(xyz[line], len(joined[begin]) == 2))
-    return tuple(lines)
+def _line(xyz: Floats, chain: Ints) -> Contour:
+    closed = bool(chain[0] == chain[-1])
+    return Contour(xyz[chain[:-1] if closed else chain], closed)

@@ -13,7 +13,7 @@ from geofit.data.progress import Progress, tell
 from geofit.data.site import ImportIssue, Site
 from geofit.io.added_tables import tables_text, with_tables
 from geofit.io.horizons import HorizonNames
-from geofit.io.import_plan import Plan, complete, look_at
+from geofit.io.import_plan import ImportPlan, complete, look_at
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
 from geofit.io.site_file import build_site, read_site
@@ -63,7 +63,7 @@ def add_files(
     InputError
         If no file can be used, with the reason for the first; or if a file cannot be read.
     """
-    plan, folder = Plan(), site_file.resolve().parent
+    plan, folder = ImportPlan(), site_file.resolve().parent
     known = {(folder / name).resolve() for name in site.inputs}
     for k, file in enumerate(files):
         tell(progress, "inspect files", 0.3 * k / len(files))

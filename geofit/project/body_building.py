@@ -19,7 +19,7 @@ from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite
 from geofit.data.progress import Progress, tell
 from geofit.implicit.mesh import TriangleMesh
-from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Frame, Intervals, Outlines, Picks
+from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Intervals, MorphFrame, Outlines, Picks
 from geofit.project.body_sources import file_digest, read_source
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def make_body(
             result, given = _fitted(source, settings, name, campaigns, folder, progress)
         case ClosedMesh(file):
             result, given = BodyResult(read_mesh_body(folder / file, name)), file_digest(folder / file)
-        case Frame():
+        case MorphFrame():
             made = [
                 make_body(end.source, end.settings, one, campaigns, folder, {}, None)
                 for end, one in zip(source.ends, source.names, strict=True)
@@ -189,7 +189,7 @@ def measured_strata(result: BodyResult, horizons: Mapping[str, Any], *, progress
     return replace(result, strata=strata_table(body, over) if over else (), divided_by=tuple(over))
 
 
-def frame_of(source: Frame, ends: Sequence[Any], name: str, progress: Progress | None = None) -> MorphBody:
+def frame_of(source: MorphFrame, ends: Sequence[Any], name: str, progress: Progress | None = None) -> MorphBody:
     """Return the frame of a metamorphosis between bodies."""
     from geofit.morphing.morph import morph
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from geofit.data.messages import Message, message
-from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, Frame
+from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, MorphFrame
 from geofit.project.command import Command
 from geofit.project.provenance import DocumentError
 from geofit.project.state import State
@@ -35,7 +35,7 @@ class SetBody(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        if isinstance(self.record.provenance.source, Frame):
+        if isinstance(self.record.provenance.source, MorphFrame):
             return message("project.step-body-frame", "Take a frame as body {name}", name=self.name)
         if isinstance(self.record.provenance.source, ClosedMesh):
             return message("project.step-body-read", "Read body {name}", name=self.name)

@@ -11,25 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from geofit.data.accuracy import plain
-from geofit.data.files import cannot_write, replacing
+from geofit.data.files import replacing
 from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["folder_for", "write_figures", "write_triangles"]
-
-
-def folder_for(out: Path) -> Path:
-    """Create a folder for results if it is missing, and return it.
-
-    Raises
-    ------
-    InputError
-        If the system refuses.
-    """
-    try:
-        out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise cannot_write(error, out) from None
-    return out
+__all__ = ["write_figures", "write_triangles"]
 
 
 def write_triangles(triangles: TriangleMesh, stem: Path, origin: ArrayLike = (0.0, 0.0, 0.0)) -> tuple[Path, ...]:

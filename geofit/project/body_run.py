@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from geofit.bodies.fit import fit_body
 from geofit.bodies.settings import BodySettings
 from geofit.data.accuracy import plain
-from geofit.data.files import file_stems
+from geofit.data.files import file_stems, folder_for
 from geofit.data.messages import Message
 from geofit.data.progress import Progress, tell
-from geofit.project.body_files import folder_for, write_figures, write_triangles
+from geofit.project.body_files import write_figures, write_triangles
 
 if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy

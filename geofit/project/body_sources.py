@@ -21,7 +21,15 @@ if TYPE_CHECKING:
     from geofit.bodies.outlines import Outline
     from geofit.data.site import ImportIssue, Site
 
-__all__ = ["SourceData", "codes_of", "file_digest", "given_of_logs", "outline_layers", "read_source", "site_codes"]
+__all__ = [
+    "SourceData",
+    "file_digest",
+    "given_of_logs",
+    "interval_codes",
+    "outline_layers",
+    "read_source",
+    "site_codes",
+]
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,10 +101,10 @@ def site_codes(file: Path, *, progress: Progress) -> dict[str, int]:
     InputError
         If the file cannot be read, or its site has no interval tables.
     """
-    return codes_of(_campaigns(file, progress))
+    return interval_codes(_campaigns(file, progress))
 
 
-def codes_of(campaigns: Sequence[Any]) -> dict[str, int]:
+def interval_codes(campaigns: Sequence[Any]) -> dict[str, int]:
     """Return the codes of interval tables with how often each occurs, the most frequent first."""
     counts: dict[str, int] = {}
     for log in (log for campaign in campaigns for log in campaign.logs):

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from geofit.data.accuracy import plain
-from geofit.data.errors import InputError
-from geofit.data.files import file_stems, replacing
+from geofit.data.files import file_stems, folder_for, replacing
 from geofit.data.legible import legible
-from geofit.data.messages import Message, message
+from geofit.data.messages import Message
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 
@@ -98,15 +97,7 @@ def run_cloud(
     settings = FitSettings(**(changes or {}))
     name = cloud.horizon or legible(cloud.path.stem)
     stem = out / file_stems([name])[name]
-    state = stem.with_name(stem.name + "_state")
-    try:
-        state.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(
-            message("data.folder-not-made", "The folder cannot be made: {error}", error=error.strerror or str(error)),
-            message("project.name-other-folder", "Name another one with --out."),
-            file=str(out),
-        ) from None
+    state = folder_for(stem.with_name(stem.name + "_state"))
     spool = spooled(cloud.chunks(), state, cloud.key, cloud.total, _within(progress, 0.0, READ))
     rows = _rows(cloud, spool.n, state, stem)
     fit = fit_cloud(spool.xyz(), settings, boundary, _within(progress, READ, FITTED), name=name, folder=state)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from geofit.data.errors import InputError
-from geofit.data.files import file_stems, replacing
+from geofit.data.files import file_stems, folder_for, replacing
 from geofit.data.languages import EN, Language, translate
 from geofit.data.messages import message
 from geofit.data.points import PointSet
@@ -151,7 +151,7 @@ def write_comparisons(found: dict[str, Comparison], out: Path, t: Language = EN)
     from geofit.io.export.grids import write_esri
     from geofit.report.pictures import draw_change
 
-    out.mkdir(parents=True, exist_ok=True)
+    folder_for(out)
     files = []
     for one, stem in zip(found.values(), file_stems(found).values(), strict=True):
         picture, grid, table = (out / f"{stem}{end}" for end in ("_moved.png", "_moved.asc", "_new_contacts.csv"))

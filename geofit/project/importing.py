@@ -10,7 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from geofit.data.errors import InputError
-from geofit.data.files import replacing
+from geofit.data.files import folder_for, replacing
 from geofit.data.languages import EN, Language, translate
 from geofit.data.legible import legible
 from geofit.data.messages import Message, Untranslated, message
@@ -22,7 +22,7 @@ from geofit.io.columns import SCHEMAS
 from geofit.io.contacts import load_contacts
 from geofit.io.grid import load_ground
 from geofit.io.guess import taken_as
-from geofit.io.import_plan import Part, Plan, campaigns, complete, look_at
+from geofit.io.import_plan import ImportPlan, TablePart, campaigns, complete, look_at
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
 from geofit.io.site_file import build_site
@@ -110,9 +110,8 @@ def import_files(
             message("data.choose-another-name", "Choose another name."),
             file=legible(str(site_file)),
         )
-    folder = site_file.parent
-    folder.mkdir(parents=True, exist_ok=True)
-    plan = Plan()
+    folder = folder_for(site_file.parent)
+    plan = ImportPlan()
     for i, file in enumerate(files):
         tell(progress, "inspect files", 0.3 * i / len(files))
         look_at(Path(file), folder, mappings, crs, plan)
@@ -142,7 +141,7 @@ def import_files(
     return Import(site, site_file, mapping_file, issue_file, issues, counts)
 
 
-def _guesses(plan: Plan) -> list[ImportIssue]:
+def _guesses(plan: ImportPlan) -> list[ImportIssue]:
     """Return a note for each guess that the mapping file now states."""
     notes = []
     for part in (part for parts in plan.parts.values() for part in parts):
@@ -180,7 +179,7 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
 
 
 def _horizons(
-    plan: Plan,
+    plan: ImportPlan,
     site_file: Path,
     mapping_file: Path,
     crs: str,
@@ -207,7 +206,7 @@ def _horizons(
     return limits + [{"name": name} for name in others if name.casefold() not in limited]
 
 
-def _ground(plan: Plan) -> Ground | None:
+def _ground(plan: ImportPlan) -> Ground | None:
     for part in plan.of("ground")[:1]:
         try:
             return load_ground(part.mapping.fill(part.source), Journal())
@@ -216,7 +215,7 @@ def _ground(plan: Plan) -> Ground | None:
     return None
 
 
-def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[str, Any]]:
+def _limits(plan: ImportPlan, base: Sequence[str], top: Sequence[str]) -> list[dict[str, Any]]:
     """Return the limits that are asked for, or the base of each code with enough contacts, the highest first."""
     pairs = [*(("base", code) for code in base), *(("top", code) for code in top)]
     asked = [{"name": _name(limit, code), limit: code} for limit, code in pairs]
@@ -279,11 +278,11 @@ def _label(site_file: Path, mapping_file: Path, crs: str) -> dict[str, Any]:
     return {"name": site_file.stem, **({"crs": crs} if crs else {}), "mapping": mapping_file.name}
 
 
-def _parts(plan: Plan) -> list[Part]:
+def _parts(plan: ImportPlan) -> list[TablePart]:
     return [part for parts in plan.parts.values() for part in parts if part.preview.kind in SCHEMAS]
 
 
-def _read(tables: Tables, plan: Plan, site_file: Path) -> Site:
+def _read(tables: Tables, plan: ImportPlan, site_file: Path) -> Site:
     """Read the site that the tables describe, before anything is written."""
     top: dict[str, Any] = {}
     for head, table in tables:
@@ -294,7 +293,7 @@ def _read(tables: Tables, plan: Plan, site_file: Path) -> Site:
     return build_site(top, site_file, Journal(), mappings=[part.mapping for part in _parts(plan)])
 
 
-def _write(tables: Tables, plan: Plan, site_file: Path, mapping_file: Path) -> None:
+def _write(tables: Tables, plan: ImportPlan, site_file: Path, mapping_file: Path) -> None:
     """Write the mapping and the site file that refers to it."""
     parts = _parts(plan)
     remarks = {

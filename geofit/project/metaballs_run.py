@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from geofit.data.accuracy import plain
-from geofit.data.files import file_stems, replacing
+from geofit.data.files import file_stems, folder_for, replacing
 from geofit.data.progress import Progress, tell
-from geofit.project.body_files import folder_for, write_figures, write_triangles
+from geofit.project.body_files import write_figures, write_triangles
 
 if TYPE_CHECKING:
     from geofit.medial.fit import FittedMetaballs

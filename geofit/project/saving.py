@@ -37,7 +37,7 @@ __all__ = [
     "project_of",
     "read_again",
     "read_project",
-    "read_surfaces",
+    "read_saved_surfaces",
     "save_state",
     "saved_data",
     "site_for_work",
@@ -160,7 +160,9 @@ def save_state(
     return Written(path, state, write_project(project, path, new_surfaces(project, surfaces), meshes))
 
 
-def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Provenance, HorizonFit]:
+def read_saved_surfaces(
+    project: Project, folder: Path, site: Site, *, progress: Progress
+) -> dict[Provenance, HorizonFit]:
     """Read and check the surfaces of a project whose horizons the site still has."""
     tell(progress, "read STEP", 0.0)
     found = saved_surfaces(project, folder)

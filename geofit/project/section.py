@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
+from geofit.data.files import folder_for
 from geofit.data.messages import message
 from geofit.sampling.cut import CutLine, cut_section, section_line
 from geofit.surfaces.protocol import Surface
@@ -50,7 +51,7 @@ def section(
             ),
             message("project.give-map-coordinates", "Give it in the surfaces' map coordinates, metres."),
         )
-    out.mkdir(parents=True, exist_ok=True)
+    folder_for(out)
     files = [out / name for name in ("section.dxf", "section_3d.dxf", "section.csv", "section.png")]
     write_section_dxf(cuts, files[0])
     write_section_dxf(cuts, files[1], drawn=False)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from geofit.project.body_run import BodyRun
     from geofit.project.pores_run import PoresRun
     from geofit.report.body_chapter import BodyFindings
-    from geofit.report.document import Chapter, Document
+    from geofit.report.document import Chapter, ReportDocument
 
 __all__ = [
     "BodyPart",
@@ -77,7 +77,7 @@ def _findings(
     progress: Progress | None = None,
 ) -> tuple[BodyFindings, dict[str, bytes]]:
     from geofit.bodies.crossval import leave_one_hole_out
-    from geofit.bodies.drilling import suggest_holes
+    from geofit.bodies.drilling import suggest_body_holes
     from geofit.bodies.strata import strata_table
     from geofit.report.body_chapter import BodyFindings
     from geofit.report.body_pictures import draw_body
@@ -109,7 +109,7 @@ def _findings(
     )
     tell(progress, "suggested boreholes", 0.7)
     suggested = tried(
-        lambda: suggest_holes(body, SUGGESTED), none, message("project.task-suggested", "where to drill next")
+        lambda: suggest_body_holes(body, SUGGESTED), none, message("project.task-suggested", "where to drill next")
     )
     tell(progress, "pictures", 0.8)
     images, no_space = draw_body(body, t)
@@ -244,7 +244,7 @@ def write_pores_report(
     return _written(document, images, out, name)
 
 
-def _written(document: Document, images: Mapping[str, bytes], out: Path, name: str) -> tuple[Path, Path]:
+def _written(document: ReportDocument, images: Mapping[str, bytes], out: Path, name: str) -> tuple[Path, Path]:
     from geofit.data.files import file_stems
     from geofit.report.html import write_html
     from geofit.report.pdf import write_pdf

@@ -10,9 +10,9 @@ from typing import Literal
 from fpdf import FPDF
 from fpdf.fonts import TTFFont
 
-from geofit.report.style import TEXT
+from geofit.report.style import TEXT, rgb
 
-__all__ = ["POINT", "Pen", "Typesetter", "rgb"]
+__all__ = ["POINT", "Pen", "Typesetter"]
 
 Align = Literal["left", "right", "centre"]
 
@@ -28,11 +28,6 @@ DROP = 0.35
 
 
 @lru_cache(maxsize=512)
-def rgb(colour: str) -> tuple[int, int, int]:
-    """Return red, green and blue of #rrggbb."""
-    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
-
-
 class Pen:
     """How a text looks: size in points, colour, weight, family."""
 

@@ -30,7 +30,7 @@ __all__ = [
     "horizon_scene",
     "mesh_scene",
     "network_scene",
-    "require_opengl",
+    "require_rendering",
     "site_scene",
 ]
 
@@ -233,7 +233,7 @@ def _raised(surfaces: Sequence[HorizonFit]) -> int:
 
 
 def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
-    require_opengl()
+    require_rendering()
     import pyvista
 
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
@@ -244,7 +244,7 @@ def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
     return plotter
 
 
-def require_opengl() -> None:
+def require_rendering() -> None:
     """Raise a :class:`MissingDependencyError` if there is no OpenGL library; choose EGL where there is no screen."""
     if not opengl_found():
         raise MissingDependencyError(NO_OPENGL)

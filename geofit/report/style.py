@@ -31,7 +31,8 @@ __all__ = [
     "drawing",
     "horizon_colours",
     "kind_style",
-    "quiet",
+    "quiet_axes",
+    "rgb",
 ]  # fmt: skip
 
 TEXT, MUTED, LINE, PAPER = "#1c2733", "#5d6b7a", "#d4dae1", "#ffffff"
@@ -58,6 +59,11 @@ HORIZONS = COLOURS
 _NEAR = ("#8f8f8a", "#8d8d88")
 _BELOW = (("#90c4e6", "#2a7fbd", "#08335a"), ("#2c69a8", "#55aef2", "#cdecff"))
 _ABOVE = (("#f4b97f", "#d5701a", "#742603"), ("#95521a", "#f08d2a", "#ffe09a"))
+
+
+def rgb(colour: str) -> tuple[int, int, int]:
+    """Return red, green and blue of #rrggbb, 0 to 255."""
+    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
 
 
 def kind_style(kind: str) -> tuple[str, str]:
@@ -141,7 +147,7 @@ def drawing(size: float = 9.0) -> Iterator[None]:
         yield
 
 
-def quiet(axes: Axes) -> None:
+def quiet_axes(axes: Axes) -> None:
     """Leave only the axes that carry numbers."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(length=3, width=0.8)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.geometry.chains import chains_of
 from geofit.geometry.mesh import Mesh
 from geofit.splines.patch import Patch
 from geofit.surfaces.protocol import Surface
@@ -69,30 +70,7 @@ def plane_lines(surface: Surface, mesh: Mesh, normal: Floats, offset: float) -> 
     if surface.patches:
         refined = _refined(surface.patches, patch, np.concatenate(uvs)[first], points, normal, offset)
     pairs = number.reshape(2, -1).T
-    return [refined[chain] for chain in _chains(pairs, len(edges))]
-
-
-def _chains(pairs: Ints, count: int) -> list[Ints]:
-    """Join pieces (start, end) at common ends: open lines from their loose ends first, then rings."""
-    ways: list[list[int]] = [[] for _ in range(count)]
-    for k, (a, b) in enumerate(pairs.tolist()):
-        ways[a].append(k)
-        ways[b].append(k)
-    used = np.zeros(len(pairs), bool)
-    ends = pairs.tolist()
-    chains = []
-    for start in [n for n in range(count) if len(ways[n]) == 1] + list(range(count)):
-        way = next((k for k in ways[start] if not used[k]), None)
-        if way is None:
-            continue
-        chain = [start]
-        while way is not None:
-            used[way] = True
-            a, b = ends[way]
-            chain.append(b if chain[-1] == a else a)
-            way = next((k for k in ways[chain[-1]] if not used[k]), None)
-        chains.append(np.array(chain))
-    return chains
+    return [refined[chain] for chain in chains_of(pairs, len(edges))]
 
 
 def _refined(

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from geofit.geometry.chains import chains_of
 from geofit.sampling.cut import section_line
 
 if TYPE_CHECKING:
@@ -87,24 +88,4 @@ def _loops(along: Floats, height: Floats, beside: Floats, triangles: Ints) -> li
     share = beside[known[:, 0]] / (beside[known[:, 0]] - beside[known[:, 1]])
     ends = np.stack([along, height], axis=1)
     places = ends[known[:, 0]] + share[:, None] * (ends[known[:, 1]] - ends[known[:, 0]])
-    return [places[chain] for chain in _chains(node.tolist()) if len(chain) > 2]
-
-
-def _chains(links: list[list[int]]) -> list[list[int]]:
-    """Return closed chains of nodes that each have two links."""
-    beside: dict[int, list[int]] = {}
-    for a, b in links:
-        beside.setdefault(a, []).append(b)
-        beside.setdefault(b, []).append(a)
-    chains, seen = [], set[int]()
-    for start in beside:
-        if start in seen:
-            continue
-        chain, node = [start], start
-        seen.add(start)
-        while free := [other for other in beside[node] if other not in seen]:
-            node = free[0]
-            seen.add(node)
-            chain.append(node)
-        chains.append(chain)
-    return chains
+    return [places[chain] for chain in chains_of(node, len(known)) if len(chain) > 3]

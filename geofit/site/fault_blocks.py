@@ -23,7 +23,7 @@ from geofit.data.site import Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
 from geofit.site.dips import within
-from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, size
+from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, longer_side
 from geofit.site.height_field import HeightField
 from geofit.site.throw import FaultCut, Sides, throws
 
@@ -274,7 +274,9 @@ def fit_block(
         return np.asarray(centre[2] + slope[0] * (x - centre[0]) + slope[1] * (y - centre[1]))
 
     guess = _cut(area, plane, faults, sides, name)
-    widened = _largest(shapely.intersection(shapely.buffer(guess, BEYOND * size(area), join_style="mitre"), area))
+    widened = _largest(
+        shapely.intersection(shapely.buffer(guess, BEYOND * longer_side(area), join_style="mitre"), area)
+    )
     corners = shapely.get_coordinates(widened.exterior)[:-1]
     measured = within(*dips, guess, name)
     surface = fit_horizon(points, settings, corners, progress, name=name, orientations=measured)
@@ -293,7 +295,7 @@ def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, t
     for fault, sign in zip(faults, sides, strict=True):
         pieces = [rest]
         for line in fault.traces(area, height):
-            whole = longer(line, BEYOND_TRACE * size(area))
+            whole = longer(line, BEYOND_TRACE * longer_side(area))
             cut = (one for piece in pieces for one in split(piece, shapely.LineString(whole)).geoms)
             pieces = [one for one in cut if isinstance(one, shapely.Polygon)]
         inner = shapely.get_coordinates([shapely.point_on_surface(piece) for piece in pieces])

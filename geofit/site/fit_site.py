@@ -28,7 +28,7 @@ from geofit.site.site_checks import add_site_checks
 from geofit.site.throw import FaultCut
 from geofit.streaming.executors import run_tasks
 
-__all__ = ["SiteFit", "compare", "fit_site"]
+__all__ = ["SiteFit", "compare_in_order", "fit_site"]
 
 
 @dataclass(eq=False)
@@ -279,7 +279,7 @@ def _separate_horizons(site: Site, found: SiteFit) -> None:
     found.moved, found.contradictions = dict(done.moved), done.contradictions
 
 
-def compare(site: Site, found: SiteFit) -> tuple[Order, ...]:
+def compare_in_order(site: Site, found: SiteFit) -> tuple[Order, ...]:
     """Compare every two horizons of the site's order; of faulted ones the blocks on the same side of their faults.
 
     Raises

@@ -15,7 +15,7 @@ from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.height_field import HeightField
-from geofit.site.overlap import Crossing, Overlap
+from geofit.site.overlap import HorizonCrossing, Overlap
 
 __all__ = ["Order", "compare_horizons", "orders", "require_sequence", "thickness"]
 
@@ -38,7 +38,7 @@ class Order:
     max: float
     thinnest: tuple[float, float]
     thickest: tuple[float, float]
-    crossings: tuple[Crossing, ...]
+    crossings: tuple[HorizonCrossing, ...]
 
     @property
     def crossed_area(self) -> float:

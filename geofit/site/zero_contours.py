@@ -7,6 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from geofit.geometry.chains import chains_of
+
 __all__ = ["lattice_triangles", "zero_contours"]
 
 Floats = NDArray[np.float64]
@@ -59,7 +61,7 @@ def zero_contours(
     ends, number = np.unique(np.sort(edges[crossed], axis=1), axis=0, return_inverse=True)
     inner = np.where(low[ends[:, :1]], ends, ends[:, ::-1])
     vertex = _halved(places[inner[:, 0]], places[inner[:, 1]], function, halvings)
-    lines = [vertex[chain] for chain in _chains(number.reshape(-1, 2), len(ends))]
+    lines = [vertex[chain] for chain in chains_of(number.reshape(-1, 2), len(ends))]
     return sorted(lines, key=lambda line: -float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum()))
 
 
@@ -70,23 +72,3 @@ def _halved(low: Floats, high: Floats, function: Callable[[Floats, Floats], Floa
         negative = (function(middle[:, 0], middle[:, 1]) < 0)[:, None]
         low, high = np.where(negative, middle, low), np.where(negative, high, middle)
     return (low + high) / 2
-
-
-def _chains(pairs: Ints, count: int) -> list[list[int]]:
-    """Join pieces at common ends: open lines from their loose ends first, then rings."""
-    neighbours: list[list[int]] = [[] for _ in range(count)]
-    for a, b in pairs.tolist():
-        neighbours[a].append(b)
-        neighbours[b].append(a)
-    loose = [k for k in range(count) if len(neighbours[k]) == 1]
-    chains = []
-    for start in [*loose, *range(count)]:
-        chain = [start]
-        while neighbours[chain[-1]]:
-            here, there = chain[-1], neighbours[chain[-1]][0]
-            neighbours[here].remove(there)
-            neighbours[there].remove(here)
-            chain.append(there)
-        if len(chain) > 1:
-            chains.append(chain)
-    return chains

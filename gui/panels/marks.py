@@ -9,17 +9,13 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QIcon, QPainter, QPainterPath, QPalette, QPen, QPixmap, QPolygonF
 
 from geofit.data.verdict import Level
+from geofit.gui.theme import is_dark
 from geofit.report.style import FAIL, PASS, QUIET, WARNING
 
-__all__ = ["icon", "is_dark", "level_mark", "readable", "verdict_mark"]
+__all__ = ["icon", "level_mark", "readable", "verdict_mark"]
 
 _SIZE = 16
 _RATIOS = (1.0, 1.25, 1.5, 2.0)
-
-
-def is_dark(palette: QPalette) -> bool:
-    """Whether the palette's windows are dark."""
-    return palette.color(QPalette.ColorRole.Window).lightness() < 128
 
 
 def readable(colour: str, palette: QPalette) -> QColor:

@@ -147,12 +147,6 @@ class ProjectTree(QWidget):
         target = self._target(self.view.indexAt(at))
         return target[1] if target is not None and target[0] == "body" else None
 
-    def choose_body(self, name: str) -> None:
-        """Go to a body; nothing is emitted."""
-        self._silent = True
-        self._go(("body", name))
-        self._silent = False
-
     def choose_horizon(self, name: str) -> None:
         """Go to a horizon; nothing is emitted."""
         self._silent = True

@@ -8,7 +8,8 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QSizePolicy, QWidget
 
 from geofit.data.accuracy import Accuracy
 from geofit.data.verdict import Lamp, Level, Verdict, verdict_of
-from geofit.gui.panels.marks import is_dark, level_mark, paint, readable
+from geofit.gui.panels.marks import level_mark, paint, readable
+from geofit.gui.theme import is_dark
 from geofit.gui.translate import translated
 from geofit.report.digits import count, given, metres
 from geofit.report.style import FAIL, PASS, QUIET, WARNING

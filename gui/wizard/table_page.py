@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.gui.panels.marks import is_dark
+from geofit.gui.theme import is_dark
 from geofit.gui.translate import failure
 from geofit.gui.wizard.draft import Draft
 from geofit.gui.wizard.words import kind_name, role_name

@@ -13,12 +13,14 @@ from geofit.data.errors import InputError
 from geofit.data.files import replacing
 from geofit.data.messages import message
 from geofit.io.extra import need
-from geofit.sampling.contours import Contour
+from geofit.sampling.contours import ContourLine
 
 __all__ = ["write_contours_gpkg"]
 
 
-def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | PathLike[str], crs: str = "") -> None:
+def write_contours_gpkg(
+    contours: Mapping[str, Sequence[ContourLine]], path: str | PathLike[str], crs: str = ""
+) -> None:
     """Write a layer ``contours`` of lines with the fields ``horizon`` and ``elevation``.
 
     Parameters

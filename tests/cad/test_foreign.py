@@ -16,7 +16,7 @@ from surfaces import horizon, nine
 
 from geofit.cad import foreign
 from geofit.cad.foreign import READERS, child, read_in_child
-from geofit.cad.handover import load_surfaces, save_surfaces
+from geofit.cad.handover import load_result, save_result
 from geofit.cad.iges_brep import brep_surfaces
 from geofit.cad.step import read_step, step_surfaces, write_step
 from geofit.data.errors import InputError
@@ -66,8 +66,8 @@ def test_what_is_written_is_loaded_with_weights_and_loops(tmp_path):
     loops = ((np.arange(6.0).reshape(3, 2),), *((),) * (len(patches) - 1))
     surface = horizon([weighed, *patches[1:]], name="坝")
     cut = TrimmedSurface(surface.patches, surface.origin, "坝", trim_loops=loops)
-    save_surfaces(tmp_path / "r.npz", {"坝": cut})
-    same(load_surfaces(tmp_path / "r.npz", Path("x")), {"坝": cut})
+    save_result(tmp_path / "r.npz", {"坝": cut})
+    same(load_result(tmp_path / "r.npz", Path("x")), {"坝": cut})
 
 
 @pytest.mark.skipif(not HOSTILE.is_dir(), reason="the hostile files are not here (GEOFIT_DATA)")
@@ -114,9 +114,9 @@ def test_coordinates_that_are_no_numbers_are_refused(tmp_path):
     control[0, 0, 0] = np.nan
     from dataclasses import replace
 
-    save_surfaces(tmp_path / "r.npz", {"a": horizon([replace(patch, control=control)])})
+    save_result(tmp_path / "r.npz", {"a": horizon([replace(patch, control=control)])})
     with pytest.raises(InputError) as refused:
-        load_surfaces(tmp_path / "r.npz", Path("x"))
+        load_result(tmp_path / "r.npz", Path("x"))
     assert refused.value.code == "cad.not-finite"
 
 

@@ -65,7 +65,7 @@ def test_trimmed_shell_keeps_its_seams_and_follows_the_outline(outline, seams_le
     assert occ.free_loops(shape) == 1
     ring = shapely.LinearRing(outline)
     for edge in occ.free_edges(shape):
-        line = occ.along(edge, 50)
+        line = occ.edge_places(edge, 50)
         assert shapely.distance(ring, shapely.points(line[:, :2])).max() < 1e-6
         np.testing.assert_allclose(line[:, 2], whole.evaluate(line[:, 0], line[:, 1])[:, 2], atol=1e-6)
     import cadquery
@@ -89,7 +89,7 @@ def test_a_fold_is_cut_by_a_prism():
     parts = split(patch, [u[18]], [])
     shape = shell(horizon(parts, outline=[(-500, 40), (1000, 40), (1000, 250), (-500, 250)]))
     assert occ.free_loops(shape) == 1
-    y = np.concatenate([occ.along(edge, 20)[:, 1] for edge in occ.free_edges(shape)])
+    y = np.concatenate([occ.edge_places(edge, 20)[:, 1] for edge in occ.free_edges(shape)])
     assert 40 - 0.01 <= y.min() <= y.max() <= 250 + 0.01
 
 

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from geofit.caves.adjust import adjust
+from geofit.caves.adjust import adjust_survey
 from geofit.caves.body import centreline_body
 from geofit.data.errors import InputError
 from geofit.io.compass import read_compass
@@ -44,7 +44,7 @@ def test_fulford_is_read_in_full(fulford):
 
 
 def test_fulford_closes_its_loops(fulford):
-    adjusted = adjust(read_compass(fulford))
+    adjusted = adjust_survey(read_compass(fulford))
     assert len(adjusted.loops) == 260 - 247 + 1
     assert len(np.unique(adjusted.survey.part_of())) == 1
     assert max(loop.percent for loop in adjusted.loops) < 6

@@ -245,8 +245,8 @@ def test_one_switch_fades_what_no_data_support_in_view_and_section(shown, qtbot)
 
 
 def test_holes_show_their_lithology_in_view_and_section_in_the_same_colours(shown, qtbot):
-    from geofit.gui.view3d.colouring import rgb
     from geofit.report.section_pages import lithology_style
+    from geofit.report.style import rgb
     from geofit.site.hole_logs import hole_intervals, log_files
 
     site, layers = shown.document.site, shown.view.layers

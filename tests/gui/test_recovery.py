@@ -18,7 +18,7 @@ from geofit.data.settings import FitSettings
 from geofit.project.building import make
 from geofit.project.commands import MoveToPoint, RenameSite, SetSettings, SetSurface
 from geofit.project.document import Document
-from geofit.project.journal import FORMAT, Journal, unfinished
+from geofit.project.journal import FORMAT, SessionJournal, unfinished
 
 CHILD = Path(__file__).with_name("cut_off.py")
 KILLS = 60
@@ -35,7 +35,7 @@ def child_module():
 cut_off = child_module()
 
 
-def killed(journal: Journal) -> Path:
+def killed(journal: SessionJournal) -> Path:
     """Return a folder with the journals that the end of the process leaves: nobody holds them."""
     left = shutil.copytree(journal.path.parent, journal.path.parent / "killed")
     journal.end()
@@ -81,7 +81,7 @@ def test_a_session_killed_at_any_moment_comes_back(tmp_path):
 
 def test_a_journal_cut_after_any_byte_gives_a_prefix(tmp_path):
     player = cut_off.Player(None)
-    journal = Journal(tmp_path, player.document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, player.document.state, Path("site.toml"), None)
     player.journal = journal
     expected = [player.document.state]
     for step in cut_off.steps(7):
@@ -111,7 +111,7 @@ def test_a_journal_cut_after_any_byte_gives_a_prefix(tmp_path):
 def test_a_damaged_line_ends_what_is_brought_back(tmp_path):
     document = Document()
     document.open(cut_off.tiny_site(), Path("site.toml"))
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
     for name in "abc":
         command = RenameSite(name)
         command.redo(document)
@@ -127,7 +127,7 @@ def test_a_damaged_line_ends_what_is_brought_back(tmp_path):
 def test_the_journal_of_a_living_session_is_left_alone(tmp_path):
     document = Document()
     document.open(cut_off.tiny_site(), Path("site.toml"))
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
     command = RenameSite("here")
     command.redo(document)
     journal.done(command)
@@ -139,7 +139,7 @@ def test_the_journal_of_a_living_session_is_left_alone(tmp_path):
 def test_what_was_saved_is_not_offered(tmp_path):
     document = Document()
     document.open(cut_off.tiny_site(), Path("site.toml"))
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
     command = RenameSite("saved")
     command.redo(document)
     journal.done(command)
@@ -153,7 +153,7 @@ def test_what_was_saved_is_not_offered(tmp_path):
 def test_surfaces_come_back_to_the_last_bit(tmp_path):
     document = Document()
     document.open(cut_off.tiny_site(), Path("site.toml"))
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
 
     def do(command):
         command.redo(document)
@@ -216,7 +216,7 @@ def test_a_journal_that_cannot_be_read_is_kept_and_blocks_no_other(tmp_path, dat
     strange = tmp_path / "session-1-0.journal"
     strange.write_bytes(data)
     document = Document()
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
     journal.done(RenameSite("another"))
     left = killed(journal)
     (session,) = unfinished(left)

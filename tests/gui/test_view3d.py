@@ -24,9 +24,8 @@ from geofit.data.accuracy import Seam
 from geofit.data.errors import SettingsError
 from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.site import Ground, Hole, Orientations, Section, Site
-from geofit.gui.view3d.colouring import rgb
 from geofit.project.provenance import Row
-from geofit.report.style import HORIZONS
+from geofit.report.style import HORIZONS, rgb
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 

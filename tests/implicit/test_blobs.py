@@ -71,7 +71,7 @@ def test_bezier_ordinates_of_wyvill_along_a_ray_are_those_of_nishita() -> None:
 
 def test_rays_through_a_ball_lose_no_root() -> None:
     rng = np.random.default_rng(1)
-    ball = implicit.metaballs([[0, 0, 0]], 1.0, kernel="wyvill")
+    ball = implicit.spherical_metaballs([[0, 0, 0]], 1.0, kernel="wyvill")
     n, radius = 100_000, ball.kernel.iso_radius(0.5)
     direction = rng.normal(size=(n, 3))
     direction /= np.linalg.norm(direction, axis=1)[:, None]
@@ -116,7 +116,9 @@ def test_compiled_sums_are_those_of_numpy(name: str) -> None:
 )
 def test_two_balls_fuse_at_their_distance(kernel: str, threshold: float, density: float, distance: float) -> None:
     def components(d: float) -> int:
-        body = implicit.metaballs([[-d / 2, 0, 0], [d / 2, 0, 0]], 1.0, density, kernel=kernel, threshold=threshold)
+        body = implicit.spherical_metaballs(
+            [[-d / 2, 0, 0], [d / 2, 0, 0]], 1.0, density, kernel=kernel, threshold=threshold
+        )
         # A node at the middle, where they touch first.
         lattice = implicit.Lattice([-2.6, -1.2, -1.2], 0.1, (53, 25, 25))
         return implicit.isosurface(body, lattice).components
@@ -130,7 +132,7 @@ def test_two_balls_fuse_at_their_distance(kernel: str, threshold: float, density
 
 
 def test_a_negative_ball_makes_a_hollow() -> None:
-    body = implicit.metaballs([[0, 0, 0], [0, 0, 0]], [2.0, 1.0], [2.0, -2.5])
+    body = implicit.spherical_metaballs([[0, 0, 0], [0, 0, 0]], [2.0, 1.0], [2.0, -2.5])
     mesh = implicit.isosurface(body, implicit.Lattice.around([-2] * 3, [2] * 3, cells=48))
     assert mesh.components == 2
     assert mesh.euler == 4
@@ -139,9 +141,9 @@ def test_a_negative_ball_makes_a_hollow() -> None:
 
 def test_balls_without_a_surface_are_refused() -> None:
     with pytest.raises(SettingsError, match="empty"):
-        implicit.metaballs([[0, 0, 0]], 1.0, 0.3)
+        implicit.spherical_metaballs([[0, 0, 0]], 1.0, 0.3)
     with pytest.raises(SettingsError, match="choose one of"):
-        implicit.metaballs([[0, 0, 0]], 1.0, kernel="gauss")
+        implicit.spherical_metaballs([[0, 0, 0]], 1.0, kernel="gauss")
 
 
 RADIAL = {

@@ -28,7 +28,7 @@ FIELDS = {
     "torus": implicit.Torus([0, 0, 0], [0, 1, 1], 1.0, 0.3),
     "curve": implicit.CurveTube(LINE, 0.2),
     "round cones": implicit.RoundCones(LINE, [0.1, 0.4, 0.2, 0.5]),
-    **{f"balls {k}": implicit.metaballs(BALLS, 0.7, np.where(np.arange(8) == 3, -1, 1.2), kernel=k)
+    **{f"balls {k}": implicit.spherical_metaballs(BALLS, 0.7, np.where(np.arange(8) == 3, -1, 1.2), kernel=k)
        for k in implicit.POTENTIALS},
     **{f"segments {k}": implicit.Convolution(FORK, [0.3, 0.2, 0.25], k) for k in ("compact", "gauss", "cauchy")},
     "union": implicit.union(A, B),

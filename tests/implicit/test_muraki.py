@@ -12,7 +12,7 @@ from geofit.implicit.ball_energy import ELLIPSOID, SPHERE, Balls, Energy, halves
 
 
 def blinn(centres: object, a: object, b: object) -> implicit.Metaballs:
-    return implicit.metaballs(centres, 1 / np.sqrt(a), b, kernel="blinn", threshold=1.0)
+    return implicit.spherical_metaballs(centres, 1 / np.sqrt(a), b, kernel="blinn", threshold=1.0)
 
 
 def samples(body: implicit.Field, count: int) -> tuple[np.ndarray, np.ndarray]:

@@ -93,7 +93,7 @@ def test_unbounded_slopes_and_zero_directions_are_refused() -> None:
 def test_contour_of_a_torus_on_an_inclined_plane_is_on_both() -> None:
     torus = implicit.Torus([0, 0, 0], [0, 0, 1], 1.0, 0.3)
     along, up = np.array([1.0, 0, 0.2]), np.array([-0.2, 0, 1.0])
-    lines = implicit.contours(torus, [-1.5, 0.01, -1.0], along, up, size=(3.2, 2.2), spacing=0.05)
+    lines = implicit.field_contours(torus, [-1.5, 0.01, -1.0], along, up, size=(3.2, 2.2), spacing=0.05)
     assert len(lines) == 2
     for line in lines:
         assert line.closed
@@ -103,17 +103,17 @@ def test_contour_of_a_torus_on_an_inclined_plane_is_on_both() -> None:
 
 def test_level_contours_have_the_lengths_of_their_circles_and_open_lines_end_at_the_side() -> None:
     torus = implicit.Torus([0, 0, 0], [0, 0, 1], 1.0, 0.3)
-    lines = implicit.contours(torus, [-1.5, -1.5, 0], [1, 0, 0], [0, 1, 0], size=(3, 3), spacing=0.02)
+    lines = implicit.field_contours(torus, [-1.5, -1.5, 0], [1, 0, 0], [0, 1, 0], size=(3, 3), spacing=0.02)
     rings = [np.append(line.xyz, line.xyz[:1], axis=0) for line in lines]
     lengths = sorted(float(np.linalg.norm(np.diff(ring, axis=0), axis=1).sum()) for ring in rings)
     assert lengths == pytest.approx([2 * math.pi * 0.7, 2 * math.pi * 1.3], rel=1e-4)
-    half = implicit.contours(torus, [0, -1.5, 0], [1, 0, 0], [0, 1, 0], size=(3, 3), spacing=0.02)
+    half = implicit.field_contours(torus, [0, -1.5, 0], [1, 0, 0], [0, 1, 0], size=(3, 3), spacing=0.02)
     assert [line.closed for line in half] == [False, False]
     assert all(np.allclose(line.xyz[[0, -1], 0], 0) for line in half)
 
 
 def test_saddles_are_joined_through_the_sign_of_their_middle() -> None:
     saddle = implicit.FunctionField(lambda x: x[:, 0] * x[:, 1] - 0.001, lambda x: x[:, [1, 0, 2]])
-    lines = implicit.contours(saddle, [-1, -1, 0], [1, 0, 0], [0, 1, 0], size=(2, 2), spacing=2 / 7)
+    lines = implicit.field_contours(saddle, [-1, -1, 0], [1, 0, 0], [0, 1, 0], size=(2, 2), spacing=2 / 7)
     assert len(lines) == 2
     assert all((line.xyz[:, 0] > 0).all() or (line.xyz[:, 0] < 0).all() for line in lines)

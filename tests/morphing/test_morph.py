@@ -64,7 +64,9 @@ def test_the_hole_opens_once_and_when_it_has_to(mode: str, opens: float, share: 
 def test_no_islands_appear_where_both_surfaces_meet() -> None:
     m = geofit.morph(BALL, RING, cells=48, pace="time")
     for tau, lines in ((0.02, 1), (0.3, 1), (0.6, 1), (0.8, 2), (0.95, 2)):
-        found = implicit.contours(m(tau).field, [-0.85, 0, -0.6], [1, 0, 0], [0, 0, 1], size=(1.7, 1.2), spacing=0.01)
+        found = implicit.field_contours(
+            m(tau).field, [-0.85, 0, -0.6], [1, 0, 0], [0, 0, 1], size=(1.7, 1.2), spacing=0.01
+        )
         assert len(found) == lines
 
 
