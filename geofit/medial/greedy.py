@@ -208,7 +208,7 @@ def _room(body: NDArray[np.bool_]) -> Ints:
     """Return what the body voxels of each block lack, in fixed point: nothing is covered yet."""
     wide = np.pad(body, [(0, -n % BLOCK) for n in body.shape])
     a, b, c = (n // BLOCK for n in wide.shape)
-    return UNIT * wide.reshape(a, BLOCK, b, BLOCK, c, BLOCK).sum(axis=(1, 3, 5), dtype=np.int64)
+    return np.asarray(UNIT * wide.reshape(a, BLOCK, b, BLOCK, c, BLOCK).sum(axis=(1, 3, 5)), np.int64)
 
 
 @cache

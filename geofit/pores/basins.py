@@ -253,7 +253,7 @@ def _key(level: int, basin: int) -> int:
 def _widest(
     space: PackedSpace,
     keys: NDArray[np.int64],
-    here: int,
+    here: Any,
     by_edges: int,
     by_corners: int,
     offsets: NDArray[np.int64],

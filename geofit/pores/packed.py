@@ -71,7 +71,7 @@ def row_of_three(space: PackedSpace, here: int) -> tuple[int, int]:
     if offset > 61:
         three |= space.bits[word + 1] << np.uint64(64 - offset)
     below = first & ((np.uint64(1) << np.uint64(offset)) - np.uint64(1))
-    return np.int64(space.before[word]) + _bit_count(below), np.int64(three & np.uint64(7))
+    return int(space.before[word]) + int(_bit_count(below)), int(three & np.uint64(7))
 
 
 @njit(cache=True)

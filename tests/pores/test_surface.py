@@ -53,7 +53,7 @@ def test_boxes_bound_their_values(berea):
     assert (inside <= high + 1e-12).all()
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=1000, deadline=None)
 @given(st.floats(0.6, 1.6), st.floats(8, 40))
 def test_the_blend_stays_between_the_union_and_its_bound(gap, kappa):
     """Never inside the union of two balls, and outside it by no more than R (sqrt(1 + ln 2 / kappa) - 1)."""
