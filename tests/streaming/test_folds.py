@@ -1,4 +1,4 @@
-"""Folds of the cross-validation on several processes or a Dask cluster: the errors are those of one process to the last bit."""
+"""Folds of the cross-validation on several processes or a Dask cluster: the same errors, to the last bit."""
 
 from __future__ import annotations
 
