@@ -240,6 +240,13 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
     say(f"""`python benchmarks/scale.py [LARGEST]` measures this page and writes it. Seconds are those of the processor
         ({os.cpu_count()} processors), of all processes together; memory is the peak of the largest process. Points are
         seeded hills on 2 km x 2 km with a noise of {NOISE} m. What is in *italics* is extrapolated, not measured.""")
+    earlier = [
+        f"{', '.join(f'{n:,}' for n in sorted(rows) if rows[n].get('earlier'))} ({task})"
+        for task, rows in found.items()
+        if any(row.get("earlier") for row in rows.values())
+    ]
+    if earlier:
+        say(f"These rows are of an earlier run, with the code of then: {'; '.join(earlier)}.")
     lines += ["## One surface", "", "```", *COMMANDS, "```", ""]
     say("""LAS, LAZ and Parquet need the extra: `python -m pip install ".[scale]"` in the clone. A cloud is read once,
         to 24 bytes a point in the folder of the results; every later pass is over that file. The passes find the
@@ -305,6 +312,9 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
         libraries, and they share caches and memory. Half of their seconds is the wall time of two free processors; the
         measured one is that of this run{_beside(many)}. *1e4 horizons*: {each * 1e4 / 3600:.1f} h of one processor,
         {each * 1e4 / 64:.0f} s on 64 if nothing else limits them.""")
+    say("""The folds of a cross-validation that need a fit (sections of a fold, groups of fewer than 30 points) go the
+        same way with `--scheduler`; from Python so do the holes left out of a body (`leave_one_hole_out`) and its
+        simulations (`BodyFit.volumes`). Errors are the same to the last bit, standard deviations and volumes to rounding.""")
     lines += ["## Tables", ""]
     text = f"""A CSV of {CSV_ROWS:,} rows, {csv["bytes"] / 1e6:.0f} MB: {csv["cpu"]:.2f} s at first, peak memory
         {csv["peak"]:.0f} MB ({(csv["peak"] - csv["before"]) * 1e6 / csv["bytes"]:.1f} bytes a byte above the start)."""

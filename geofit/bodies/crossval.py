@@ -115,11 +115,12 @@ def leave_one_hole_out(
     kriged = _kriged(data, names)
     found = dict(run_tasks(_without_hole, [(data, body.settings, name) for name in names], scheduler, workers))
     for k, name in enumerate(names):
-        if isinstance(found[k], str):
-            skipped[name] = found[k]
+        score = found[k]
+        if isinstance(score, str):
+            skipped[name] = score
             continue
-        for method, score in zip(("body", "linear RBF"), found[k], strict=True):
-            scores[method].append(score)
+        scores["body"].append(score[0])
+        scores["linear RBF"].append(score[1])
         scores["indicator kriging"].append(_Line.of(data, name).score(kriged[name]))
     return CrossValidation({name: MethodScore(tuple(found)) for name, found in scores.items()}, skipped)
 

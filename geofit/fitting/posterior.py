@@ -178,7 +178,9 @@ def posterior(model: Model) -> Posterior:
     slopes = np.linalg.solve(moment, cross)
     coefficients = (free + drift @ slopes)[:, 0]
     off = slopes[:, 0] - slope.aim
-    square = float(weight @ data.value**2 - right @ coefficients - slope.aim @ slope.precision(field.hold) @ off)
+    square = float(
+        weight @ np.asarray(data.value[:]) ** 2 - right @ coefficients - slope.aim @ slope.precision(field.hold) @ off
+    )
     return Posterior(
         np.flatnonzero(kept), np.asarray(data.plane[:]), np.asarray(data.value[:]), weight, space, turned, factor,
         drift, moment, coefficients, field, square, data.trend,
