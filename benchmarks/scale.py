@@ -314,7 +314,8 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
         {each * 1e4 / 64:.0f} s on 64 if nothing else limits them.""")
     say("""The folds of a cross-validation that need a fit (sections of a fold, groups of fewer than 30 points) go the
         same way with `--scheduler`; from Python so do the holes left out of a body (`leave_one_hole_out`) and its
-        simulations (`BodyFit.volumes`). Errors are the same to the last bit, standard deviations and volumes to rounding.""")
+        simulations (`BodyFit.volumes`). Errors are the same to the last bit, standard deviations and volumes to
+        rounding.""")
     lines += ["## Tables", ""]
     text = f"""A CSV of {CSV_ROWS:,} rows, {csv["bytes"] / 1e6:.0f} MB: {csv["cpu"]:.2f} s at first, peak memory
         {csv["peak"]:.0f} MB ({(csv["peak"] - csv["before"]) * 1e6 / csv["bytes"]:.1f} bytes a byte above the start)."""
