@@ -160,7 +160,7 @@ def distances(n: int) -> Figures:
     from converged import converged_distances, ring
     from distance import fold, horizon
 
-    from geofit.geometry.trim_loops import nearest
+    from geofit.geometry.trim_loops import nearest_on_trimmed
 
     found: Figures = {}
     for name, patch in (("horizon", horizon()), ("fold", fold())):
@@ -171,9 +171,9 @@ def distances(n: int) -> Figures:
             u, v = rng.uniform(u0, u1, n), rng.uniform(v0, v1, n)
             xyz = patch.evaluate(u, v) + patch.normal(u, v) * rng.normal(0, spread, n)[:, None]
             whole = (loops,) if loops else ()
-            nearest([patch], xyz[:20_000], whole)
+            nearest_on_trimmed([patch], xyz[:20_000], whole)
             start = used()
-            distance = np.abs(nearest([patch], xyz, whole).distance)
+            distance = np.abs(nearest_on_trimmed([patch], xyz, whole).distance)
             key = f"{'trimmed ' if loops else ''}{name}, points {spread:g} m off"
             found[f"{key}: us"] = 1e6 * used(start) / n
             found[f"{key}: error"] = float(

@@ -18,26 +18,26 @@ __all__ = ["partition"]
 def partition(parametrization: Parametrization, settings: FitSettings, kept: NDArray[np.bool_]) -> Split:
     """Split the points that are active; one that were dropped is in no core."""
     if settings.core == "none" and not parametrization.parametric:
-        note = message("fit.core-none-every-point", "core='none': every point is approximated")
+        note = message("fitting.core-none", "core='none': every point is approximated")
         return split_none(parametrization.plane, note)
     plane = parametrization.plane if kept.all() else parametrization.plane[kept]
     if parametrization.parametric:
         found = split_all(
             plane,
             parametrization.area,
-            message("fit.section-curves-span-whole", "the section curves span the whole surface"),
+            message("fitting.sections-span-surface", "the section curves span the whole surface"),
         )
     elif settings.core == "all":
         found = split_all(
             plane,
             parametrization.area,
-            message("fit.core-every-point-interpolated", "core='all': every point is interpolated"),
+            message("fitting.core-all", "core='all': every point is interpolated"),
         )
     elif settings.core == "auto":
         found = split_auto(plane, parametrization.area, parametrization.section[kept] != "")
     elif parametrization.frame.kind != "map":
         text = message(
-            "fit.core-polygon-map-coordinates",
+            "fitting.core-polygon-in-other-frame",
             "core is a polygon of map coordinates, but the surface is fitted in the frame '{frame}'. Choose "
             "core='auto', 'all' or 'none', or frame='map'.",
             frame=parametrization.frame.kind,
@@ -50,13 +50,13 @@ def partition(parametrization: Parametrization, settings: FitSettings, kept: NDA
         if (high <= low).any():
             raise FitError(
                 message(
-                    "fit.core-polygon-lies-outside",
+                    "fitting.core-polygon-outside",
                     "The core's polygon lies outside the study area. Check its coordinates and their order.",
                 )
             )
         rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = split_rectangle(
-            plane, rectangle, parametrization.area, message("fit.core-polygon-drawn", "the core's polygon as drawn")
+            plane, rectangle, parametrization.area, message("fitting.core-polygon-drawn", "the core's polygon as drawn")
         )
     inside = np.zeros(len(kept), bool)
     inside[kept] = found.inside

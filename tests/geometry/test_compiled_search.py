@@ -10,7 +10,7 @@ from converged import converged_distances, ring
 from surfaces import fold, height_field, split
 
 from geofit.geometry import cells, projection, trim_loops
-from geofit.geometry.trim_loops import nearest
+from geofit.geometry.trim_loops import nearest_on_trimmed
 from geofit.splines.patch import Patch
 
 
@@ -55,9 +55,9 @@ def test_many_points_find_what_few_find(compiled, name, trimmed, spread):
     loops = tuple((ring(p, (0.5, 0.5), 0.4, 200), ring(p, (0.45, 0.55), 0.1, 60)) for p in patches) if trimmed else ()
     xyz = points_about(patches, 700, spread)
     compiled(10**9)
-    few = nearest(patches, xyz, loops)
+    few = nearest_on_trimmed(patches, xyz, loops)
     compiled(1)
-    many = nearest(patches, xyz, loops)
+    many = nearest_on_trimmed(patches, xyz, loops)
     assert many.converged.all()
     farther = np.abs(many.distance) - np.abs(few.distance)
     assert farther.max() < 1e-9
@@ -80,7 +80,7 @@ def test_many_points_against_a_dense_search(compiled, name, trimmed, spread):
     loops = (ring(patch, (0.5, 0.45), 0.42, 150), ring(patch, (0.55, 0.5), 0.12, 40)) if trimmed else ()
     xyz = points_about((patch,), 60, spread, seed=11)
     compiled(1)
-    found = nearest([patch], xyz, (loops,) if loops else ())
+    found = nearest_on_trimmed([patch], xyz, (loops,) if loops else ())
     assert np.abs(found.distance) == pytest.approx(converged_distances(patch, loops, xyz), abs=1e-9)
 
 
@@ -92,7 +92,7 @@ def test_a_face_smaller_than_the_lattice_is_found(compiled):
     above = patch.evaluate(at[:1] + size / 2, at[1:] + size / 2) + np.array([0, 0, 3.0])
     xyz = np.concatenate([above, points_about((patch,), 40, 5.0)])
     compiled(1)
-    found = nearest([patch], xyz, ((loop,),))
+    found = nearest_on_trimmed([patch], xyz, ((loop,),))
     assert np.abs(found.distance) == pytest.approx(converged_distances_of_sliver(patch, loop, xyz), abs=1e-9)
 
 
