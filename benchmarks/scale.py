@@ -30,6 +30,8 @@ from truth import EASTING, NORTHING, hills  # noqa: E402
 
 NOISE, SIZE, CHUNK = 0.05, 2000.0, 100_000
 CSV_ROWS, HORIZONS, POINTS = 1_000_000, 200, 600
+#: Points whose distances are measured, and those of them that the dense search measures.
+DISTANCES, CHECKED = 200_000, 60
 Figures = dict[str, float]
 COMMANDS = (
     "geofit fit scan.laz --out results",
@@ -153,12 +155,40 @@ def side_by_side(count: int) -> Figures:
     return {"one": one, "two": used(start), "wall_one": alone, "wall_two": time.perf_counter() - wall}
 
 
+def distances(n: int) -> Figures:
+    """Measure n distances from each kind of surface: microseconds of the processor a point, and the largest error."""
+    from converged import converged_distances, ring
+    from distance import fold, horizon
+
+    from geofit.geometry.trim_loops import nearest_on_trimmed
+
+    found: Figures = {}
+    for name, patch in (("horizon", horizon()), ("fold", fold())):
+        u0, u1, v0, v1 = patch.domain
+        cut = ring(patch, (0.5, 0.5), 0.4, 400), ring(patch, (0.45, 0.55), 0.1, 90)
+        for spread, loops in ((0.2, ()), (20.0, ()), (0.2, cut), (20.0, cut)):
+            rng = np.random.default_rng(2)
+            u, v = rng.uniform(u0, u1, n), rng.uniform(v0, v1, n)
+            xyz = patch.evaluate(u, v) + patch.normal(u, v) * rng.normal(0, spread, n)[:, None]
+            whole = (loops,) if loops else ()
+            nearest_on_trimmed([patch], xyz[:20_000], whole)
+            start = used()
+            distance = np.abs(nearest_on_trimmed([patch], xyz, whole).distance)
+            key = f"{'trimmed ' if loops else ''}{name}, points {spread:g} m off"
+            found[f"{key}: us"] = 1e6 * used(start) / n
+            found[f"{key}: error"] = float(
+                np.abs(distance[:CHECKED] - converged_distances(patch, loops, xyz[:CHECKED])).max()
+            )
+    return found
+
+
 TASKS: dict[str, Callable[[int], Figures]] = {
     "arrays": from_arrays,
     "cloud": cloud_in_memory,
     "streamed": streamed,
     "csv": csv_file,
     "horizons": side_by_side,
+    "distances": distances,
 }
 
 
@@ -201,7 +231,7 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
     rate = best["cpu"] / largest
     csv, many = found["csv"][CSV_ROWS], found["horizons"][HORIZONS]
     each = many["one"] / HORIZONS
-    hours = rate * 1e10 / 3600
+    hours, hundred = rate * 1e10 / 3600, best["fit"] / largest * 1e8 + (best["cpu"] - best["fit"]) / largest * 0.5e8
     lines = ["# Scale", ""]
 
     def say(text: str) -> None:
@@ -210,6 +240,13 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
     say(f"""`python benchmarks/scale.py [LARGEST]` measures this page and writes it. Seconds are those of the processor
         ({os.cpu_count()} processors), of all processes together; memory is the peak of the largest process. Points are
         seeded hills on 2 km x 2 km with a noise of {NOISE} m. What is in *italics* is extrapolated, not measured.""")
+    earlier = [
+        f"{', '.join(f'{n:,}' for n in sorted(rows) if rows[n].get('earlier'))} ({task})"
+        for task, rows in found.items()
+        if any(row.get("earlier") for row in rows.values())
+    ]
+    if earlier:
+        say(f"These rows are of an earlier run, with the code of then: {'; '.join(earlier)}.")
     lines += ["## One surface", "", "```", *COMMANDS, "```", ""]
     say("""LAS, LAZ and Parquet need the extra: `python -m pip install ".[scale]"` in the clone. A cloud is read once,
         to 24 bytes a point in the folder of the results; every later pass is over that file. The passes find the
@@ -233,13 +270,31 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
     say(f"""Growth of the time from the smallest to the largest n: exponent {exponent(arrays):.2f} (`fit_horizon`),
         {exponent(clouds):.2f} (`fit_cloud` in memory), {exponent(files):.2f} (streamed), {exponent(ends):.2f} from
         {min(arrays):,} points (`fit_horizon`) to {largest:,} (streamed, distances included).""")
+    most, few = arrays[max(arrays)], arrays[100_000]
+    above, constant = most["peak"] - most["before"], few["peak"] - few["before"]
+    say(f"""`fit_horizon` of {max(arrays):,} points takes {most["cpu"]:.1f} s of one processor ({most["wall"]:.0f} s of
+        wall time{_beside(most)}), and {above / most["input"]:.1f} x the memory of the coordinates above them;
+        without the {constant:.0f} MB that a fit of 100,000 takes for libraries and cells it is
+        {(above - constant) / most["input"]:.1f} x. `tests/fitting/test_memory.py` holds each further point to
+        48 bytes, twice its coordinates.""")
     two = best["fit"] + (best["cpu"] - best["fit"]) / 2
     say(f"""*{largest:,} points on two free processors*: {two:.0f} s after reading, as the fit runs on one and the
         distances on both. The run took {best["wall"]:.0f} s of wall time{_beside(best)}.""")
+    if largest < 10**8:
+        say(f"""*1e8 points* were not measured to the end; at the rate of {largest:,} they take {hundred:.0f} s after
+            reading on two free processors.""")
     say(f"""*1e10 points*, from {rate * 1e6:.2f} s a million at {largest:,}: {hours:.0f} h of one processor, 240 GB of
         disk for the points and some 80 GB for the distances. Only the distances are spread over the workers: the fit
         takes {best["fit"] / largest * 1e10 / 3600:.0f} h on one processor however many there are.""")
-    lines += ["## Many horizons", ""]
+    lines += ["## Distances", ""]
+    ((count, of_kinds),) = found["distances"].items()
+    say(f"""{count:,} points of each kind, half of those of a trimmed surface beyond its edge. Points a second are those
+        of two free processors, twice those of one processor's second; the error is that of {CHECKED} points against a
+        dense search (`tests/converged.py`). From 5,000 points on the search is compiled.""")
+    lines += ["| surface | points a second | largest error, m |", "|---|---|---|"]
+    for key in [key[: -len(": us")] for key in of_kinds if key.endswith(": us")]:
+        lines.append(f"| {key} | {2e6 / of_kinds[f'{key}: us']:,.0f} | {of_kinds[f'{key}: error']:.0e} |")
+    lines += ["", "## Many horizons", ""]
     say("""`geofit fit site.toml --scheduler local` fits horizons side by side in processes of this machine; an address
         or the file of a scheduler (`dask scheduler --scheduler-file FILE`, as a job of Slurm starts it) sends them to a
         Dask cluster. The surfaces are the same to the last bit. A worker that dies costs its horizon a second try;
@@ -257,6 +312,10 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
         libraries, and they share caches and memory. Half of their seconds is the wall time of two free processors; the
         measured one is that of this run{_beside(many)}. *1e4 horizons*: {each * 1e4 / 3600:.1f} h of one processor,
         {each * 1e4 / 64:.0f} s on 64 if nothing else limits them.""")
+    say("""The folds of a cross-validation that need a fit (sections of a fold, groups of fewer than 30 points) go the
+        same way with `--scheduler`; from Python so do the holes left out of a body (`leave_one_hole_out`) and its
+        simulations (`BodyFit.volumes`). Errors are the same to the last bit, standard deviations and volumes to
+        rounding.""")
     lines += ["## Tables", ""]
     text = f"""A CSV of {CSV_ROWS:,} rows, {csv["bytes"] / 1e6:.0f} MB: {csv["cpu"]:.2f} s at first, peak memory
         {csv["peak"]:.0f} MB ({(csv["peak"] - csv["before"]) * 1e6 / csv["bytes"]:.1f} bytes a byte above the start)."""
@@ -276,6 +335,7 @@ def measured(largest: int) -> dict[str, dict[int, Figures]]:
         "cloud": [n for n in decades if 10**5 <= n <= 10**7],
         "streamed": [n for n in decades if n >= 10**6],
         "horizons": [HORIZONS],
+        "distances": [DISTANCES],
     }
     for task, counts in rows.items():
         for n in counts:
@@ -308,6 +368,9 @@ def main() -> None:
     elif given != "page":
         measured(int(float(given)))
     found = kept()
+    missing = [task for task in TASKS if task not in found]
+    if missing:
+        sys.exit(f"The page needs figures of {', '.join(missing)}, too.")
     (ROOT / "docs" / "scale.md").write_text(page(found), encoding="utf-8")
 
 

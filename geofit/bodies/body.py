@@ -118,8 +118,15 @@ class BodyFit(ImplicitBody):
         longest = float((upper - lower).max())
         return self.local_mesh(longest / np.clip(BETWEEN_HOLES * longest / self.region.spacing, *OVERVIEW))
 
-    def volumes(self) -> BodyVolumes:
-        """Return P10, P50 and P90 of the volume by conditional simulation."""
-        from geofit.bodies.simulate import simulate
+    def volumes(self, scheduler: str = "local", workers: int | None = 1) -> BodyVolumes:
+        """Return P10, P50 and P90 of the volume by conditional simulation.
 
-        return simulate(self)
+        Parameters
+        ----------
+        scheduler, workers : str, int
+            Where the simulations are kriged, see :func:`geofit.streaming.executors.run_tasks`; by default here.
+        """
+        from geofit.bodies.simulate import simulate
+        from geofit.streaming.executors import Where
+
+        return simulate(self, Where(scheduler, workers))

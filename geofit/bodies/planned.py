@@ -110,7 +110,7 @@ def predict_hole(
     Returns
     -------
     PlannedHole
-        With P10, P50 and P90 over ``data.setting-realizations`` conditional simulations along the hole.
+        With P10, P50 and P90 over ``settings.realizations`` conditional simulations along the hole.
 
     Raises
     ------

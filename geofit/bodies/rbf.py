@@ -19,7 +19,7 @@ from geofit.bodies.kernels import gradients, gram, values
 from geofit.data.errors import FitError
 from geofit.data.messages import message
 
-__all__ = ["Rbf", "Saddle"]
+__all__ = ["Rbf", "Saddle", "rows_of"]
 
 Floats = NDArray[np.float64]
 NONE = np.zeros((0, 3))
@@ -143,8 +143,7 @@ class Saddle:
 
     def rows(self, x: Floats) -> Floats:
         """Return the rows (m, n + 3k, and 10 of the drift) that give values at x when multiplied with the weights."""
-        rows = gram(x, NONE, self.points, self.oriented, self.reach)
-        return np.hstack([rows, _monomials(x)]) if self._trends else rows
+        return rows_of(x, self.points, self.oriented, self.reach)
 
     def covariance(self, x: Floats) -> Floats:
         """Return the (m, m) covariance of the field's values at x, given those of the system, for a unit field.
@@ -180,6 +179,12 @@ class Saddle:
 
         # LAPACK takes no empty system.
         return np.asarray(dsytrs(self._factor, self._pivots, right, lower=1)[0]) if right.size else right
+
+
+def rows_of(x: Floats, points: Floats, oriented: Floats, reach: float) -> Floats:
+    """Return the rows (m, n + 3k, and 10 of the drift where there is one) that give values at x from weights."""
+    rows = gram(x, NONE, points, oriented, reach)
+    return rows if reach else np.hstack([rows, _monomials(x)])
 
 
 def _trend(points: Floats, oriented: Floats) -> Floats:

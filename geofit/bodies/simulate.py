@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from geofit.bodies.active import farthest_apart
 from geofit.bodies.posterior import SPREAD, BodyPosterior
-from geofit.bodies.rbf import Saddle
+from geofit.bodies.rbf import Saddle, rows_of
+from geofit.streaming.executors import HERE, Where
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
@@ -63,13 +64,13 @@ class Draws:
     changes: Floats
 
 
-def simulate(body: BodyFit) -> BodyVolumes:
-    """Return the volumes of ``data.setting-realizations`` conditional simulations of a body."""
-    return volumes_of(body.overview.volume, draws(body).changes.sum(axis=0))
+def simulate(body: BodyFit, where: Where = HERE) -> BodyVolumes:
+    """Return the volumes of ``settings.realizations`` conditional simulations of a body."""
+    return volumes_of(body.overview.volume, draws(body, where).changes.sum(axis=0))
 
 
-def draws(body: BodyFit) -> Draws:
-    """Return ``data.setting-realizations`` conditional simulations of a body."""
+def draws(body: BodyFit, where: Where = HERE) -> Draws:
+    """Return ``settings.realizations`` conditional simulations of a body, kriged ``where`` it is said."""
     posterior = BodyPosterior(body)
     rng = np.random.default_rng(body.settings.seed)
     nodes, spacing = _nodes(body)
@@ -80,7 +81,7 @@ def draws(body: BodyFit) -> Draws:
     deviation = SPREAD * posterior.deviation(nodes)
     near = np.abs(value) < FAR * deviation
     fitted = body.field.frame.to_fit(nodes[near])
-    change = changes(body, posterior, fitted[_first_knots(fitted, value[near], deviation[near])], fitted, rng)
+    change = changes(body, posterior, fitted[_first_knots(fitted, value[near], deviation[near])], fitted, rng, where)
     slope = np.linalg.norm(body.field.gradient(nodes[near] - body.origin), axis=1)
     width = np.maximum(slope * spacing, 1e-300)
     base = np.clip(0.5 - value[near] / width, 0.0, 1.0)
@@ -123,7 +124,14 @@ def _first_knots(fitted: Floats, value: Floats, deviation: Floats) -> NDArray[np
     return np.asarray(doubt[farthest_apart(fitted[doubt], min(KNOTS, len(doubt)))] if len(doubt) else doubt)
 
 
-def changes(body: BodyFit, posterior: BodyPosterior, knots: Floats, places: Floats, rng: np.random.Generator) -> Floats:
+def changes(
+    body: BodyFit,
+    posterior: BodyPosterior,
+    knots: Floats,
+    places: Floats,
+    rng: np.random.Generator,
+    where: Where = HERE,
+) -> Floats:
     """Return what each realization adds to the field, (n, realizations), at (n, 3) fitted places."""
     if not len(knots):
         return np.zeros((len(places), body.settings.realizations))
@@ -143,7 +151,15 @@ def changes(body: BodyFit, posterior: BodyPosterior, knots: Floats, places: Floa
     right[len(system.points) : len(whole.points)] = drawn[keep[len(system.points) :] - len(system.points)]
     weights = whole.solve(right)
     blocks = np.array_split(places, max(1, len(places) // 2000))
-    return np.concatenate([whole.rows(block) @ weights for block in blocks])
+    tasks = [(block, whole.points, whole.oriented, weights) for block in blocks]
+    found = dict(where.run(_kriged, tasks))
+    return np.concatenate([found[k] for k in range(len(blocks))])
+
+
+def _kriged(task: tuple[Floats, Floats, Floats, Floats]) -> Floats:
+    """Return the values of realizations (m, realizations) at some places, from the weights of what holds them."""
+    places, points, oriented, weights = task
+    return np.asarray(rows_of(places, points, oriented, 0.0) @ weights)
 
 
 def _guards(body: BodyFit, posterior: BodyPosterior) -> tuple[Floats, Floats, Floats]:

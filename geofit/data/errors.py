@@ -11,6 +11,7 @@
     │   └── ExactnessError       no control net within the cap passes through all of the core's points
     ├── StitchError              patches that do not make one valid shell
     ├── MissingDependencyError   an optional package is not installed; the text holds the install line
+    ├── SchedulerError           a scheduler is lost, or workers die again and again
     └── Cancelled                the caller's progress function asked to stop
 
 Each carries a :class:`~geofit.data.messages.Message` (``error.message``, ``error.code``) that states what was given,
@@ -35,6 +36,7 @@ __all__ = [
     "InputError",
     "MissingDependencyError",
     "PointsError",
+    "SchedulerError",
     "SettingsError",
     "StitchError",
 ]
@@ -162,6 +164,10 @@ class StitchError(GeofitError):
 
 class MissingDependencyError(GeofitError, ImportError):
     """An optional package is not installed."""
+
+
+class SchedulerError(GeofitError):
+    """A scheduler is lost, or workers die again and again: the same work can be started once more."""
 
 
 class Cancelled(GeofitError):  # noqa: N818 - what happened is not an error of anybody's

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar
 
-from geofit.data.errors import Cancelled, GeofitError
+from geofit.data.errors import Cancelled, GeofitError, SchedulerError
 from geofit.data.messages import Message, message
 
 __all__ = ["guarded", "reason_of"]
@@ -31,6 +31,8 @@ def guarded(work: Callable[[], T], instead: T, report: Callable[[Message], objec
     ------
     Cancelled
         If the user stopped the examination; it did not fail.
+    SchedulerError
+        If what the examination runs on is lost: the others would be lost too.
 
     Examples
     --------
@@ -40,7 +42,7 @@ def guarded(work: Callable[[], T], instead: T, report: Callable[[Message], objec
     """
     try:
         return work()
-    except Cancelled:
+    except (Cancelled, SchedulerError):
         raise
     except Exception as error:  # whatever it is, the other examinations are sound
         report(reason_of(error))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,6 +116,10 @@ class Data:
     unit: float
     trend: Floats
     slopes: Slopes | None = None
+
+    def whole(self) -> Data:
+        """Return the same points, all places held."""
+        return replace(self, plane=np.asarray(self.plane[:]), value=np.asarray(self.value[:]))
 
     def over_trend(self, space: TensorSpace) -> Floats:
         """Return the trend's coefficients on a space."""

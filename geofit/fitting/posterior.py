@@ -160,7 +160,7 @@ def posterior(model: Model) -> Posterior:
         )
     kept = given.kept & given.parametrization.parametrized
     split = given.split if given.split.core is not None else None
-    data = gather_points(given.points, given.parametrization, kept, split, given.slopes)
+    data = gather_points(given.points, given.parametrization, kept, split, given.slopes).whole()
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
     space, field = widened_space(space), net.field
     turned = space.shape[1] > space.shape[0]
@@ -184,9 +184,12 @@ def posterior(model: Model) -> Posterior:
     coefficients = (free + drift @ slopes)[:, 0]
     off = slopes[:, 0] - slope.aim
     square = float(
-        weight @ data.value**2 + weighed - right @ coefficients - slope.aim @ slope.precision(field.hold) @ off
+        weight @ np.asarray(data.value[:]) ** 2
+        + weighed
+        - right @ coefficients
+        - slope.aim @ slope.precision(field.hold) @ off
     )
     return Posterior(
-        np.flatnonzero(kept), data.plane, data.value, weight, space, turned, factor, drift, moment, coefficients,
-        field, square, data.trend,
+        np.flatnonzero(kept), np.asarray(data.plane[:]), np.asarray(data.value[:]), weight, space, turned, factor,
+        drift, moment, coefficients, field, square, data.trend,
     )  # fmt: skip

@@ -55,7 +55,7 @@ def jet_at(table: Floats, cell: int, s: float, t: float, jet: Floats) -> None:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _dot(a: Floats, b: Floats) -> float:
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    return float(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

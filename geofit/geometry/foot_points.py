@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +64,7 @@ class Projection:
 
     def __getitem__(self, rows: Ints) -> Projection:
         """Return what was found for some of the points."""
-        some = {name: None if values is None else values[rows] for name, values in vars(self).items()}
+        some: dict[str, Any] = {name: None if values is None else values[rows] for name, values in vars(self).items()}
         return Projection(**some)
 
     def fill(self, rows: Ints, other: Projection) -> None:

@@ -159,10 +159,11 @@ class Searchable:
         from geofit.geometry.search_loops import explore
 
         points, (apart, cell, local, done) = np.ascontiguousarray(target), found
+        some_places, tree = places
 
         def work(some: slice) -> None:
             part = (apart[some], cell[some], local[:, some], done[some])
-            explore(self.of_cells, *places, loops, points[some], known[some], part)
+            explore(self.of_cells, some_places, tree, loops, points[some], known[some], part)
 
         side_by_side(work, len(target))
 

@@ -57,7 +57,7 @@ def _near(tree: Any, points: Floats, x: Floats) -> int:
         far = _far(points[order[k]], x)
         if far < best:
             best, found = far, order[k]
-    return found
+    return int(found)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

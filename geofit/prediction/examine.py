@@ -26,6 +26,7 @@ from geofit.prediction.drilling import suggest_holes
 from geofit.prediction.refits import sections_by_refit
 from geofit.prediction.small_sets import SMALL, Refits
 from geofit.prediction.thinplate import thin_plate_inverse
+from geofit.streaming.executors import Where
 
 __all__ = ["MOST", "examine"]
 
@@ -37,7 +38,13 @@ MOST = 4_000
 ROUNDS = 2
 
 
-def examine(surface: HorizonFit, progress: Progress | None = None) -> PredictionResult:
+def examine(
+    surface: HorizonFit,
+    progress: Progress | None = None,
+    *,
+    scheduler: str = "local",
+    workers: int | None = 1,
+) -> PredictionResult:
     """Examine a fit away from its data.
 
     Parameters
@@ -46,6 +53,9 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> Prediction
         A fit; of an imported surface nothing can be said, and the notes report it.
     progress : callable, optional
         Called as ``progress(stage, fraction)``; returning False stops.
+    scheduler, workers : str, int
+        Where fits without a fold are made, see :func:`geofit.streaming.executors.run_tasks`; by default here.
+        Errors are the same to the last bit, standard deviations to rounding.
 
     Returns
     -------
@@ -61,6 +71,8 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> Prediction
         If ``surface`` is not a fit.
     Cancelled
         If ``progress`` returned False.
+    SchedulerError
+        If the scheduler is lost.
 
     Notes
     -----
@@ -86,11 +98,12 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> Prediction
             )
 
         look = sections_by_refit if model.problem.parametrization.parametric else _examine
-        found = guarded(lambda: look(surface, model, progress), None, missing)
+        where = Where(scheduler, workers)
+        found = guarded(lambda: look(surface, model, progress, where), None, missing)
         return _nothing(notes[0]) if found is None else found
 
 
-def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> PredictionResult:
+def _examine(surface: HorizonFit, model: Model, progress: Progress | None, where: Where) -> PredictionResult:
     notes: list[Message] = []
     tell(progress, "uncertainty", 0.0)
     given = posterior(model)
@@ -99,7 +112,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Pr
     tell(progress, "cross-validation", 0.2)
     nothing: tuple[list[Fold], Calibration, tuple[Outlier, ...]] = ([], uncalibrated(), ())
     folds, calibration, outliers = guarded(
-        lambda: _left_out(model, given, grid, progress, notes),
+        lambda: _left_out(model, given, grid, progress, notes, where),
         nothing,
         lambda reason: notes.append(
             message(
@@ -160,7 +173,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Pr
 
 
 def _left_out(
-    model: Model, given: Posterior, grid: Grid, progress: Progress | None, notes: list[Message]
+    model: Model, given: Posterior, grid: Grid, progress: Progress | None, notes: list[Message], where: Where
 ) -> tuple[list[Fold], Calibration, tuple[Outlier, ...]]:
     """Leave the points out, hold the standard deviation to their errors, and name those far from their neighbours."""
     many = len(given.value) > MOST
@@ -177,7 +190,7 @@ def _left_out(
         )
     else:
         fit = linear_fit(model, given)
-        judged = Refits(model, given) if len(given.value) < SMALL else fit
+        judged = Refits(model, given, where) if len(given.value) < SMALL else fit
         folds = cross_validation_folds(model, judged)
         tell(progress, "calibration", 0.5)
         calibration = calibrated(

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit.data.errors import GeofitError
 from geofit.data.messages import message
+from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, PredictionResult
 from geofit.data.progress import Progress, tell
+from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.model import Model
 from geofit.fitting.pipeline import fit_horizon
 from geofit.prediction.folds import groups_of
+from geofit.streaming.executors import HERE, Where
 
 __all__ = ["sections_by_refit"]
 
@@ -19,10 +25,34 @@ __all__ = ["sections_by_refit"]
 MOST_SECTIONS = 40
 
 
-def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | None) -> PredictionResult:
+@dataclass(frozen=True, eq=False)
+class _Fold:
+    """Points of a surface with the group that is left out, and how the others are fitted."""
+
+    points: PointSet
+    group: NDArray[np.int64]
+    settings: FitSettings
+    boundary: NDArray[np.float64] | None
+    name: str
+
+
+def _left_out(fold: _Fold) -> NDArray[np.float64] | None:
+    """Return the distances of a group from the surface of all others; None where these have none."""
+    rest = np.setdiff1d(np.arange(len(fold.points)), fold.group)
+    try:
+        without = fit_horizon(fold.points[rest], fold.settings, fold.boundary, name=fold.name)
+    except GeofitError:
+        return None
+    return without.distance(fold.points.xyz[fold.group])
+
+
+def sections_by_refit(
+    surface: HorizonFit, model: Model, progress: Progress | None, where: Where = HERE
+) -> PredictionResult:
     """Leave out each inner section of a parametric surface, and measure its orthogonal distance from the rest's fit.
 
-    The first and the last section are never left out: no surface reaches them without their points.
+    The first and the last section are never left out: no surface reaches them without their points. ``where`` is where
+    the fits without a section are made.
     """
     points, parametrization = surface.points, model.problem.parametrization
     groups = [group for group in groups_of(parametrization.section) if model.problem.kept[group].any()]
@@ -46,16 +76,15 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
         )
         inner = []
     failed = 0
-    for k, group in enumerate(inner):
-        tell(progress, "cross-validation", k / len(inner))
-        rest = np.setdiff1d(np.arange(len(points)), group)
-        try:
-            without = fit_horizon(points[rest], surface.settings, model.problem.boundary, name=surface.name)
-        except GeofitError:
+    tell(progress, "cross-validation", 0.0)
+    tasks = [_Fold(points, group, surface.settings, model.problem.boundary, surface.name) for group in inner]
+    for done, (k, distance) in enumerate(where.run(_left_out, tasks)):
+        tell(progress, "cross-validation", (done + 1) / len(inner))
+        if distance is None:
             failed += 1
             continue
-        error[group] = without.distance(points.xyz[group])
-        label[group] = parametrization.section[group]
+        error[inner[k]] = distance
+        label[inner[k]] = parametrization.section[inner[k]]
     tell(progress, "done", 1.0)
     if failed:
         notes.append(

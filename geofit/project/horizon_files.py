@@ -15,6 +15,7 @@ from geofit.data.messages import Message, message
 from geofit.data.progress import Progress
 from geofit.data.site import Section, Site
 from geofit.report.result import HorizonResult
+from geofit.streaming.executors import HERE, Where
 
 if TYPE_CHECKING:
     from geofit.checks.storage import Storage
@@ -42,6 +43,7 @@ def write_horizon(
     seconds: float,
     bands: bool,
     sections: Sequence[Section],
+    where: Where = HERE,
     progress: Progress | None = None,
 ) -> Made | Message:
     """Examine a surface, and write what belongs to it: ``.step``, ``.png``, ``.json`` and ``_residuals.csv``.
@@ -62,6 +64,8 @@ def write_horizon(
         Whether the surfaces of the 90 % band are written too.
     sections : sequence of Section
         Lines along which the report cuts the horizon.
+    where : Where
+        Where fits without a fold of the cross-validation are made.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
 
@@ -73,7 +77,9 @@ def write_horizon(
     failed: list[Message] = []
     t = language(code)
     made = guarded(
-        lambda: _written(surface, site, stem, progress or _deaf, t, seconds, bands, sections), None, failed.append
+        lambda: _written(surface, site, stem, progress or _deaf, t, seconds, bands, sections, where),
+        None,
+        failed.append,
     )
     return failed[0] if made is None else made
 
@@ -84,7 +90,7 @@ def _deaf(stage: str | Message, fraction: float, /) -> None:
 
 def _written(
     surface: HorizonFit, site: Site, stem: Path, progress: Progress, t: Language, fit: float, bands: bool,
-    sections: Sequence[Section],
+    sections: Sequence[Section], where: Where,
 ) -> Made:  # fmt: skip
     from geofit.cad.step import write_step
     from geofit.prediction.examine import examine
@@ -93,7 +99,9 @@ def _written(
     from geofit.report.tables import write_residuals
 
     clock = _Clock(fit)
-    prediction = examine(surface, lambda stage, share: progress(stage, 0.45 * share))
+    prediction = examine(
+        surface, lambda stage, share: progress(stage, 0.45 * share), scheduler=where.scheduler, workers=where.workers
+    )
     clock.stop("examination")
     progress("STEP and read-back", 0.45)
     path = stem.with_name(stem.name + ".step")

@@ -19,6 +19,7 @@ from geofit.project.horizon_files import Made, section_profiles, storage_compare
 from geofit.project.side_by_side import Crew, crew
 from geofit.project.single_reports import BodyPart, write_body_part
 from geofit.report.result import HorizonResult
+from geofit.streaming.executors import HERE, Where
 
 if TYPE_CHECKING:
     from geofit.report.accuracy_report import AccuracyReport
@@ -108,7 +109,8 @@ def run_horizons(
     bands : bool
         Whether ``_upper90.step`` and ``_lower90.step`` are written: they bound the 90 % prediction band.
     scheduler : str, optional
-        Where the horizons are fitted side by side; see :func:`geofit.fit_site`. None: one after another.
+        Where the horizons are fitted side by side, see :func:`geofit.fit_site`, and where the folds of their
+        cross-validation that need fits are. None: one after another.
     bodies : sequence of str
         Codes of logged intervals, a body each: it is fitted, its files are written, and it has a chapter of the report.
     workers : int
@@ -137,12 +139,15 @@ def run_horizons(
     with crew(min(workers, len(names))) as hands:
         listen = _within(progress, 0.0, FITS)
         fits = fit_site(site, names, changes, listen, separate=separate, scheduler=scheduler, workers=workers)
-        return _write_results(site, fits, out, hands, progress, language, date, pdf, bands, bodies)
+        # Horizons are examined side by side already; of one alone, and on other machines, the folds are.
+        apart = scheduler is not None and (scheduler != "local" or len(fits.surfaces) == 1)
+        where = Where(scheduler or "local", workers) if apart else HERE
+        return _write_results(site, fits, out, hands, progress, language, date, pdf, bands, bodies, where)
 
 
 def _write_results(
     site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, date: str,
-    pdf: bool, bands: bool, bodies: Sequence[str],
+    pdf: bool, bands: bool, bodies: Sequence[str], where: Where,
 ) -> RunResult:  # fmt: skip
     """Examine, draw and write what was fitted."""
     from geofit.report.gather import accuracy_report
@@ -152,7 +157,7 @@ def _write_results(
 
     failures, warnings = dict(fits.failures), list(fits.warnings)
     sections = report_sections(site, [surface.points for surface in fits.surfaces.values()]) if fits.surfaces else ()
-    made, whole = _examined(site, fits, out, hands, progress, language, bands, sections, failures)
+    made, whole = _examined(site, fits, out, hands, progress, language, bands, sections, failures, where)
     results = [one.result for one in made]
     images = {name: picture for one in made for name, picture in one.images.items()}
     warnings += [text for one in made for text in one.warnings]
@@ -205,7 +210,7 @@ def _bodies(
 
 def _examined(
     site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, bands: bool,
-    sections: Sequence[Section], failures: dict[str, Message],
+    sections: Sequence[Section], failures: dict[str, Message], where: Where,
 ) -> tuple[list[Made], Pictures]:  # fmt: skip
     """Examine every surface and write its files, and draw them together, side by side; note those that failed."""
     from geofit.report.pictures import Pictures, draw_site
@@ -216,7 +221,7 @@ def _examined(
     tasks: list[Callable[[], Made | Message | Pictures]] = [
         partial(
             write_horizon, fits.surfaces[name], site, out / stems[name], language.code, fits.seconds[name], bands,
-            sections,
+            sections, where,
         )
         for name in order
     ]  # fmt: skip

@@ -15,14 +15,15 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeVar
 
 from geofit.data.distribution import install_line
-from geofit.data.errors import GeofitError, MissingDependencyError, SettingsError
+from geofit.data.errors import MissingDependencyError, SchedulerError, SettingsError
 from geofit.data.messages import message
 
-__all__ = ["WORKERS", "SchedulerError", "run_tasks"]
+__all__ = ["HERE", "WORKERS", "SchedulerError", "Where", "run_tasks"]
 
 T = TypeVar("T")
 R = TypeVar("R")
@@ -35,10 +36,6 @@ TRIES = 3
 PATIENCE = 20
 #: Seconds between two looks at a cluster.
 LOOK = 0.02
-
-
-class SchedulerError(GeofitError):
-    """A scheduler is lost, or workers die again and again."""
 
 
 def run_tasks(
@@ -72,6 +69,22 @@ def run_tasks(
             yield from _on_processes(work, tasks, count)
     else:
         yield from _on_dask(work, tasks, scheduler)
+
+
+@dataclass(frozen=True)
+class Where:
+    """Where tasks run: a scheduler and, of this machine, the number of its processes; see :func:`run_tasks`."""
+
+    scheduler: str = "local"
+    workers: int | None = 1
+
+    def run(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[int, R]]:
+        """Yield the place of each task and its result, as they get ready."""
+        return run_tasks(work, tasks, self.scheduler, self.workers)
+
+
+#: One after another, in this process.
+HERE = Where()
 
 
 def _on_processes(work: Callable[[T], R], tasks: Sequence[T], count: int) -> Iterator[tuple[int, R]]:

@@ -10,7 +10,9 @@ from geofit.bodies.body import BodyFit
 from geofit.bodies.crossval import leave_one_hole_out
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
+from geofit.bodies.simulate import simulate
 from geofit.data.errors import FitError
+from geofit.streaming.executors import Where
 
 
 def test_a_hole_left_out_by_hand(ring: BodyFit) -> None:
@@ -52,3 +54,11 @@ def test_a_hole_that_the_body_needs_is_skipped_with_its_reason() -> None:
 def test_data_without_names() -> None:
     with pytest.raises(FitError, match="three holes"):
         leave_one_hole_out(fit_body(drilled(ellipsoid((0.6, 0.4, 0.3))[0], 0)))
+
+
+def test_holes_left_out_and_simulations_on_two_processes(ring: BodyFit) -> None:
+    one, two = (leave_one_hole_out(ring, 4, workers=n) for n in (1, 2))
+    assert one == two
+    assert one.methods["body"].holes
+    alone, apart = simulate(ring), simulate(ring, Where("local", 2))
+    assert alone.values == pytest.approx(apart.values, rel=1e-9)

@@ -16,6 +16,7 @@ from geofit.fitting import density
 from geofit.fitting.conflicts import resolve_conflicts
 from geofit.io import clouds
 from geofit.io.clouds import is_cloud, open_cloud
+from geofit.prediction.examine import examine
 from geofit.project.cloud_run import run_cloud
 from geofit.streaming import coincident as strips
 from geofit.streaming import residuals
@@ -245,3 +246,16 @@ def test_every_so_many_rows_of_a_long_array_are_those_of_the_array(monkeypatch):
         for start in (0, 4):
             np.testing.assert_array_equal(rows[start:29:step], whole[start:29:step])
             np.testing.assert_array_equal(rows[:, ::-1][start::step], whole[:, ::-1][start::step])
+
+
+def test_a_cloud_in_memory_is_examined_and_can_have_a_core(monkeypatch):
+    monkeypatch.setattr("geofit.fitting.net.CLOUD", 1_000)
+    xyz = cloud(5_000)
+    found = examine(fit_horizon(PointSet(xyz)))
+    assert found.left_out[0].groups == 5_000
+    assert found.left_out[0].rms < 0.2
+    low = xyz[:, :2].min(axis=0) + 200.0
+    core = tuple((float(low[0] + a), float(low[1] + b)) for a, b in ((0, 0), (60, 0), (60, 60), (0, 60)))
+    drawn = fit_horizon(PointSet(xyz), FitSettings(core=core))
+    assert drawn.core.any()
+    assert np.abs(drawn.accuracy.residuals[drawn.core]).max() < 1e-6
