@@ -9,7 +9,17 @@ from typing import Any
 from geofit.bodies.settings import BodySettings
 from geofit.data.site import COLOURS
 
-__all__ = ["BodyProvenance", "BodyRecord", "BodySource", "BodyStyle", "ClosedMesh", "Frame", "Intervals", "next_colour"]
+__all__ = [
+    "BetweenHorizons",
+    "BodyProvenance",
+    "BodyRecord",
+    "BodySource",
+    "BodyStyle",
+    "ClosedMesh",
+    "Frame",
+    "Intervals",
+    "next_colour",
+]
 
 #: Colours of bodies in turn: those of horizons from the end, so that the first of both differ.
 BODY_COLOURS = (COLOURS[5], COLOURS[4], COLOURS[6], COLOURS[3], COLOURS[1], COLOURS[2], COLOURS[0], COLOURS[7])
@@ -31,6 +41,14 @@ class ClosedMesh:
 
 
 @dataclass(frozen=True)
+class BetweenHorizons:
+    """The body below the horizon ``upper`` and above the horizon ``lower``, or above one elevation in metres."""
+
+    upper: str
+    lower: str | float
+
+
+@dataclass(frozen=True)
 class Frame:
     """A frame of a metamorphosis between bodies: interpolated geometry, not a record.
 
@@ -47,7 +65,7 @@ class Frame:
     seeds: bool = False
 
 
-BodySource = Intervals | ClosedMesh | Frame
+BodySource = Intervals | ClosedMesh | BetweenHorizons | Frame
 
 
 @dataclass(frozen=True)
@@ -107,6 +125,8 @@ def _source_data(source: BodySource) -> dict[str, Any]:
             return {"kind": "intervals", "codes": list(codes), "file": file}
         case ClosedMesh(file):
             return {"kind": "mesh", "file": file}
+        case BetweenHorizons(upper, lower):
+            return {"kind": "horizons", "upper": upper, "lower": lower}
         case Frame():
             plain = {
                 name: getattr(source, name) for name in ("names", "mode", "pace", "dates", "cells", "tau", "seeds")
@@ -123,6 +143,9 @@ def _source_from(data: Mapping[str, Any]) -> BodySource:
             return Intervals(tuple(str(code) for code in data["codes"]), str(data["file"]))
         case "mesh":
             return ClosedMesh(str(data["file"]))
+        case "horizons":
+            lower = data["lower"]
+            return BetweenHorizons(str(data["upper"]), lower if isinstance(lower, str) else float(lower))
         case "frame":
             ends = tuple(BodyProvenance.from_data(end) for end in data["ends"])
             names, dates = (tuple(map(str, data[key])) for key in ("names", "dates"))
