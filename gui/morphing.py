@@ -32,9 +32,9 @@ from geofit.project.morph_view import (
     MorphWay,
     export_frames,
     finished,
+    frame_as_body,
     frame_body,
     previewed,
-    taken,
 )
 from geofit.report.film import require_encoder
 
@@ -148,7 +148,7 @@ class Morphing(QObject):
         if view is None or view.full is None:
             return
         given = [end.given for end in view.way.ends]
-        provenance, result = taken(view, self._panel.timeline.tau, name, given)
+        provenance, result = frame_as_body(view, self._panel.timeline.tau, name, given)
         self._document.put_body(provenance, result)
         style = BodyStyle(next_colour(self._document.state.bodies))
         self._fitting.push(SetBody(name, BodyRecord(provenance, style)))
@@ -318,12 +318,12 @@ class Morphing(QObject):
         return f"{'-'.join(self.view.way.names)} {100 * tau:.0f} %" if day is None else day.isoformat()
 
     def _filmed(self, path: Path) -> None:
-        _LOG.info(message("log.wrote", "Wrote {file}", file=str(path.resolve())))
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(path.resolve())))
         self.reported.emit(self.tr("Wrote {names}.").format(names=path.resolve()))
 
     def _exported(self, done: MorphRun) -> None:
         folder = done.files[0].resolve().parent
-        _LOG.info(message("log.wrote", "Wrote {file}", file=str(folder)))
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(folder)))
         self.reported.emit(
             self.tr("Wrote {n} files to {folder}. {note}").format(
                 n=len(done.files), folder=folder, note=self._panel.note.text()

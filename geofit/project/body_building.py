@@ -20,7 +20,7 @@ from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite
 from geofit.data.progress import Progress, tell
 from geofit.implicit.mesh import TriangleMesh
-from geofit.project.body_record import BetweenHorizons, BodyProvenance, BodySource, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import BetweenHorizons, BodyProvenance, BodySource, ClosedMesh, Intervals, MorphFrame
 from geofit.project.mesh_body import MeshBody, read_mesh_body
 
 if TYPE_CHECKING:
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BodyResult",
-    "codes_of",
     "end_shape",
     "given_of_logs",
+    "interval_codes",
     "made_body",
     "make_body",
     "measured_strata",
@@ -84,7 +84,7 @@ class BodyResult:
         return self.body.overview
 
 
-def codes_of(campaigns: Sequence[Any]) -> dict[str, int]:
+def interval_codes(campaigns: Sequence[Any]) -> dict[str, int]:
     """Return the codes of interval tables with how often each occurs, the most frequent first."""
     counts: dict[str, int] = {}
     for log in (log for campaign in campaigns for log in campaign.logs):
@@ -117,7 +117,7 @@ def site_codes(file: Path, *, progress: Progress) -> dict[str, int]:
     InputError
         If the file cannot be read, or its site has no interval tables.
     """
-    return codes_of(_campaigns(file, progress))
+    return interval_codes(_campaigns(file, progress))
 
 
 def make_body(
@@ -172,7 +172,7 @@ def make_body(
 
             closed = horizon_body(upper, lower, name, horizons)
             result, given = BodyResult(closed), closed.digest
-        case Frame():
+        case MorphFrame():
             made = [
                 make_body(end.source, end.settings, one, campaigns, folder, horizons, None)
                 for end, one in zip(source.ends, source.names, strict=True)
@@ -205,7 +205,7 @@ def measured_strata(result: BodyResult, horizons: Mapping[str, Any], *, progress
     return replace(result, strata=strata_table(body, over) if over else (), divided_by=tuple(over))
 
 
-def frame_of(source: Frame, ends: Sequence[Any], name: str, progress: Progress | None = None) -> MorphBody:
+def frame_of(source: MorphFrame, ends: Sequence[Any], name: str, progress: Progress | None = None) -> MorphBody:
     """Return the frame of a metamorphosis between bodies."""
     from geofit.morphing.morph import morph
 
@@ -252,15 +252,15 @@ def _file_digest(file: Path) -> str:
 def origin_text(result: BodyResult) -> Message:
     """Return in words how a body came here."""
     if result.origin == "read back":
-        return message("body.read-back", "Read from the project file; it has not been made again.")
+        return message("project.body-read-back", "Read from the project file; it has not been made again.")
     if result.origin == "fitted":
-        return message("body.made-now", "Made in this session.")
+        return message("project.body-made-now", "Made in this session.")
     if not is_finite(result.difference):
-        return message("body.made-again", "Made again from the same data.")
+        return message("project.body-made-again", "Made again from the same data.")
     if result.difference == 0:
-        return message("body.made-again-same", "Made again from the same data: the same as the project's file.")
+        return message("project.body-made-again-same", "Made again from the same data: the same as the project's file.")
     return message(
-        "body.made-again-other",
+        "project.body-made-again-other",
         "Made again from the same data; it differs from the project's file by up to {difference:.3g} m.",
         difference=result.difference,
     )

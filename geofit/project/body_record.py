@@ -16,8 +16,8 @@ __all__ = [
     "BodySource",
     "BodyStyle",
     "ClosedMesh",
-    "Frame",
     "Intervals",
+    "MorphFrame",
     "next_colour",
 ]
 
@@ -49,7 +49,7 @@ class BetweenHorizons:
 
 
 @dataclass(frozen=True)
-class Frame:
+class MorphFrame:
     """A frame of a metamorphosis between bodies: interpolated geometry, not a record.
 
     ``ends`` made the bodies, in order; ``tau`` is the share of the way. The others are those of :func:`geofit.morph`.
@@ -65,7 +65,7 @@ class Frame:
     seeds: bool = False
 
 
-BodySource = Intervals | ClosedMesh | BetweenHorizons | Frame
+BodySource = Intervals | ClosedMesh | BetweenHorizons | MorphFrame
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,7 @@ def _source_data(source: BodySource) -> dict[str, Any]:
             return {"kind": "mesh", "file": file}
         case BetweenHorizons(upper, lower):
             return {"kind": "horizons", "upper": upper, "lower": lower}
-        case Frame():
+        case MorphFrame():
             plain = {
                 name: getattr(source, name) for name in ("names", "mode", "pace", "dates", "cells", "tau", "seeds")
             }
@@ -149,7 +149,7 @@ def _source_from(data: Mapping[str, Any]) -> BodySource:
         case "frame":
             ends = tuple(BodyProvenance.from_data(end) for end in data["ends"])
             names, dates = (tuple(map(str, data[key])) for key in ("names", "dates"))
-            return Frame(
+            return MorphFrame(
                 ends,
                 names,
                 data["mode"],

@@ -10,7 +10,7 @@ import numpy as np
 
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
-from geofit.project.body_record import BetweenHorizons, BodySource, Frame
+from geofit.project.body_record import BetweenHorizons, BodySource, MorphFrame
 from geofit.project.mesh_body import MeshBody
 
 __all__ = ["horizon_body", "needed_horizons"]
@@ -53,6 +53,6 @@ def needed_horizons(source: BodySource) -> set[str]:
     match source:
         case BetweenHorizons(upper, lower):
             return {upper, lower} if isinstance(lower, str) else {upper}
-        case Frame():
+        case MorphFrame():
             return set().union(*(needed_horizons(end.source) for end in source.ends))
     return set()

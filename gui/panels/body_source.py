@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.project.body_record import BetweenHorizons, BodySource, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import BetweenHorizons, BodySource, ClosedMesh, Intervals, MorphFrame
 
 __all__ = ["BodySourceForm"]
 
@@ -68,7 +68,7 @@ class BodySourceForm(QWidget):
         self._other: tuple[str, Mapping[str, int]] = ("", {})
         self._mesh = ""
         self._wanted: frozenset[str] = frozenset()
-        self._frame: Frame | BetweenHorizons | None = None
+        self._frame: MorphFrame | BetweenHorizons | None = None
         self.kind.activated.connect(lambda _: self._choose())
         self.browse.clicked.connect(lambda: self.file_wanted.emit(self.kind.currentData()))
         self.codes.itemChanged.connect(self._check)
@@ -93,7 +93,7 @@ class BodySourceForm(QWidget):
 
     def put(self, source: BodySource | None) -> None:
         """Show a source without emitting; None: intervals of the open site, none chosen."""
-        self._frame = source if isinstance(source, Frame | BetweenHorizons) else None
+        self._frame = source if isinstance(source, MorphFrame | BetweenHorizons) else None
         kind = OWN
         self._wanted = frozenset()
         if isinstance(source, Intervals):
@@ -146,7 +146,7 @@ class BodySourceForm(QWidget):
                     upper=self._frame.upper, lower=lower if isinstance(lower, str) else f"{lower:g} m"
                 )
             )
-        if isinstance(self._frame, Frame):
+        if isinstance(self._frame, MorphFrame):
             self.frame.setText(
                 self.tr("Frame at {share:.0f} % between {names}: geometry, not a record of the process.").format(
                     share=100 * self._frame.tau, names=", ".join(self._frame.names)
