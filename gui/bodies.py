@@ -39,6 +39,7 @@ from geofit.project.body_record import (
 )
 from geofit.project.body_saving import largest_difference
 from geofit.project.body_sources import outline_layers, site_codes
+from geofit.project.horizon_body import needed_horizons
 from geofit.project.provenance import Provenance
 
 __all__ = ["Bodies"]
@@ -194,6 +195,10 @@ class Bodies(QObject):
         def work() -> Work:
             held = {record.provenance for record in self._document.state.bodies.values()}
             result = self._document.bodies.get(provenance)
+            if not self._document.surfaces().keys() >= needed_horizons(provenance.source):
+                # They are still being fitted; the next change of the document tries again.
+                self._pending.discard(provenance)
+                return None
             if provenance not in held or (result is not None and result.origin != "read back"):
                 self._pending.discard(provenance)
                 return None

@@ -264,7 +264,7 @@ class MainWindow(QMainWindow):
         self.activity.began.connect(lambda _: self._enable())
         self.activity.ended.connect(self._enable)
         self.activity.ended.connect(self.showing.renew)
-        for refusing in (self.fitting, self.delivering, self.ordering, self.bodies):
+        for refusing in (self.fitting, self.delivering, self.ordering, self.bodies, self.morphing):
             refusing.refused.connect(lambda error: self.fail("", error))
         self.showing.drawing.failed.connect(lambda error: self.fail(self.tr("Drawing"), error))
         for part in (

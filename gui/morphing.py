@@ -9,40 +9,50 @@ from typing import Any
 from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QFileDialog, QInputDialog, QWidget
 
+from geofit.bodies.settings import BodySettings
+from geofit.data.errors import MissingDependencyError
+from geofit.data.files import file_stems
 from geofit.data.messages import message
 from geofit.gui.activity import Activity
 from geofit.gui.bodies import Bodies
+from geofit.gui.dialogs.horizon_bodies import HorizonBodies
+from geofit.gui.filming import Filming
 from geofit.gui.fitting import Fitting
 from geofit.gui.worker import Task, run
 from geofit.gui.workspace import Workspace
 from geofit.implicit.mesh import TriangleMesh
 from geofit.morphing.body import MorphBody
+from geofit.project.body_building import end_shape
 from geofit.project.body_commands import SetBody
-from geofit.project.body_record import BodyRecord, BodyStyle, next_colour
+from geofit.project.body_record import BetweenHorizons, BodyRecord, BodyStyle, next_colour
 from geofit.project.document import Document
 from geofit.project.morph_run import FRAME_FORMATS, MorphRun
 from geofit.project.morph_view import (
     MorphView,
     MorphWay,
-    end_shape,
     export_frames,
     finished,
     frame_as_body,
     frame_body,
     previewed,
 )
+from geofit.report.film import require_encoder
 
 __all__ = ["Morphing"]
 
 _LOG = logging.getLogger(__name__)
-#: Frames that are exported, and the kind of film.
-FRAMES, FILM = 25, "gif"
+#: Frames that are exported, the kind of film, and pictures of a film of the view.
+FRAMES, FILM, PICTURES = 25, "gif", 49
 
 
 class Morphing(QObject):
-    """What the panel of metamorphosis does. ``view`` is the way that is shown, None while there is none."""
+    """What the panel of metamorphosis does. ``view`` is the way that is shown, None while there is none.
+
+    ``reported(text)`` says in the status bar what was done, ``refused(exception)`` why something was not.
+    """
 
     reported = Signal(str)
+    refused = Signal(object)
 
     def __init__(
         self, document: Document, activity: Activity, fitting: Fitting, bodies: Bodies, workspace: Workspace,
@@ -62,19 +72,25 @@ class Morphing(QObject):
         panel.skin_toggled.connect(lambda _: self._show_ends())
         panel.take_requested.connect(self.ask_name)
         panel.export_requested.connect(self.ask_export)
+        panel.film_requested.connect(self.ask_film)
         panel.add_requested.connect(self.ask_file)
+        panel.horizons_requested.connect(self.ask_horizons)
         for choice in (panel.mode, panel.pace):
             choice.activated.connect(lambda _: self._forget())
         panel.seeds.toggled.connect(lambda _: self._forget())
         activity.ended.connect(lambda: panel.set_running(False))
         bodies.showing.shown.connect(self._show_bodies)
         document.site_changed.connect(self._on_site)
+        self.filming = Filming(workspace.view, activity, self)
+        self.filming.written.connect(self._filmed)
+        self.filming.ended.connect(lambda: self.drag(self._panel.timeline.tau))
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self._draw)
 
     def close(self) -> None:
         """Listen no more; the document may live longer than the window."""
         self._panel.rest()
+        self.filming.stop()
         self._later.stop()
         self._document.site_changed.disconnect(self._on_site)
 
@@ -96,7 +112,7 @@ class Morphing(QObject):
             tuple(state.bodies[name].provenance for name in known), tuple(known), panel.mode.currentData(),
             panel.pace.currentData(), panel.given_dates(), panel.seeds.isChecked(),
         )  # fmt: skip
-        shapes = [end_shape(made[name]) for name in known]
+        shapes = [end_shape(made[name].body) for name in known]
         if self.view is not None and self.view.way == way and self.view.full is None:
             self._finish(self.view, shapes)
             return
@@ -157,11 +173,61 @@ class Morphing(QObject):
             work = (view.full, folder, " - ".join(view.way.names), frames, FRAME_FORMATS, film)
             self._activity.do(self.tr("Export frames"), export_frames, *work, on_done=self._exported, in_process=True)
 
+    def ask_film(self) -> None:
+        """Ask for a file, and film the way as the view shows it."""
+        path, chosen = QFileDialog.getSaveFileName(
+            self._window, self.tr("Film of the view"),
+            str((self._document.folder or Path()) / f"{file_stems([self._proposed()])[self._proposed()]}.gif"),
+            self.tr("GIF (*.gif);;MP4, by the program ffmpeg (*.mp4)"),
+        )  # fmt: skip
+        if path:
+            self.film(Path(path) if Path(path).suffix else Path(f"{path}.{'mp4' if 'mp4' in chosen else 'gif'}"))
+
+    def film(self, path: Path, pictures: int = PICTURES) -> None:
+        """Write a film of the way by the view's camera; the slider stays where it is."""
+        view = self.view
+        if view is None or view.full is None or self.filming.running:
+            return
+        if path.suffix.casefold() == ".mp4":
+            try:
+                require_encoder()
+            except MissingDependencyError as error:
+                self.refused.emit(error)
+                return
+        self._panel.rest()
+        full = view.full
+
+        def show(tau: float) -> str:
+            if self.view is not view:
+                return ""
+            self._show_frame(full.surface(tau), tau)
+            kind = self.tr("survey") if tau in full.knots else self.tr("interpolated")
+            return f"{self._panel.where.text()} ({kind})"
+
+        title = self.tr("Write {name}").format(name=path.name)
+        self.filming.start(path, full.steps(pictures).tolist(), show, title)
+
     def ask_file(self) -> None:
         """Ask for a closed body, and take it into the document."""
         file = self._bodies.ask_mesh()
         if file is not None:
             self._bodies.take_mesh(file)
+
+    def ask_horizons(self) -> None:
+        """Ask which horizons are closed to bodies above a common base, and make those."""
+        surfaces = self._document.surfaces()
+        if not surfaces:
+            self._panel.say(self.tr("No horizon has been fitted yet."))
+            return
+        lowest = min(float(surface.bounds[0][2]) for surface in surfaces.values())
+        dialog = HorizonBodies(tuple(surfaces), lowest, self._window)
+        if dialog.exec():
+            self.close_horizons(dialog.chosen(), dialog.base())
+
+    def close_horizons(self, names: tuple[str, ...], base: str | float) -> None:
+        """Make a body of the document between each of some horizons and a common base."""
+        for name in names:
+            self._bodies.fit(name, BetweenHorizons(name, base), BodySettings())
 
     def _previewed(self, view: MorphView, shapes: list[Any]) -> None:
         self.view = view
@@ -253,6 +319,10 @@ class Morphing(QObject):
         day = self.view.preview.date_of(tau)
         return f"{'-'.join(self.view.way.names)} {100 * tau:.0f} %" if day is None else day.isoformat()
 
+    def _filmed(self, path: Path) -> None:
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(path.resolve())))
+        self.reported.emit(self.tr("Wrote {names}.").format(names=path.resolve()))
+
     def _exported(self, done: MorphRun) -> None:
         folder = done.files[0].resolve().parent
         _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(folder)))
@@ -274,6 +344,7 @@ class Morphing(QObject):
     def _forget(self) -> None:
         """Let go of the way: something that it was made from is another."""
         self.view, self._wanted = None, None
+        self.filming.stop()
         self._panel.rest()
         self._panel.set_ready(False, False)
         self._panel.say("")

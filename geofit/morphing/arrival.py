@@ -12,7 +12,7 @@ Floats = NDArray[np.float64]
 #: The speed |d_B| counts as this many spacings at least: at B the front would stop.
 FLOOR = 0.05
 #: Layers of nodes beyond the way of the front to which its lengths are continued.
-LAYERS = 4
+LAYERS = 8
 
 
 def arrival(d_a: Floats, d_b: Floats, spacing: float) -> Floats:

@@ -152,15 +152,15 @@ def _update(
         found = c / (b + math.sqrt(inner))
         used = n + 1
     if slot[at] >= 0 and used > 0:
-        found = _refined(found, u, done, at, 1 / max(rest, LEAST), slot, base, slope, side[:used], axis[:used])
+        found = _refined(found, u, done, at, max(rest, LEAST), floor, slot, base, slope, side[:used], axis[:used])
     # Nodes behind A's surface have more than 1; no front starts there.
     return min(found, 1.0)
 
 
 @njit(cache=True)
 def _refined(
-    found: float, u: Floats, done: NDArray[np.bool_], at: int, q: float, slot: Slots, base: Floats, slope: Floats,
-    side: Ints, axis: Ints,
+    found: float, u: Floats, done: NDArray[np.bool_], at: int, rest: float, floor: float, slot: Slots, base: Floats,
+    slope: Floats, side: Ints, axis: Ints,
 ) -> float:  # fmt: skip
     """Return u by differences of w = u / u0 from the neighbours that gave ``found``, which stays where these fail.
 
@@ -168,7 +168,7 @@ def _refined(
     u0 p w.
     """
     row = slot[at]
-    a, b, c, least, most, highest = -q * q, 0.0, 0.0, np.inf, 0.0, 0.0
+    a, b, c, least, most, highest = -1 / rest**2, 0.0, 0.0, np.inf, 0.0, 0.0
     free = slope[row, 0] ** 2 + slope[row, 1] ** 2 + slope[row, 2] ** 2
     for n in range(len(side)):
         near, far = at + side[n], at + 2 * side[n]
@@ -199,7 +199,8 @@ def _refined(
         return found
     w = c / below
     # What is farther on the way comes later: no value above all of those it comes from.
-    return base[row] * w if least / NEAR <= w <= most * NEAR and base[row] * w <= highest else found
+    later = base[row] * w * min(rest / floor, 1.0) <= highest
+    return base[row] * w if least / NEAR <= w <= most * NEAR and later else found
 
 
 @njit(cache=True)

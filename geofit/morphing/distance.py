@@ -11,16 +11,18 @@ from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice, sample
 from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["Samples", "both_distances", "distances", "redistanced", "samples_of"]
+__all__ = ["Samples", "both_distances", "distances", "front_distances", "redistanced", "samples_of"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
 #: Feet are found to this part of a spacing.
 TOLERANCE = 1e-7
+#: Feet that start on triangles are done at a step of this part: the next one would be about its square.
+POLISHED = 1e-3
 #: Beyond the bodies this many spacings get both distances: the front starts there.
 RIM = 5.0
-#: Layers of nodes around the bodies that get both distances, too: the front ends there.
+#: Layers of nodes around the way of a front that get both distances, too: their slopes are wanted at its ends.
 BEYOND = 4
 #: A polished distance must lie this near to that from the triangles, in spacings: triangles err by less.
 TRUSTED = 0.25
@@ -46,7 +48,7 @@ def samples_of(body: Field | TriangleMesh, lattice: Lattice) -> Samples:
     return Samples(lattice, values < 0, isosurface(spline, lattice, capped=True), spline)
 
 
-def distances(body: Samples, wanted: Bools, band: float = 8.0) -> Floats:
+def distances(body: Samples, wanted: Bools, band: float = 8.0, tolerance: float = TOLERANCE) -> Floats:
     """Return the signed distances of the nodes from the surface of a body, metres, negative inside.
 
     Parameters
@@ -57,6 +59,8 @@ def distances(body: Samples, wanted: Bools, band: float = 8.0) -> Floats:
         Nodes that need their distance although they are far from the surface.
     band : float
         Nodes nearer than this, in spacings, get theirs anyway; the others get ``band``, with their sign.
+    tolerance : float
+        Feet are found to this part of a spacing.
     """
     from geofit.morphing.triangle_loops import spread_triangles
 
@@ -74,7 +78,7 @@ def distances(body: Samples, wanted: Bools, band: float = 8.0) -> Floats:
         at = np.flatnonzero(known & (wanted.ravel() | (near < band)))
         points = np.stack(np.unravel_index(at, lattice.shape), axis=1).astype(np.float64)
         start = _feet(points, places[body.mesh.triangles[owner[at]]])
-        polished, done = polish_feet(points, start, _padded(body.spline), TOLERANCE)
+        polished, done = polish_feet(points, start, _padded(body.spline), tolerance)
         trusted = done & (np.abs(polished - distance[at]) < TRUSTED)
         distance[at] = np.where(trusted, polished, distance[at])
     sign = np.where(body.inside.ravel(), -1.0, 1.0)
@@ -83,9 +87,17 @@ def distances(body: Samples, wanted: Bools, band: float = 8.0) -> Floats:
 
 def both_distances(a: Samples, b: Samples) -> tuple[Floats, Floats]:
     """Return the signed distances (nx, ny, nz) from two bodies, metres, exact in both of them and around them."""
-    around = _widened(a.inside | b.inside, BEYOND)
-    d_a = distances(a, around)
-    d_b = distances(b, around | (np.abs(d_a) < RIM * a.lattice.spacing))
+    either = a.inside | b.inside
+    d_a = distances(a, either)
+    d_b = distances(b, either | (np.abs(d_a) < RIM * a.lattice.spacing))
+    return d_a, d_b
+
+
+def front_distances(a: Samples, b: Samples) -> tuple[Floats, Floats]:
+    """Return the signed distances (nx, ny, nz) from two bodies, metres, exact on the way of a front and around it."""
+    way = _widened(a.inside ^ b.inside, BEYOND)
+    d_a = distances(a, way, tolerance=POLISHED)
+    d_b = distances(b, way | (np.abs(d_a) < RIM * a.lattice.spacing), tolerance=POLISHED)
     return d_a, d_b
 
 

@@ -15,7 +15,7 @@ from geofit.data.progress import Progress
 from geofit.implicit.grid import SplineGrid, spline_grid
 from geofit.implicit.lattice import Lattice
 from geofit.morphing.arrival import arrival, source_field
-from geofit.morphing.distance import Samples, both_distances, distances
+from geofit.morphing.distance import Samples, both_distances, distances, front_distances
 from geofit.morphing.errors import MorphError
 from geofit.morphing.parts import SEED, LonePart, isolated_parts, with_seeds, without_parts
 from geofit.morphing.paths import Line, Path, level_set_path, quick_surface, samples_at
@@ -29,7 +29,7 @@ Pace = Literal["progress", "volume", "time"]
 #: Shares of the way at which the pace is tabled; between them it is linear.
 TABLED = 257
 #: A frame's field is kept within this many spacings: a spline would swing next to larger steps.
-KEPT = 6.0
+KEPT = 8.0
 #: Corrections of a share by the volume of its surface.
 SECANTS = 4
 
@@ -205,7 +205,7 @@ def leg_between(
                 "'blend', or align='principal' if the bodies have different coordinates.",
             )
         )
-    d_a, d_b = both_distances(start, target)
+    d_a, d_b = (front_distances if mode == "arrival" else both_distances)(start, target)
     first = d_a
     if len(places):
         _, first = with_seeds(start, d_a, places, SEED * lattice.spacing)

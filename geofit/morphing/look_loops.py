@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["cell_fractions", "crossing_shares", "gather_blocks", "mixed_blocks", "tetrahedra_volume"]
+__all__ = ["block_spans", "cell_fractions", "crossing_shares", "gather_blocks", "mixed_blocks", "tetrahedra_volume"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -36,6 +36,51 @@ def mixed_blocks(first: NDArray[np.float32], last: NDArray[np.float32], s: float
                     found[count, 0], found[count, 1], found[count, 2] = a * block, b * block, c * block
                     count += 1
     return found[:count]
+
+
+@njit(cache=True)
+def block_spans(
+    first: NDArray[np.float32], last: NDArray[np.float32], block: int
+) -> tuple[Ints, NDArray[np.float32], NDArray[np.float32]]:
+    """Return the first nodes (k, 3) of the blocks of (1 - s) first + s last that may have both signs, and when.
+
+    Beyond its least and its largest s in [0, 1] a block has one sign.
+    """
+    nx, ny, nz = first.shape
+    bx, by, bz = -(-(nx - 1) // block), -(-(ny - 1) // block), -(-(nz - 1) // block)
+    found = np.empty((bx * by * bz, 3), np.int64)
+    low, high = np.empty(len(found), np.float32), np.empty(len(found), np.float32)
+    count = 0
+    for a in range(bx):
+        for b in range(by):
+            for c in range(bz):
+                inside = outside = False
+                join = np.array([2.0, -1.0])
+                leave = np.array([2.0, -1.0])
+                for i in range(a * block, min(a * block + block + 1, nx)):
+                    for j in range(b * block, min(b * block + block + 1, ny)):
+                        for k in range(c * block, min(c * block + block + 1, nz)):
+                            p, q = first[i, j, k], last[i, j, k]
+                            if p < 0 and q < 0:
+                                inside = True
+                            elif p >= 0 and q >= 0:
+                                outside = True
+                            else:
+                                s = p / (p - q)
+                                turn = leave if p < 0 else join
+                                turn[0], turn[1] = min(turn[0], s), max(turn[1], s)
+                joins, leaves = join[1] >= 0, leave[1] >= 0
+                if not (joins or leaves) and not (inside and outside):
+                    continue
+                # Something is inside from ``start`` to ``stop``, and something outside from ``begin`` to ``end``.
+                start = 0.0 if inside or leaves else join[0]
+                stop = 1.0 if inside or joins else leave[1]
+                begin = 0.0 if outside or joins else leave[0]
+                end = 1.0 if outside or leaves else join[1]
+                found[count, 0], found[count, 1], found[count, 2] = a * block, b * block, c * block
+                low[count], high[count] = max(start, begin), min(stop, end)
+                count += 1
+    return found[:count], low[:count], high[:count]
 
 
 @njit(cache=True)

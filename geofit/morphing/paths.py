@@ -22,6 +22,8 @@ Singles = NDArray[np.float32]
 
 #: Cells of a block of a quick surface along each axis.
 BLOCK = 8
+#: Shares at which blocks change are known to this.
+ROUNDING = 1e-5
 #: Snapshots of the level-set equation, evenly in s; between two of them fields are linear.
 SNAPSHOTS = 32
 #: Half-width of the band that a snapshot keeps, in spacings.
@@ -56,7 +58,7 @@ def quick_surface(path: Path, s: float) -> TriangleMesh:
     from geofit.morphing.look_loops import gather_blocks, mixed_blocks
 
     first, last, t = path.between(s)
-    blocks = mixed_blocks(first, last, t, BLOCK)
+    blocks = path.blocks(s) if isinstance(path, Line) else mixed_blocks(first, last, t, BLOCK)
     return isosurface_of_blocks(gather_blocks(first, last, t, blocks, BLOCK), blocks, path.lattice)
 
 
@@ -71,6 +73,17 @@ class Line:
     def between(self, s: float) -> tuple[Singles, Singles, float]:
         """Return both fields and s."""
         return self.first, self.last, s
+
+    @cached_property
+    def _spans(self) -> tuple[NDArray[np.int64], Singles, Singles]:
+        from geofit.morphing.look_loops import block_spans
+
+        return block_spans(self.first, self.last, BLOCK)
+
+    def blocks(self, s: float) -> NDArray[np.int64]:
+        """Return the first nodes (k, 3) of the blocks that may have surface at share s."""
+        starts, low, high = self._spans
+        return np.asarray(starts[(low <= s + ROUNDING) & (high >= s - ROUNDING)])
 
     def crossings(self) -> tuple[Floats, Floats]:
         """Return when nodes join and leave, sorted."""

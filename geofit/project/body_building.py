@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,8 +19,18 @@ from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite
 from geofit.data.progress import Progress, tell
 from geofit.implicit.mesh import TriangleMesh
-from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Intervals, MorphFrame, Outlines, Picks
+from geofit.project.body_record import (
+    BetweenHorizons,
+    BodyProvenance,
+    BodySource,
+    ClosedMesh,
+    Intervals,
+    MorphFrame,
+    Outlines,
+    Picks,
+)
 from geofit.project.body_sources import file_digest, read_source
+from geofit.project.mesh_body import MeshBody, read_mesh_body
 
 if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy
@@ -33,7 +43,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "BodyResult",
-    "MeshBody",
+    "end_shape",
     "made_body",
     "make_body",
     "measured_strata",
@@ -43,26 +53,6 @@ __all__ = [
 Floats = NDArray[np.float64]
 #: How a body came here: fitted in this session, made again as a project names it, or read from the project's file.
 Origin = Literal["fitted", "again", "read back"]
-
-
-@dataclass(frozen=True, eq=False)
-class MeshBody:
-    """Closed triangles about a local origin: a body of a file. Nothing was fitted, so nothing is judged."""
-
-    name: str
-    origin: Floats
-    overview: TriangleMesh
-    contacts: Floats = field(default_factory=lambda: np.zeros((0, 3)))
-    epsilon: float = 0.5
-
-    @property
-    def extent(self) -> tuple[Floats, Floats]:
-        """Corners (3,) of a box around the body about the local origin."""
-        return self.overview.vertices.min(axis=0), self.overview.vertices.max(axis=0)
-
-    def local_mesh(self, spacing: float) -> TriangleMesh:
-        """Return the triangles as they are: a mesh of a file has no other spacing."""
-        return self.overview
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,9 +129,14 @@ def make_body(
             result, given = _fitted(source, settings, name, campaigns, folder, progress)
         case ClosedMesh(file):
             result, given = BodyResult(read_mesh_body(folder / file, name)), file_digest(folder / file)
+        case BetweenHorizons(upper, lower):
+            from geofit.project.horizon_body import horizon_body
+
+            closed = horizon_body(upper, lower, name, horizons)
+            result, given = BodyResult(closed), closed.digest
         case MorphFrame():
             made = [
-                make_body(end.source, end.settings, one, campaigns, folder, {}, None)
+                make_body(end.source, end.settings, one, campaigns, folder, horizons, None)
                 for end, one in zip(source.ends, source.names, strict=True)
             ]
             tell(progress, "morph", 0.4)
@@ -193,7 +188,7 @@ def frame_of(source: MorphFrame, ends: Sequence[Any], name: str, progress: Progr
     """Return the frame of a metamorphosis between bodies."""
     from geofit.morphing.morph import morph
 
-    shapes = [_end(end) for end in ends]
+    shapes = [end_shape(end) for end in ends]
     way: dict[str, Any] = {
         "mode": source.mode,
         "pace": source.pace,
@@ -206,30 +201,13 @@ def frame_of(source: MorphFrame, ends: Sequence[Any], name: str, progress: Progr
     return body
 
 
-def _end(body: Any) -> Any:
+def end_shape(body: Any) -> Any:
     """Return a body as :func:`geofit.morph` takes it: triangles of a file in map coordinates, others as they are."""
+    if isinstance(body, MeshBody) and body.closed is not None:
+        return body.closed
     if isinstance(body, MeshBody):
         return TriangleMesh(body.overview.vertices + body.origin, body.overview.triangles)
     return body
-
-
-def read_mesh_body(file: Path, name: str) -> MeshBody:
-    """Read a closed body from a file.
-
-    Raises
-    ------
-    InputError
-        If the file cannot be read.
-    MorphError
-        If the mesh is open or inconsistent; the error names edges.
-    """
-    from geofit.io.bodies import read_body
-    from geofit.morphing.ends import require_closed
-
-    mesh = read_body(file)
-    require_closed(mesh, name)
-    origin = np.round((mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2, -1)
-    return MeshBody(name, origin, TriangleMesh(mesh.vertices - origin, mesh.triangles))
 
 
 def origin_text(result: BodyResult) -> Message:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from geofit.data.messages import Message, message
-from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, MorphFrame
+from geofit.project.body_record import BetweenHorizons, BodyRecord, BodyStyle, ClosedMesh, MorphFrame
 from geofit.project.command import Command
 from geofit.project.provenance import DocumentError
 from geofit.project.state import State
@@ -39,6 +39,8 @@ class SetBody(Command):
             return message("project.step-body-frame", "Take a frame as body {name}", name=self.name)
         if isinstance(self.record.provenance.source, ClosedMesh):
             return message("project.step-body-read", "Read body {name}", name=self.name)
+        if isinstance(self.record.provenance.source, BetweenHorizons):
+            return message("project.step-body-closed", "Close body {name} between horizons", name=self.name)
         return message("project.step-body", "Fit body {name}", name=self.name)
 
     def on(self, state: State) -> State:  # noqa: D102

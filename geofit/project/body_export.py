@@ -12,7 +12,8 @@ import numpy as np
 from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
-from geofit.project.body_building import BodyResult, MeshBody
+from geofit.project.body_building import BodyResult
+from geofit.project.mesh_body import MeshBody
 
 if TYPE_CHECKING:
     from geofit.cad.solid import SolidReadBack

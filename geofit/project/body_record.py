@@ -11,6 +11,7 @@ from geofit.data.site import COLOURS
 
 __all__ = [
     "FITTED",
+    "BetweenHorizons",
     "BodyProvenance",
     "BodyRecord",
     "BodySource",
@@ -58,6 +59,14 @@ class ClosedMesh:
 
 
 @dataclass(frozen=True)
+class BetweenHorizons:
+    """The body below the horizon ``upper`` and above the horizon ``lower``, or above one elevation in metres."""
+
+    upper: str
+    lower: str | float
+
+
+@dataclass(frozen=True)
 class MorphFrame:
     """A frame of a metamorphosis between bodies: interpolated geometry, not a record.
 
@@ -74,7 +83,7 @@ class MorphFrame:
     seeds: bool = False
 
 
-BodySource = Intervals | Outlines | Picks | ClosedMesh | MorphFrame
+BodySource = Intervals | Outlines | Picks | ClosedMesh | BetweenHorizons | MorphFrame
 #: Sources that a body is fitted to, and judged by.
 FITTED = (Intervals, Outlines, Picks)
 
@@ -140,6 +149,8 @@ def _source_data(source: BodySource) -> dict[str, Any]:
             return {"kind": "points", "file": file}
         case ClosedMesh(file):
             return {"kind": "mesh", "file": file}
+        case BetweenHorizons(upper, lower):
+            return {"kind": "horizons", "upper": upper, "lower": lower}
         case MorphFrame():
             plain = {
                 name: getattr(source, name) for name in ("names", "mode", "pace", "dates", "cells", "tau", "seeds")
@@ -160,6 +171,9 @@ def _source_from(data: Mapping[str, Any]) -> BodySource:
             return Picks(str(data["file"]))
         case "mesh":
             return ClosedMesh(str(data["file"]))
+        case "horizons":
+            lower = data["lower"]
+            return BetweenHorizons(str(data["upper"]), lower if isinstance(lower, str) else float(lower))
         case "frame":
             ends = tuple(BodyProvenance.from_data(end) for end in data["ends"])
             names, dates = (tuple(map(str, data[key])) for key in ("names", "dates"))

@@ -14,8 +14,9 @@ from geofit.data.errors import GeofitError, InputError, SettingsError
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 from geofit.io.project import Project, ProjectBody
-from geofit.project.body_building import BodyResult, read_mesh_body
+from geofit.project.body_building import BodyResult
 from geofit.project.body_record import BodyProvenance, BodyRecord
+from geofit.project.mesh_body import read_mesh_body
 from geofit.project.state import State
 
 __all__ = ["SavedBody", "bodies_of", "largest_difference", "read_bodies", "records_of", "saved_body"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from geofit.bodies.settings import BodySettings
 from geofit.data.progress import Progress, tell
-from geofit.project.body_building import BodyResult, MeshBody
+from geofit.project.body_building import BodyResult
 from geofit.project.body_record import BodyProvenance, MorphFrame
 from geofit.project.morph_run import MorphRun, run_morph
 
@@ -23,7 +23,6 @@ __all__ = [
     "FULL",
     "MorphView",
     "MorphWay",
-    "end_shape",
     "export_frames",
     "finished",
     "frame_as_body",
@@ -63,16 +62,6 @@ class MorphView:
     events: tuple[Event, ...]
     full: Morph | None = None
     rows: tuple[FrameRow, ...] = ()
-
-
-def end_shape(result: BodyResult) -> Any:
-    """Return a body as :func:`geofit.morph` takes it: triangles of a file in map coordinates, others as they are."""
-    from geofit.implicit.mesh import TriangleMesh
-
-    body = result.body
-    if isinstance(body, MeshBody):
-        return TriangleMesh(body.overview.vertices + body.origin, body.overview.triangles)
-    return body
 
 
 def way_of(way: MorphWay, cells: int) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from geofit.report.scene import require_rendering
 if TYPE_CHECKING:
     from geofit.morphing.body import MorphBody
 
-__all__ = ["body_pictures", "save_film", "write_film"]
+__all__ = ["body_pictures", "require_encoder", "save_film", "write_film"]
 
 Pixels = NDArray[np.uint8]
 
@@ -41,7 +41,7 @@ def write_film(bodies: Sequence[MorphBody], path: str | PathLike[str]) -> Path:
     bodies : sequence of MorphBody
         Frames in order, such as ``m.frames(25)``; each picture says its date or tau and its volume in m3.
     path : path
-        A file that ends in ``.gif``, or in ``.mp4`` with the extra "film".
+        A file that ends in ``.gif``, or in ``.mp4`` where the program ffmpeg is installed.
 
     Returns
     -------
@@ -155,24 +155,17 @@ def save_film(images: Sequence[Pixels], path: str | PathLike[str]) -> Path:
         case ".gif":
             from PIL import Image
 
-            # One palette for the whole film, from all its pictures: colours that change would flicker.
+            # One palette for the whole film, from all its pictures: colours that change would flicker. It covers
+            # rare colours, too: those of a legend are.
             some = np.concatenate([image[::4, ::4] for image in images])
-            palette = Image.fromarray(some).quantize(128, method=Image.Quantize.MEDIANCUT)
+            palette = Image.fromarray(some).quantize(256, method=Image.Quantize.MAXCOVERAGE)
             pictures = [Image.fromarray(image).quantize(palette=palette, dither=Image.Dither.NONE) for image in images]
             times = [1000 // RATE] * len(images)
             times[0] = times[-1] = HOLD * 1000 // RATE
             with replacing(target) as part:
                 pictures[0].save(part, save_all=True, append_images=pictures[1:], duration=times, loop=0, optimize=True)
         case ".mp4":
-            program = shutil.which("ffmpeg")
-            if program is None:
-                raise MissingDependencyError(
-                    message(
-                        "report.film-encoder",
-                        "MP4 needs the program ffmpeg, which is not installed. Install it (Debian and Ubuntu: "
-                        "apt-get install ffmpeg), or write a GIF, which needs nothing.",
-                    )
-                )
+            program = require_encoder()
             height, width = (side - side % 2 for side in images[0].shape[:2])
             command = [program, "-v", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}"]
             command += ["-r", str(RATE), "-i", "-", "-pix_fmt", "yuv420p", "-fflags", "+bitexact", "-f", "mp4", "-y"]
@@ -189,3 +182,23 @@ def save_film(images: Sequence[Pixels], path: str | PathLike[str]) -> Path:
                 message("report.film-ending", "A film ends in .gif or .mp4, not in '{ending}'.", ending=ending)
             )
     return target
+
+
+def require_encoder() -> str:
+    """Return the program that encodes MP4.
+
+    Raises
+    ------
+    MissingDependencyError
+        If ffmpeg is not installed.
+    """
+    program = shutil.which("ffmpeg")
+    if program is None:
+        raise MissingDependencyError(
+            message(
+                "report.film-encoder",
+                "MP4 needs the program ffmpeg, which is not installed. Install it (Debian and Ubuntu: "
+                "apt-get install ffmpeg), or write a GIF, which needs nothing.",
+            )
+        )
+    return program

@@ -31,7 +31,7 @@ from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.settings_form import SettingsForm, scrolling
 from geofit.gui.panels.verdict import VerdictBadge
-from geofit.project.body_record import FITTED, BodyProvenance, ClosedMesh, MorphFrame
+from geofit.project.body_record import FITTED, BetweenHorizons, BodyProvenance, ClosedMesh, MorphFrame
 
 __all__ = ["BodiesPanel", "BodyShown"]
 
@@ -152,7 +152,7 @@ class BodiesPanel(QWidget):
         self.badge.setVisible(shown is not None and judged)
         if shown is not None:
             self.badge.show_accuracy(accuracy, shown.stale, shown.verdict, shown.waiting)
-        self.form.setVisible(judged and not isinstance(self.source.source(), ClosedMesh | MorphFrame))
+        self.form.setVisible(judged and not isinstance(self.source.source(), ClosedMesh | BetweenHorizons | MorphFrame))
         self.origin.setText("" if shown is None else shown.origin)
         self.origin.setVisible(bool(self.origin.text()))
         self._check()
@@ -257,7 +257,7 @@ class BodiesPanel(QWidget):
 
     def _fit(self) -> None:
         source, settings = self.source.source(), self.form.edited()
-        if isinstance(source, ClosedMesh):
+        if isinstance(source, ClosedMesh | BetweenHorizons):
             settings = BodySettings()
         if source is not None and settings is not None:
             self.fit_requested.emit(self.name or self.title.text().strip(), source, settings)

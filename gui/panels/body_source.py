@@ -18,7 +18,15 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.project.body_record import BodySource, ClosedMesh, Intervals, MorphFrame, Outlines, Picks
+from geofit.project.body_record import (
+    BetweenHorizons,
+    BodySource,
+    ClosedMesh,
+    Intervals,
+    MorphFrame,
+    Outlines,
+    Picks,
+)
 
 __all__ = ["MESH", "OTHER", "OUTLINES", "OWN", "POINTS", "BodySourceForm"]
 
@@ -70,7 +78,7 @@ class BodySourceForm(QWidget):
         self._files: dict[str, str] = dict.fromkeys((OWN, OTHER, OUTLINES, POINTS, MESH), "")
         self._offers: dict[str, Mapping[str, int]] = {}
         self._wanted: frozenset[str] = frozenset()
-        self._frame: MorphFrame | None = None
+        self._frame: MorphFrame | BetweenHorizons | None = None
         self.kind.activated.connect(lambda _: self._choose())
         self.browse.clicked.connect(lambda: self.file_wanted.emit(self.kind.currentData()))
         self.codes.itemChanged.connect(self._check)
@@ -91,7 +99,7 @@ class BodySourceForm(QWidget):
 
     def put(self, source: BodySource | None) -> None:
         """Show a source without emitting; None: intervals of the open site, none chosen."""
-        self._frame = source if isinstance(source, MorphFrame) else None
+        self._frame = source if isinstance(source, MorphFrame | BetweenHorizons) else None
         kind = OWN
         self._wanted = frozenset()
         match source:
@@ -170,9 +178,16 @@ class BodySourceForm(QWidget):
             (self.codes, not made and listed), (self.frame, made),
         ):  # fmt: skip
             widget.setVisible(shown)
-        if self._frame is not None:
+        if isinstance(self._frame, BetweenHorizons):
+            lower = self._frame.lower
             self.frame.setText(
-                self.tr("MorphFrame at {share:.0f} % between {names}: geometry, not a record of the process.").format(
+                self.tr("Below {upper} and above {lower}.").format(
+                    upper=self._frame.upper, lower=lower if isinstance(lower, str) else f"{lower:g} m"
+                )
+            )
+        if isinstance(self._frame, MorphFrame):
+            self.frame.setText(
+                self.tr("Frame at {share:.0f} % between {names}: geometry, not a record of the process.").format(
                     share=100 * self._frame.tau, names=", ".join(self._frame.names)
                 )
             )

@@ -41,7 +41,8 @@ class MorphPanel(QWidget):
 
     Signals: ``run_requested()``, ``stop_requested()``; ``moved(tau)`` while the slider is dragged or plays,
     ``rested(tau)`` when it is let go; ``skin_toggled(on)``; ``take_requested()``, ``export_requested()``,
-    ``add_requested()`` for a body of a file.
+    ``film_requested()`` for a film of the view,
+    ``add_requested()`` for a body of a file, ``horizons_requested()`` for bodies between horizons.
     """
 
     run_requested = Signal()
@@ -51,7 +52,9 @@ class MorphPanel(QWidget):
     skin_toggled = Signal(bool)
     take_requested = Signal()
     export_requested = Signal()
+    film_requested = Signal()
     add_requested = Signal()
+    horizons_requested = Signal()
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -61,6 +64,10 @@ class MorphPanel(QWidget):
         self.list.setToolTip(self.tr("Check two or more bodies; drag them into their order: A, B, C…"))
         self.list.setMinimumHeight(64)
         self.add = QPushButton(self.tr("Add a body from a file…"))
+        self.horizons = QPushButton(self.tr("Close horizons to bodies…"))
+        self.horizons.setToolTip(
+            self.tr("Bodies between horizons and a common base, such as the ground at two surveys")
+        )
         self.mode, self.pace = QComboBox(), QComboBox()
         for box, choices in (
             (self.mode, (("arrival", self.tr("Front from A")), ("pde", self.tr("Level set, smoothed")),
@@ -96,6 +103,8 @@ class MorphPanel(QWidget):
         self.skin = QCheckBox(self.tr("Onion skin of the ends"))
         self.skin.setChecked(True)
         self.take, self.export = QPushButton(self.tr("Take as body…")), QPushButton(self.tr("Export frames…"))
+        self.film = QPushButton(self.tr("Film of the view…"))
+        self.film.setToolTip(self.tr("GIF or MP4 of the whole way by the camera of the 3D view"))
         self.where, self.note = QLabel(), QLabel(translated(GEOMETRY_ONLY))
         self.note.setWordWrap(True)
         self._lay_out()
@@ -104,8 +113,10 @@ class MorphPanel(QWidget):
         self.run.clicked.connect(self.run_requested)
         self.stop.clicked.connect(self.stop_requested)
         self.add.clicked.connect(self.add_requested)
+        self.horizons.clicked.connect(self.horizons_requested)
         self.take.clicked.connect(self.take_requested)
         self.export.clicked.connect(self.export_requested)
+        self.film.clicked.connect(self.film_requested)
         self.skin.toggled.connect(self.skin_toggled)
         self.timeline.moved.connect(self.moved)
         self.timeline.rested.connect(self.rested)
@@ -168,7 +179,7 @@ class MorphPanel(QWidget):
         """Enable the slider once there is a preview, and what needs the full grid once that is there."""
         for widget in (self.timeline, self.back, self.play, self.forth, self.skin):
             widget.setEnabled(preview)
-        for button in (self.take, self.export):
+        for button in (self.take, self.export, self.film):
             button.setEnabled(full)
         if not preview:
             self.play.setChecked(False)
@@ -221,6 +232,7 @@ class MorphPanel(QWidget):
         column.setSpacing(4)
         column.addWidget(self.list, 1)
         column.addWidget(self.add, 0, Qt.AlignmentFlag.AlignLeft)
+        column.addWidget(self.horizons, 0, Qt.AlignmentFlag.AlignLeft)
         column.addLayout(form)
         column.addWidget(self.seeds)
         row = QHBoxLayout()
@@ -235,7 +247,7 @@ class MorphPanel(QWidget):
         line.addLayout(row)
         outer.addLayout(line)
         tools = FlowLayout()
-        for widget in (self.back, self.play, self.forth, self.where, self.skin, self.take, self.export):
+        for widget in (self.back, self.play, self.forth, self.where, self.skin, self.take, self.export, self.film):
             tools.addWidget(widget)
         right = QWidget()
         column = QVBoxLayout(right)

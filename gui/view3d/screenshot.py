@@ -18,7 +18,7 @@ from geofit.data.messages import message
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.stage import Stage
 
-__all__ = ["write_screenshot"]
+__all__ = ["picture", "write_screenshot"]
 
 #: Most pixels a side: what every OpenGL can draw into.
 MOST = 16_000
@@ -49,11 +49,7 @@ def write_screenshot(
                 most=MOST / max(canvas.width(), canvas.height()),
             )
         )
-    image = _rendered(canvas, stage, width, height, scale)
-    painter = QPainter(image)
-    painter.scale(scale, scale)
-    write(painter)
-    painter.end()
+    image = picture(canvas, stage, scale, write)
     for put in (image.setDotsPerMeterX, image.setDotsPerMeterY):
         put(round(SCREEN * scale))
     buffer = QBuffer()
@@ -61,6 +57,16 @@ def write_screenshot(
     QImageWriter(buffer, QByteArray(b"png")).write(image)
     with replacing(Path(path)) as temporary:
         Path(temporary).write_bytes(bytes(buffer.data().data()))
+    return image
+
+
+def picture(canvas: Canvas, stage: Stage, scale: float, write: Callable[[QPainter], None]) -> QImage:
+    """Return the scene with ``scale`` times the widget's pixels; ``write`` draws what is drawn over it."""
+    image = _rendered(canvas, stage, round(canvas.width() * scale), round(canvas.height() * scale), scale)
+    painter = QPainter(image)
+    painter.scale(scale, scale)
+    write(painter)
+    painter.end()
     return image
 
 

@@ -30,7 +30,7 @@ from geofit.gui.view3d.opengl import require_opengl
 from geofit.gui.view3d.overlay import Content, merged
 from geofit.gui.view3d.pointer import Pointer
 from geofit.gui.view3d.projector import Projector
-from geofit.gui.view3d.screenshot import write_screenshot
+from geofit.gui.view3d.screenshot import picture, write_screenshot
 from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, SectionTool
 from geofit.project.listing import Listing
@@ -277,6 +277,12 @@ class SceneView(QWidget):
         self.canvas.land()
         self._refresh()
         return write_screenshot(self.canvas, self._stage, path, scale, self._annotations.write)
+
+    def picture(self) -> QImage:
+        """Return the scene with the pixels of the widget, and all that is drawn over it."""
+        self.canvas.land()
+        self._refresh()
+        return picture(self.canvas, self._stage, 1.0, self._annotations.write)
 
     # Keeping up ----------------------------------------------------------------------------------------------
 

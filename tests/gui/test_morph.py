@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
@@ -177,3 +179,75 @@ def test_dates_and_order_are_those_of_the_list(bodies):
     bodies.qtbot.waitUntil(lambda: bool(bodies.failures), timeout=60_000)
     assert "2024-01-01" in str(bodies.failures.pop())
     bodies.qtbot.waitUntil(panel.run.isVisible)
+
+
+def test_horizons_are_closed_to_bodies_and_joined(app, sample, tmp_path):
+    from geofit.gui.dialogs.horizon_bodies import HorizonBodies
+    from geofit.project.body_record import BetweenHorizons
+
+    app.window.files.open(sample / "site.toml")
+    app.idle()
+    panel, morphing = app.window.panels.morph, app.window.morphing
+    app.window.panels.reveal("morph")
+    for name in list(app.document.horizons)[:2]:
+        app.window.fitting.fit(name)
+        app.idle()
+    upper, lower = list(app.document.surfaces())
+    low = min(float(surface.bounds[0][2]) for surface in app.document.surfaces().values())
+    dialog = HorizonBodies(tuple(app.document.surfaces()), low, app.window)
+    ok = dialog.buttons.button(dialog.buttons.StandardButton.Ok)
+    assert not ok.isEnabled()
+    for k in range(2):
+        dialog.list.item(k).setCheckState(Qt.CheckState.Checked)
+    assert ok.isEnabled()
+    assert dialog.chosen() == (upper, lower)
+    base = dialog.base()
+    assert base < low
+    dialog.under.setCurrentIndex(dialog.under.findData(lower))
+    assert dialog.chosen() == (upper,)
+    assert dialog.base() == lower
+    morphing.close_horizons((upper, lower), base)
+    app.idle()
+    made = app.document.made_bodies()
+    assert made[upper].body.closed is not None
+    assert made[upper].mesh.is_closed
+    assert app.document.state.bodies[upper].provenance.source == BetweenHorizons(upper, base)
+    app.panel, app.morphing = panel, morphing
+    join(app, upper, lower)
+    rows = morphing.view.rows
+    assert rows[0].volume > rows[-1].volume
+    assert max(row.drift for row in rows) <= 1e-4 * rows[-1].volume
+    shown = app.document.surfaces()
+    x, y = (np.linspace(*[b[k] for b in shown[upper].bounds], 60)[10:-10] for k in (0, 1))
+    px, py = (v.ravel() for v in np.meshgrid(x, y))
+    apart = shown[upper].elevation(px, py) - shown[lower].elevation(px, py)
+    assert np.nanmean(apart) > 0
+
+
+def test_a_film_shows_the_way_as_the_view_does(bodies, tmp_path, monkeypatch):
+    from PIL import Image
+
+    from geofit.data.errors import MissingDependencyError
+
+    join(bodies, "ball", "ring")
+    morphing, panel, view = bodies.morphing, bodies.panel, bodies.window.panels.view
+    panel.timeline.put(0.3)
+    written = []
+    morphing.filming.written.connect(written.append)
+    morphing.film(tmp_path / "way.gif", pictures=5)
+    bodies.qtbot.waitUntil(lambda: bool(written), timeout=60_000)
+    bodies.idle()
+    assert panel.timeline.tau == 0.3
+    with Image.open(tmp_path / "way.gif") as film:
+        assert film.n_frames == 5
+        shown = view.picture()
+        assert film.size == (shown.width(), shown.height())
+        frames = []
+        for k in range(5):
+            film.seek(k)
+            frames.append(np.asarray(film.convert("RGB"), float))
+    assert all(np.abs(a - b).max() > 50 for a, b in pairwise(frames))
+    monkeypatch.setenv("PATH", str(tmp_path))
+    morphing.film(tmp_path / "way.mp4")
+    assert isinstance(bodies.failures.pop(), MissingDependencyError)
+    assert not (tmp_path / "way.mp4").exists()

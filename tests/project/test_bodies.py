@@ -18,17 +18,16 @@ from geofit.io.site_file import read_site
 from geofit.morphing.errors import MorphError
 from geofit.project.body_building import (
     BodyResult,
-    MeshBody,
     given_of_logs,
     interval_codes,
     make_body,
     origin_text,
-    read_mesh_body,
     site_codes,
 )
 from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, Intervals, MorphFrame, next_colour
 from geofit.project.body_saving import largest_difference, saved_body
 from geofit.project.body_shelf import SPARE, BodyShelf
+from geofit.project.mesh_body import MeshBody, read_mesh_body
 from geofit.project.saving import read_project, save_state
 from geofit.project.state import State
 
