@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,14 +12,16 @@ from numpy.typing import NDArray
 from geofit.bodies.active import spread
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_field
+from geofit.bodies.posterior import Posterior
 from geofit.data.errors import FitError
 from geofit.data.messages import message
+from geofit.data.prediction import LeftOutBody, Scheme
 from geofit.prediction.kriging import krige_left_out
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["CrossValidation", "HoleScore", "MethodScore", "leave_one_hole_out"]
+__all__ = ["CrossValidation", "HoleScore", "MethodScore", "examined", "leave_one_hole_out"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -27,14 +29,22 @@ Bools = NDArray[np.bool_]
 #: Centres next to a place that the linear RBF of many samples is made of; fewer samples count all at once.
 NEIGHBOURS = 100
 WHOLE = 2_000
+#: Holes left out by default; fewer where each fit without one takes long, because the body has many conditions.
+USUAL, FEW, LARGE = 30, 8, 1_500
+#: The 90 % band leaves out so much on each side.
+BAND = 0.05
+#: Samples whose second direction is larger than this share of the first fill a plane: they are of a section.
+FLAT = 0.2
 
 
 @dataclass(frozen=True)
 class HoleScore:
     """One hole left out: metres of the wrong side, metres logged, and its contacts.
 
-    ``contact_errors`` are distances along the hole from each logged contact to the nearest one predicted, metres;
-    ``missed`` counts the contacts of a hole on which none is predicted.
+    ``contact_errors`` are distances along the hole from each logged contact to the nearest one predicted, metres (on a
+    section: at right angles to the surface); ``missed`` counts the contacts of a hole on which none is predicted.
+    ``contacts`` counts those at which the chance of lying inside was evaluated, ``covered`` those of them at which it
+    is from 5 to 95 %.
     """
 
     hole: str
@@ -42,6 +52,8 @@ class HoleScore:
     logged: float
     contact_errors: tuple[float, ...]
     missed: int
+    contacts: int = 0
+    covered: int = 0
 
 
 @dataclass(frozen=True)
@@ -67,6 +79,18 @@ class MethodScore:
         return float(np.median(errors)) if errors else float("nan")
 
     @property
+    def contact_rms(self) -> float:
+        """Root mean square of the same distances, metres; nan if there is none."""
+        errors = [error for hole in self.holes for error in hole.contact_errors]
+        return float(np.sqrt(np.mean(np.square(errors)))) if errors else float("nan")
+
+    @property
+    def inside(self) -> float:
+        """Share of the contacts that the 90 % band contains; nan if none was evaluated."""
+        contacts = sum(hole.contacts for hole in self.holes)
+        return sum(hole.covered for hole in self.holes) / contacts if contacts else float("nan")
+
+    @property
     def missed(self) -> int:
         """Contacts of holes on which none is predicted."""
         return sum(hole.missed for hole in self.holes)
@@ -78,9 +102,19 @@ class CrossValidation:
 
     methods: Mapping[str, MethodScore]
     skipped: Mapping[str, str]
+    scheme: Scheme = "hole"
+
+    @property
+    def left_out(self) -> LeftOutBody:
+        """What the verdict on the body takes from this."""
+        score = self.methods["body"]
+        return LeftOutBody(
+            self.scheme, len(score.holes), score.contact_rms, score.missed, score.misclassified, score.logged,
+            score.inside,
+        )  # fmt: skip
 
 
-def leave_one_hole_out(body: BodyFit, holes: int = 30) -> CrossValidation:
+def leave_one_hole_out(body: BodyFit, holes: int | None = None, *, compared: bool = True) -> CrossValidation:
     """Fit a body again without each of its holes, and compare with two usual methods on the same folds.
 
     The linear RBF interpolates signed distances to the nearest contact at all samples, and 0 at contacts. Indicator
@@ -92,7 +126,10 @@ def leave_one_hole_out(body: BodyFit, holes: int = 30) -> CrossValidation:
     body : BodyFit
         A body whose data name their holes.
     holes : int
-        Holes left out at most: of those that meet the body or come within reach of it, some spread over it.
+        Holes left out at most: of those that meet the body or come within reach of it, some spread over it; by default
+        30, and 8 of a body with more than 1500 conditions. Sections take the place of holes where outlines are given.
+    compared : bool
+        Whether the two usual methods are scored, too.
 
     Raises
     ------
@@ -100,10 +137,14 @@ def leave_one_hole_out(body: BodyFit, holes: int = 30) -> CrossValidation:
         If fewer than three holes have samples.
     """
     data = body.data
+    if holes is None:
+        holes = USUAL if body.fitted.conditions <= LARGE else FEW
     names = _chosen(body, holes)
-    scores: dict[str, list[HoleScore]] = {"body": [], "linear RBF": [], "indicator kriging": []}
+    scores: dict[str, list[HoleScore]] = {"body": []}
+    if compared:
+        scores |= {"linear RBF": [], "indicator kriging": []}
     skipped = {}
-    kriged = _kriged(data, names)
+    kriged = _kriged(data, names) if compared else {}
     for name in names:
         rest = data.without(name)
         try:
@@ -112,10 +153,26 @@ def leave_one_hole_out(body: BodyFit, holes: int = 30) -> CrossValidation:
             skipped[name] = str(error)
             continue
         line = _Line.of(data, name)
-        scores["body"].append(line.score(fitted.field.value(line.xyz - fitted.field.frame.origin)))
+        scores["body"].append(_with_band(line, replace(body, data=rest, fitted=fitted, accuracy=None)))
+        if not compared:
+            continue
         scores["linear RBF"].append(line.score(_linear_rbf(rest, line.xyz)))
         scores["indicator kriging"].append(line.score(kriged[name]))
-    return CrossValidation({name: MethodScore(tuple(found)) for name, found in scores.items()}, skipped)
+    flat = all(_Line.of(data, name).flat for name in names)
+    methods = {name: MethodScore(tuple(found)) for name, found in scores.items()}
+    return CrossValidation(methods, skipped, "section" if flat and names else "hole")
+
+
+def _with_band(line: _Line, body: BodyFit) -> HoleScore:
+    """Score a body fitted without a hole or a section along it, and its band at the contacts."""
+    score = line.score(body.value(line.xyz))
+    if not len(line.places):
+        return score
+    if line.flat:
+        score = replace(score, contact_errors=tuple(np.abs(body.distance(line.places)).tolist()), missed=0)
+    chance = Posterior(body).probability(line.places)
+    covered = int(((chance >= BAND) & (chance <= 1 - BAND)).sum())
+    return replace(score, contacts=len(line.places), covered=covered)
 
 
 def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
@@ -150,22 +207,27 @@ class _Line:
     at: Floats
     length: Floats
     contacts: Floats
+    places: Floats
+    flat: bool
 
     @classmethod
     def of(cls, data: BodyData, name: str) -> _Line:
         within, without = data.inside_hole == name, data.outside_hole == name
         xyz = np.concatenate([data.inside[within], data.outside[without]])
         inside = np.arange(len(xyz)) < within.sum()
-        length = np.concatenate([data.inside_length[within], data.outside_length[without]])
-        along, middle = _main_direction(xyz)
+        length = data_length = np.concatenate([data.inside_length[within], data.outside_length[without]])
+        (along, _, _), (_, across, _), middle = _directions(xyz)
         at = (xyz - middle) @ along
         order = np.argsort(at, kind="stable")
         at = at[order]
         # Samples without a length: half the way to each neighbour.
         gaps = np.gradient(at) if len(at) > 1 else np.zeros(len(at))
         length = np.where(np.isfinite(length[order]), length[order], np.abs(gaps))
-        contacts = (data.contacts[data.hole == name] - middle) @ along
-        return cls(name, xyz[order], inside[order], at, length, contacts)
+        places = data.contacts[data.hole == name]
+        flat = across > FLAT
+        # Nothing is logged along a section: its samples fill a plane.
+        length = np.zeros(len(length)) if flat and not np.isfinite(data_length).any() else length
+        return cls(name, xyz[order], inside[order], at, length, (places - middle) @ along, places, flat)
 
     def score(self, value: Floats) -> HoleScore:
         """Compare values (n,), negative inside, with the log."""
@@ -180,9 +242,12 @@ class _Line:
         return HoleScore(self.name, float(self.length[wrong].sum()), float(self.length.sum()), errors, missed)
 
 
-def _main_direction(xyz: Floats) -> tuple[Floats, Floats]:
+def _directions(xyz: Floats) -> tuple[Floats, tuple[float, float, float], Floats]:
+    """Return the main directions (3, 3) of places, their sizes as shares of the largest, and the middle (3,)."""
     middle = xyz.mean(axis=0)
-    return np.asarray(np.linalg.svd(xyz - middle, full_matrices=False)[2][0]), middle
+    sizes, axes = np.linalg.svd(np.concatenate([xyz - middle, np.zeros((3, 3))]), full_matrices=False)[1:]
+    first, second, third = (sizes / max(float(sizes[0]), 1e-300)).tolist()
+    return np.asarray(axes), (first, second, third), middle
 
 
 def _linear_rbf(data: BodyData, places: Floats) -> Floats:
@@ -217,3 +282,11 @@ def _kriged(data: BodyData, names: tuple[str, ...]) -> dict[str, Floats]:
     groups = [np.arange(a, b) for a, b in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]
     estimate = krige_left_out(places, values, groups)
     return {name: 0.5 - estimate[group] for name, group in zip(names, groups, strict=True)}
+
+
+def examined(body: BodyFit) -> LeftOutBody | None:
+    """Return what the verdict takes from leaving holes out; None where the data are of too few holes for that."""
+    try:
+        return leave_one_hole_out(body, compared=False).left_out
+    except FitError:
+        return None

@@ -16,19 +16,11 @@ from geofit.data.errors import InputError
 from geofit.io.project import VERSION, open_project
 from geofit.io.site_file import read_site
 from geofit.morphing.errors import MorphError
-from geofit.project.body_building import (
-    BodyResult,
-    MeshBody,
-    codes_of,
-    given_of_logs,
-    make_body,
-    origin_text,
-    read_mesh_body,
-    site_codes,
-)
+from geofit.project.body_building import BodyResult, MeshBody, make_body, origin_text, read_mesh_body
 from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, Frame, Intervals, next_colour
 from geofit.project.body_saving import difference, saved_body
 from geofit.project.body_shelf import SPARE, BodyShelf
+from geofit.project.body_sources import codes_of, given_of_logs, site_codes
 from geofit.project.saving import read_project, save_state
 from geofit.project.state import State
 
