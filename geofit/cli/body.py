@@ -67,7 +67,7 @@ def body(
             print_issues(holes.issues)
             print_counts(holes.counts)
             title = getattr(holes, "title", None)
-            run = run_body(holes, out, codes=code or (), settings=settings, progress=progress)
+            run = run_body(holes, out, codes=code, settings=settings, progress=progress)
         if report:
             from geofit.data.languages import language
             from geofit.project.single_reports import write_body_report
