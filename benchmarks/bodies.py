@@ -79,7 +79,7 @@ def planted(count: int, family: str) -> Score:
     from bodies.planted import ORIGIN, SIZE
     from bodies.shapes import KINDS, OTHERS, case, mixed_case, other_case
 
-    from geofit.bodies.posterior import Posterior
+    from geofit.bodies.posterior import BodyPosterior
 
     families = {"ten": (KINDS, case), "others": (OTHERS, other_case), "all": ({**KINDS, **OTHERS}, mixed_case)}
     kinds, make = families[family]
@@ -97,7 +97,7 @@ def planted(count: int, family: str) -> Score:
         held[one.kind].append(volumes.p10 < volume < volumes.p90)
         errors[one.kind].append(volumes.best / volume - 1)
         places = np.random.default_rng(seed + 1).uniform(-0.9, 0.9, (2000, 3))
-        chance.append(Posterior(body).probability(places * SIZE + ORIGIN))
+        chance.append(BodyPosterior(body).probability(places * SIZE + ORIGIN))
         truth.append(one.truth(places) < 0)
     every = {**errors, "all": [e for found in errors.values() for e in found]}
     inside = {**held, "all": [h for found in held.values() for h in found]}

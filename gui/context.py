@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QInputDialog, QMenu, QMessageBox, QToolTip, QWidge
 from geofit.data.messages import Message
 from geofit.gui.actions import Actions
 from geofit.gui.fitting import Fitting
-from geofit.gui.panels.curtain import extent
+from geofit.gui.panels.curtain import site_extent
 from geofit.gui.selecting import Selecting
 from geofit.gui.translate import translated
 from geofit.gui.view3d.picking import Hit
@@ -174,7 +174,7 @@ class ContextMenus(QObject):
 
     def _section(self, hit: Hit) -> None:
         """Cut a section from west to east through a place."""
-        size = np.ptp(extent(self._document.site, {}), axis=0).max()
+        size = np.ptp(site_extent(self._document.site, {}), axis=0).max()
         x, y = float(hit.xyz[0]), float(hit.xyz[1])
         line = np.array([[x - SIDE * size, y], [x + SIDE * size, y]])
         self._panels.section.line_changed.emit(line)

@@ -62,8 +62,8 @@ def read_body_points(path: str | PathLike[str]) -> PickedPoints:
         rows.reject(
             i,
             "side",
-            message("import.side-unknown", "The side is not contact, inside or outside"),
-            message("import.write-side", "Write contact, inside or outside."),
+            message("io.side-unknown", "The side is not contact, inside or outside"),
+            message("io.write-side", "Write contact, inside or outside."),
         )
     hole = np.array(rows.text("hole" if "hole" in rows.columns else "section", required=False), dtype=np.str_)
     rows.close()
@@ -72,8 +72,8 @@ def read_body_points(path: str | PathLike[str]) -> PickedPoints:
     on, within, off = (rows.ok & (side == kind) for kind in SIDES)
     if not (on | within).any():
         raise InputError(
-            message("import.only-outside-points", "The table has only points outside the body"),
-            message("import.add-contacts", "Add points on its surface, or inside it."),
+            message("io.only-outside-points", "The table has only points outside the body"),
+            message("io.add-contacts", "Add points on its surface, or inside it."),
             file=source.name,
         )
     data = BodyData(

@@ -73,9 +73,9 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
             rings = _features(source, journal)
         case ending:
             raise InputError(
-                message("import.outline-ending", "Outlines are not read from a file that ends in '{ending}'",
+                message("io.outline-ending", "Outlines are not read from a file that ends in '{ending}'",
                         ending=ending),
-                message("import.give-file-ends", "Give a file that ends in {names}.",
+                message("io.give-known-ending", "Give a file that ends in {names}.",
                         names=", ".join(OUTLINE_ENDINGS)),
                 file=source.name,
             )  # fmt: skip
@@ -85,20 +85,20 @@ def read_outlines(path: str | PathLike[str], layers: Collection[str] = ()) -> Dr
     missing = [layer for layer in layers if layer not in counts]
     if missing:
         raise InputError(
-            message("import.no-outline-layer", "No closed line lies on layer '{layer}'", layer=missing[0]),
-            message("import.name-one-of", "Name one of: {names}.", names=", ".join(counts) or "–"),
+            message("io.no-outline-layer", "No closed line lies on layer '{layer}'", layer=missing[0]),
+            message("io.name-one-of-these", "Name one of: {names}.", names=", ".join(counts) or "–"),
             file=source.name,
         )
     planes = _by_plane([one for one in rings if not layers or one[0] in layers], source, journal)
     if len(planes) < 2:
         raise InputError(
             message(
-                "import.outlines-on-planes",
+                "io.outlines-on-planes",
                 "The file has closed outlines on {count} planes; a body needs two or more sections",
                 count=len(planes),
             ),
             message(
-                "import.draw-outlines-in-place",
+                "io.draw-outlines-in-place",
                 "Draw each section at its true place, with elevations, as closed polylines.",
             ),
             file=source.name,
@@ -115,9 +115,9 @@ def _by_plane(rings: Sequence[tuple[str, Floats]], source: Source, journal: Jour
         spread = sizes[0] / np.sqrt(len(ring))
         off = float(np.abs((ring - ring.mean(axis=0)) @ axes[2]).max())
         if sizes[1] <= 1e-6 * sizes[0]:
-            _leave(source, journal, k, layer, message("import.outline-no-area", "The outline bounds no area"))
+            _leave(source, journal, k, layer, message("io.outline-no-area", "The outline bounds no area"))
         elif off > FLAT * spread:
-            reason = message("import.outline-not-flat", "The outline lies up to {off:.2f} m off one plane", off=off)
+            reason = message("io.outline-not-flat", "The outline lies up to {off:.2f} m off one plane", off=off)
             _leave(source, journal, k, layer, reason)
         else:
             flat.append((float(spread), layer, ring, axes[2]))
@@ -152,7 +152,7 @@ def _leave(source: Source, journal: Journal, number: int, layer: str, reason: Me
         "error",
         source.name,
         reason,
-        message("import.draw-outline-again", "Draw it again as a closed line on the plane of its section."),
+        message("io.draw-outline-again", "Draw it again as a closed line on the plane of its section."),
         row=number,
         column=layer,
     )
@@ -169,8 +169,8 @@ def _features(source: Source, journal: Journal) -> list[tuple[str, Floats]]:
         named = [one.get("properties") or {} for one in features]
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError, shapely.GEOSException) as error:
         raise InputError(
-            message("import.map-cannot-read", "The map cannot be read: {error}", error=error),
-            message("import.save-geojson-elevations", "Save polygons with elevations as GeoJSON."),
+            message("io.map-unreadable", "The map cannot be read: {error}", error=error),
+            message("io.save-geojson-elevations", "Save polygons with elevations as GeoJSON."),
             file=source.name,
         ) from None
     crs = top.get("crs") or {}
@@ -182,12 +182,12 @@ def _features(source: Source, journal: Journal) -> list[tuple[str, Floats]]:
         layer = next((str(attributes[key]) for key in SECTION_NAMES if attributes.get(key) is not None), "")
         found = _closed(shape)
         if not found:
-            _leave(source, journal, number, layer, message("import.line-not-closed", "It is not a closed line"))
+            _leave(source, journal, number, layer, message("io.line-not-closed", "It is not a closed line"))
         for ring in found:
             if np.isfinite(ring).all():
                 rings.append((layer, ring))
             else:
-                _leave(source, journal, number, layer, message("import.outline-no-z", "The outline has no elevations"))
+                _leave(source, journal, number, layer, message("io.outline-no-z", "The outline has no elevations"))
     if not code and rings:
         corners = np.concatenate([ring[:, :2] for _, ring in rings])
         if (np.abs(corners) <= DEGREES).all() and (np.ptp(corners, axis=0) < CLOSE).all():

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.bodies.posterior import Posterior
+from geofit.bodies.posterior import BodyPosterior
 from geofit.sampling.cut import section_line
 from geofit.sampling.mesh_section import mesh_section
 
@@ -63,7 +63,7 @@ def chance_lines(body: BodyFit, line: ArrayLike) -> tuple[Floats, ...]:
     """
     import contourpy
 
-    posterior = Posterior(body)
+    posterior = BodyPosterior(body)
     lower, upper = (corner + body.origin for corner in body.extent)
     margin = body.region.reach / 2
     lower, upper = lower - margin, upper + margin

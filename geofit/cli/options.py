@@ -23,14 +23,14 @@ class Across(StrEnum):
     LINEAR = "linear"
 
 
-class Seam(StrEnum):
+class SeamChoice(StrEnum):
     """How patches meet."""
 
     TANGENT = "tangent"
     POSITION = "position"
 
 
-class Frame(StrEnum):
+class FrameChoice(StrEnum):
     """In which frame a surface is a height field."""
 
     AUTO = "auto"

@@ -20,7 +20,7 @@ from geofit.data.numbers import is_finite
 from geofit.data.progress import Progress, tell
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.implicit.mesh import TriangleMesh
-from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Frame, Intervals, Outlines, Picks
+from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Intervals, MorphFrame, Outlines, Picks
 from geofit.project.body_sources import file_digest, read_source
 
 if TYPE_CHECKING:
@@ -147,7 +147,7 @@ def make_body(
             result, given = _fitted(source, settings, name, campaigns, folder, progress)
         case ClosedMesh(file):
             result, given = BodyResult(read_mesh_body(folder / file, name)), file_digest(folder / file)
-        case Frame():
+        case MorphFrame():
             made = [
                 make_body(end.source, end.settings, one, campaigns, folder, {}, None)
                 for end, one in zip(source.ends, source.names, strict=True)
@@ -201,7 +201,7 @@ def measured_strata(result: BodyResult, horizons: Mapping[str, Any], *, progress
     return replace(result, strata=strata_table(body, over) if over else (), divided_by=tuple(over))
 
 
-def frame_of(source: Frame, ends: Sequence[Any], name: str, progress: Progress | None = None) -> MorphBody:
+def frame_of(source: MorphFrame, ends: Sequence[Any], name: str, progress: Progress | None = None) -> MorphBody:
     """Return the frame of a metamorphosis between bodies."""
     from geofit.morphing.morph import morph
 
@@ -247,15 +247,15 @@ def read_mesh_body(file: Path, name: str) -> MeshBody:
 def origin_text(result: BodyResult) -> Message:
     """Return in words how a body came here."""
     if result.origin == "read back":
-        return message("body.read-back", "Read from the project file; it has not been made again.")
+        return message("project.body-read-back", "Read from the project file; it has not been made again.")
     if result.origin == "fitted":
-        return message("body.made-now", "Made in this session.")
+        return message("project.body-made-now", "Made in this session.")
     if not is_finite(result.difference):
-        return message("body.made-again", "Made again from the same data.")
+        return message("project.body-made-again", "Made again from the same data.")
     if result.difference == 0:
-        return message("body.made-again-same", "Made again from the same data: the same as the project's file.")
+        return message("project.body-made-again-same", "Made again from the same data: the same as the project's file.")
     return message(
-        "body.made-again-other",
+        "project.body-made-again-other",
         "Made again from the same data; it differs from the project's file by up to {difference:.3g} m.",
         difference=result.difference,
     )

@@ -16,8 +16,8 @@ __all__ = [
     "BodySource",
     "BodyStyle",
     "ClosedMesh",
-    "Frame",
     "Intervals",
+    "MorphFrame",
     "Outlines",
     "Picks",
     "next_colour",
@@ -58,7 +58,7 @@ class ClosedMesh:
 
 
 @dataclass(frozen=True)
-class Frame:
+class MorphFrame:
     """A frame of a metamorphosis between bodies: interpolated geometry, not a record.
 
     ``ends`` made the bodies, in order; ``tau`` is the share of the way. The others are those of :func:`geofit.morph`.
@@ -74,7 +74,7 @@ class Frame:
     seeds: bool = False
 
 
-BodySource = Intervals | Outlines | Picks | ClosedMesh | Frame
+BodySource = Intervals | Outlines | Picks | ClosedMesh | MorphFrame
 #: Sources that a body is fitted to, and judged by.
 FITTED = (Intervals, Outlines, Picks)
 
@@ -140,7 +140,7 @@ def _source_data(source: BodySource) -> dict[str, Any]:
             return {"kind": "points", "file": file}
         case ClosedMesh(file):
             return {"kind": "mesh", "file": file}
-        case Frame():
+        case MorphFrame():
             plain = {
                 name: getattr(source, name) for name in ("names", "mode", "pace", "dates", "cells", "tau", "seeds")
             }
@@ -163,7 +163,7 @@ def _source_from(data: Mapping[str, Any]) -> BodySource:
         case "frame":
             ends = tuple(BodyProvenance.from_data(end) for end in data["ends"])
             names, dates = (tuple(map(str, data[key])) for key in ("names", "dates"))
-            return Frame(
+            return MorphFrame(
                 ends,
                 names,
                 data["mode"],

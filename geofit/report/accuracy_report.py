@@ -22,8 +22,8 @@ __all__ = [
     "ConflictLine",
     "ContactLine",
     "ContradictionLine",
-    "CutLine",
     "CutPlace",
+    "FaultCutLine",
     "FileCheck",
     "GroupLine",
     "HorizonReport",
@@ -243,7 +243,7 @@ class CutPlace:
 
 
 @dataclass(frozen=True)
-class CutLine:
+class FaultCutLine:
     """The displacement of a horizon along a fault, between the block ``up`` and the block ``down``; metres.
 
     ``places`` follow the trace, ``length`` is the distance from the first to the last.
@@ -461,7 +461,7 @@ class AccuracyReport:
     failures: Mapping[str, Message]
     orders: tuple[OrderLine, ...] | None
     contradictions: tuple[ContradictionLine, ...]
-    cuts: tuple[CutLine, ...]
+    cuts: tuple[FaultCutLine, ...]
     inputs: tuple[InputFile, ...]
     issues: Mapping[str, int]
     rejected: tuple[RejectedRow, ...]

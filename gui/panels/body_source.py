@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.project.body_record import BodySource, ClosedMesh, Frame, Intervals, Outlines, Picks
+from geofit.project.body_record import BodySource, ClosedMesh, Intervals, MorphFrame, Outlines, Picks
 
 __all__ = ["MESH", "OTHER", "OUTLINES", "OWN", "POINTS", "BodySourceForm"]
 
@@ -70,7 +70,7 @@ class BodySourceForm(QWidget):
         self._files: dict[str, str] = dict.fromkeys((OWN, OTHER, OUTLINES, POINTS, MESH), "")
         self._offers: dict[str, Mapping[str, int]] = {}
         self._wanted: frozenset[str] = frozenset()
-        self._frame: Frame | None = None
+        self._frame: MorphFrame | None = None
         self.kind.activated.connect(lambda _: self._choose())
         self.browse.clicked.connect(lambda: self.file_wanted.emit(self.kind.currentData()))
         self.codes.itemChanged.connect(self._check)
@@ -91,7 +91,7 @@ class BodySourceForm(QWidget):
 
     def put(self, source: BodySource | None) -> None:
         """Show a source without emitting; None: intervals of the open site, none chosen."""
-        self._frame = source if isinstance(source, Frame) else None
+        self._frame = source if isinstance(source, MorphFrame) else None
         kind = OWN
         self._wanted = frozenset()
         match source:

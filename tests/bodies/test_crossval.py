@@ -11,7 +11,7 @@ from geofit.bodies.crossval import examined, leave_one_hole_out
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
 from geofit.bodies.outlines import Outline, from_outlines
-from geofit.bodies.posterior import Posterior
+from geofit.bodies.posterior import BodyPosterior
 from geofit.data.errors import FitError
 
 
@@ -78,7 +78,7 @@ def test_the_band_of_holes_left_out_by_hand(egg: BodyFit) -> None:
     holes = leave_one_hole_out(egg, holes=8, compared=False).methods["body"].holes
     hole = next(one for one in holes if one.contacts)
     again = fit_body(egg.data.without(hole.hole))
-    chance = Posterior(again).probability(egg.data.contacts[egg.data.hole == hole.hole])
+    chance = BodyPosterior(again).probability(egg.data.contacts[egg.data.hole == hole.hole])
     assert hole.contacts == len(chance) == 2
     assert hole.covered == ((chance >= 0.05) & (chance <= 0.95)).sum()
 

@@ -65,10 +65,10 @@ def test_a_hole_in_the_body_runs_clockwise():
 
 
 def test_the_band_lies_where_the_chance_is_a_tenth_and_nine(ball):
-    from geofit.bodies.posterior import Posterior
+    from geofit.bodies.posterior import BodyPosterior
 
     lines = chance_lines(ball, THROUGH)
-    posterior, way = Posterior(ball), (THROUGH[1] - THROUGH[0]) / 500.0
+    posterior, way = BodyPosterior(ball), (THROUGH[1] - THROUGH[0]) / 500.0
     sides = []
     for line in lines:
         places = np.column_stack([THROUGH[0] + line[:, :1] * way, line[:, 1]])
