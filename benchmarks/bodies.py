@@ -74,14 +74,15 @@ class Score:
     classes: list[str]
 
 
-def planted(count: int, others: bool = False) -> Score:
-    """Fit planted bodies of ten kinds, or of the five others, and score them."""
+def planted(count: int, family: str) -> Score:
+    """Fit planted bodies of the "ten" kinds, of the five "others", or of "all" with nothing chosen on them; score."""
     from bodies.planted import ORIGIN, SIZE
-    from bodies.shapes import KINDS, OTHERS, case, other_case
+    from bodies.shapes import KINDS, OTHERS, case, mixed_case, other_case
 
     from geofit.bodies.posterior import BodyPosterior
 
-    kinds, make = (OTHERS, other_case) if others else (KINDS, case)
+    families = {"ten": (KINDS, case), "others": (OTHERS, other_case), "all": ({**KINDS, **OTHERS}, mixed_case)}
+    kinds, make = families[family]
     held: dict[str, list[bool]] = {kind: [] for kind in kinds}
     errors: dict[str, list[float]] = {kind: [] for kind in kinds}
     chance, truth = [], []
@@ -95,7 +96,7 @@ def planted(count: int, others: bool = False) -> Score:
         volumes = body.volumes()
         held[one.kind].append(volumes.p10 < volume < volumes.p90)
         errors[one.kind].append(volumes.best / volume - 1)
-        places = np.random.default_rng(seed).uniform(-0.9, 0.9, (3000, 3))
+        places = np.random.default_rng(seed + 1).uniform(-0.9, 0.9, (2000, 3))
         chance.append(BodyPosterior(body).probability(places * SIZE + ORIGIN))
         truth.append(one.truth(places) < 0)
     every = {**errors, "all": [e for found in errors.values() for e in found]}
@@ -121,7 +122,7 @@ def main() -> int:
         from body_page import write_figures
 
         count = int(sys.argv[sys.argv.index("--planted") + 1])
-        write_figures(planted(count), planted(count, others=True))
+        write_figures(planted(count, "ten"), planted(count, "others"), planted(count, "all"))
         return 0
     data = Path(os.environ.get("GEOFIT_DATA", ROOT / ".." / "shared" / "data")) / "copper_creek"
     if not data.is_dir():

@@ -8,7 +8,6 @@ import numpy as np
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from geofit.bodies.violations import Violation
-from geofit.data.verdict import verdict_of
 from geofit.gui.panels.bodies import BodyShown
 from geofit.gui.panels.marks import level_mark
 from geofit.gui.panels.project_tree import TreeBody
@@ -130,8 +129,7 @@ class BodyShowing(QObject):
 
     def _shown(self, name: str, record: BodyRecord) -> BodyShown:
         result = self._document.body(name)
-        accuracy = None if result is None else result.accuracy
-        verdict = None if accuracy is None else verdict_of(accuracy)
+        accuracy, verdict = (None, None) if result is None else (result.accuracy, result.verdict)
         waiting = result is None or (result.origin == "read back" and isinstance(record.provenance.source, FITTED))
         stale = self.stale(record)
         origin = "" if result is None or result.origin == "fitted" else translated(origin_text(result))
@@ -145,20 +143,20 @@ class BodyShowing(QObject):
 
     def _mark(self, name: str, record: BodyRecord) -> str:
         result = self._document.body(name)
-        accuracy = None if result is None else result.accuracy
-        sign = "stale" if self.stale(record) else "" if accuracy is None else level_mark(verdict_of(accuracy).level)
+        verdict = None if result is None else result.verdict
+        sign = "stale" if self.stale(record) else "" if verdict is None else level_mark(verdict.level)
         return f"body:{record.style.colour}:{sign}"
 
     def _show_tree(self) -> None:
         rows = []
         for name, record in self._document.state.bodies.items():
             result = self._document.body(name)
-            accuracy = None if result is None else result.accuracy
+            accuracy, verdict = (None, None) if result is None else (result.accuracy, result.verdict)
             words = name
             if result is not None:
                 words = f"{name}: {result.mesh.volume:.6g} m³"
-            if accuracy is not None:
-                words += "\n" + translated(verdict_of(accuracy).text)
+            if verdict is not None:
+                words += "\n" + translated(verdict.text)
             if self.stale(record):
                 words += "\n" + self.tr("The data have changed since this body was made: press Fit.")
             count = None if accuracy is None else accuracy.n

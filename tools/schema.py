@@ -20,6 +20,8 @@ from geofit.bodies.data import BodyIssue
 from geofit.bodies.simulate import BodyVolumes
 from geofit.cad.solid import SolidReadBack
 from geofit.data.messages import Message
+from geofit.data.prediction import LeftOutBody
+from geofit.data.verdict import Lamp
 from geofit.pores.table import BeforeAfter
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport, InputFile, RejectedRow
 from geofit.report.schema import SCHEMA_FILE, VERSION
@@ -115,7 +117,9 @@ def schema() -> dict[str, Any]:
     }
     of_body = {
         "body": {"type": "string"},
-        "verdict": {"enum": ["PASS", "FAIL"]},
+        "verdict": {"enum": ["PASS", "WARNING", "FAIL"]},
+        "lamps": s.of(tuple[Lamp, ...]),
+        "left_out": s.of(LeftOutBody | None),
         "settings": {"type": "object"},
         "volumes": volumes,
         "read_back": s.of(SolidReadBack),

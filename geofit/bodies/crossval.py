@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,16 +12,17 @@ from numpy.typing import NDArray
 from geofit.bodies.active import farthest_apart
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_field
-from geofit.bodies.settings import BodySettings
+from geofit.bodies.posterior import BodyPosterior
 from geofit.data.errors import FitError
 from geofit.data.messages import message
+from geofit.data.prediction import LeftOutBody, Scheme
 from geofit.prediction.kriging import krige_left_out
 from geofit.streaming.executors import run_tasks
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["CrossValidation", "HoleScore", "MethodScore", "leave_one_hole_out"]
+__all__ = ["CrossValidation", "HoleScore", "MethodScore", "examined", "leave_one_hole_out"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -29,14 +30,22 @@ Bools = NDArray[np.bool_]
 #: Centres next to a place that the linear RBF of many samples is made of; fewer samples count all at once.
 NEIGHBOURS = 100
 WHOLE = 2_000
+#: Holes left out by default; fewer where each fit without one takes long, because the body has many conditions.
+USUAL, FEW, LARGE = 30, 8, 1_500
+#: The 90 % band leaves out so much on each side.
+BAND = 0.05
+#: Samples whose second direction is larger than this share of the first fill a plane: they are of a section.
+FLAT = 0.2
 
 
 @dataclass(frozen=True)
 class HoleScore:
     """One hole left out: metres of the wrong side, metres logged, and its contacts.
 
-    ``contact_errors`` are distances along the hole from each logged contact to the nearest one predicted, metres;
-    ``missed`` counts the contacts of a hole on which none is predicted.
+    ``contact_errors`` are distances along the hole from each logged contact to the nearest one predicted, metres (on a
+    section: at right angles to the surface); ``missed`` counts the contacts of a hole on which none is predicted.
+    ``contacts`` counts those at which the chance of lying inside was evaluated, ``covered`` those of them at which it
+    is from 5 to 95 %.
     """
 
     hole: str
@@ -44,6 +53,8 @@ class HoleScore:
     logged: float
     contact_errors: tuple[float, ...]
     missed: int
+    contacts: int = 0
+    covered: int = 0
 
 
 @dataclass(frozen=True)
@@ -69,6 +80,18 @@ class MethodScore:
         return float(np.median(errors)) if errors else float("nan")
 
     @property
+    def contact_rms(self) -> float:
+        """Root mean square of the same distances, metres; nan if there is none."""
+        errors = [error for hole in self.holes for error in hole.contact_errors]
+        return float(np.sqrt(np.mean(np.square(errors)))) if errors else float("nan")
+
+    @property
+    def inside(self) -> float:
+        """Share of the contacts that the 90 % band contains; nan if none was evaluated."""
+        contacts = sum(hole.contacts for hole in self.holes)
+        return sum(hole.covered for hole in self.holes) / contacts if contacts else float("nan")
+
+    @property
     def missed(self) -> int:
         """Contacts of holes on which none is predicted."""
         return sum(hole.missed for hole in self.holes)
@@ -80,10 +103,25 @@ class CrossValidation:
 
     methods: Mapping[str, MethodScore]
     skipped: Mapping[str, str]
+    scheme: Scheme = "hole"
+
+    @property
+    def left_out(self) -> LeftOutBody:
+        """What the verdict on the body takes from this."""
+        score = self.methods["body"]
+        return LeftOutBody(
+            self.scheme, len(score.holes), score.contact_rms, score.missed, score.misclassified, score.logged,
+            score.inside,
+        )  # fmt: skip
 
 
 def leave_one_hole_out(
-    body: BodyFit, holes: int = 30, *, scheduler: str = "local", workers: int | None = 1
+    body: BodyFit,
+    holes: int | None = None,
+    *,
+    compared: bool = True,
+    scheduler: str = "local",
+    workers: int | None = 1,
 ) -> CrossValidation:
     """Fit a body again without each of its holes, and compare with two usual methods on the same folds.
 
@@ -96,7 +134,10 @@ def leave_one_hole_out(
     body : BodyFit
         A body whose data name their holes.
     holes : int
-        Holes left out at most: of those that meet the body or come within reach of it, some spread over it.
+        Holes left out at most: of those that meet the body or come within reach of it, some spread over it; by default
+        30, and 8 of a body with more than 1500 conditions. Sections take the place of holes where outlines are given.
+    compared : bool
+        Whether the two usual methods are scored, too.
     scheduler, workers : str, int
         Where the fits without a hole are made, see :func:`geofit.streaming.executors.run_tasks`; by default here. The
         scores are the same to the last bit.
@@ -109,32 +150,53 @@ def leave_one_hole_out(
         If the scheduler is lost.
     """
     data = body.data
+    if holes is None:
+        holes = USUAL if body.fitted.conditions <= LARGE else FEW
     names = _chosen(body, holes)
-    scores: dict[str, list[HoleScore]] = {"body": [], "linear RBF": [], "indicator kriging": []}
+    scores: dict[str, list[HoleScore]] = {"body": []}
+    if compared:
+        scores |= {"linear RBF": [], "indicator kriging": []}
     skipped: dict[str, str] = {}
-    kriged = _kriged(data, names)
-    found = dict(run_tasks(_without_hole, [(data, body.settings, name) for name in names], scheduler, workers))
+    kriged = _kriged(data, names) if compared else {}
+    # A new one: what the body has computed so far need not travel.
+    bare = replace(body, accuracy=None)
+    found = dict(run_tasks(_without_hole, [(bare, name, compared) for name in names], scheduler, workers))
     for k, name in enumerate(names):
         score = found[k]
         if isinstance(score, str):
             skipped[name] = score
             continue
         scores["body"].append(score[0])
-        scores["linear RBF"].append(score[1])
-        scores["indicator kriging"].append(_Line.of(data, name).score(kriged[name]))
-    return CrossValidation({name: MethodScore(tuple(found)) for name, found in scores.items()}, skipped)
+        if compared:
+            scores["linear RBF"].append(score[1])
+            scores["indicator kriging"].append(_Line.of(data, name).score(kriged[name]))
+    flat = all(_Line.of(data, name).flat for name in names)
+    methods = {name: MethodScore(tuple(each)) for name, each in scores.items()}
+    return CrossValidation(methods, skipped, "section" if flat and names else "hole")
 
 
-def _without_hole(task: tuple[BodyData, BodySettings, str]) -> tuple[HoleScore, HoleScore] | str:
-    """Return the scores of a body and of a linear RBF without one hole, or why no body can be fitted."""
-    data, settings, name = task
-    rest, line = data.without(name), _Line.of(data, name)
+def _with_band(line: _Line, body: BodyFit) -> HoleScore:
+    """Score a body fitted without a hole or a section along it, and its band at the contacts."""
+    score = line.score(body.value(line.xyz))
+    if not len(line.places):
+        return score
+    if line.flat:
+        score = replace(score, contact_errors=tuple(np.abs(body.distance(line.places)).tolist()), missed=0)
+    chance = BodyPosterior(body).probability(line.places)
+    covered = int(((chance >= BAND) & (chance <= 1 - BAND)).sum())
+    return replace(score, contacts=len(line.places), covered=covered)
+
+
+def _without_hole(task: tuple[BodyFit, str, bool]) -> tuple[HoleScore, ...] | str:
+    """Return the scores of a body and, where asked, of a linear RBF without one hole, or why no body can be fitted."""
+    body, name, compared = task
+    rest, line = body.data.without(name), _Line.of(body.data, name)
     try:
-        fitted = fit_field(rest, settings)
+        fitted = fit_field(rest, body.settings)
     except FitError as error:
         return str(error)
-    value = fitted.field.value(line.xyz - fitted.field.frame.origin)
-    return line.score(value), line.score(_linear_rbf(rest, line.xyz))
+    own = _with_band(line, replace(body, data=rest, fitted=fitted))
+    return (own, line.score(_linear_rbf(rest, line.xyz))) if compared else (own,)
 
 
 def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
@@ -169,22 +231,27 @@ class _Line:
     at: Floats
     length: Floats
     contacts: Floats
+    places: Floats
+    flat: bool
 
     @classmethod
     def of(cls, data: BodyData, name: str) -> _Line:
         within, without = data.inside_hole == name, data.outside_hole == name
         xyz = np.concatenate([data.inside[within], data.outside[without]])
         inside = np.arange(len(xyz)) < within.sum()
-        length = np.concatenate([data.inside_length[within], data.outside_length[without]])
-        along, middle = _main_direction(xyz)
+        length = data_length = np.concatenate([data.inside_length[within], data.outside_length[without]])
+        (along, _, _), (_, across, _), middle = _directions(xyz)
         at = (xyz - middle) @ along
         order = np.argsort(at, kind="stable")
         at = at[order]
         # Samples without a length: half the way to each neighbour.
         gaps = np.gradient(at) if len(at) > 1 else np.zeros(len(at))
         length = np.where(np.isfinite(length[order]), length[order], np.abs(gaps))
-        contacts = (data.contacts[data.hole == name] - middle) @ along
-        return cls(name, xyz[order], inside[order], at, length, contacts)
+        places = data.contacts[data.hole == name]
+        flat = across > FLAT
+        # Nothing is logged along a section: its samples fill a plane.
+        length = np.zeros(len(length)) if flat and not np.isfinite(data_length).any() else length
+        return cls(name, xyz[order], inside[order], at, length, (places - middle) @ along, places, flat)
 
     def score(self, value: Floats) -> HoleScore:
         """Compare values (n,), negative inside, with the log."""
@@ -199,9 +266,12 @@ class _Line:
         return HoleScore(self.name, float(self.length[wrong].sum()), float(self.length.sum()), errors, missed)
 
 
-def _main_direction(xyz: Floats) -> tuple[Floats, Floats]:
+def _directions(xyz: Floats) -> tuple[Floats, tuple[float, float, float], Floats]:
+    """Return the main directions (3, 3) of places, their sizes as shares of the largest, and the middle (3,)."""
     middle = xyz.mean(axis=0)
-    return np.asarray(np.linalg.svd(xyz - middle, full_matrices=False)[2][0]), middle
+    sizes, axes = np.linalg.svd(np.concatenate([xyz - middle, np.zeros((3, 3))]), full_matrices=False)[1:]
+    first, second, third = (sizes / max(float(sizes[0]), 1e-300)).tolist()
+    return np.asarray(axes), (first, second, third), middle
 
 
 def _linear_rbf(data: BodyData, places: Floats) -> Floats:
@@ -236,3 +306,11 @@ def _kriged(data: BodyData, names: tuple[str, ...]) -> dict[str, Floats]:
     groups = [np.arange(a, b) for a, b in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True)]
     estimate = krige_left_out(places, values, groups)
     return {name: 0.5 - estimate[group] for name, group in zip(names, groups, strict=True)}
+
+
+def examined(body: BodyFit) -> LeftOutBody | None:
+    """Return what the verdict takes from leaving holes out; None where the data are of too few holes for that."""
+    try:
+        return leave_one_hole_out(body, compared=False).left_out
+    except FitError:
+        return None

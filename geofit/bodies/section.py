@@ -80,8 +80,8 @@ def chance_lines(body: BodyFit, line: ArrayLike) -> tuple[Floats, ...]:
             plan = start + ((s - at) / length)[:, None] * (end - start)
             places = np.column_stack([np.tile(plan, (len(z), 1)), np.repeat(z, len(s))])
             for chance in (CHANCE, 1 - CHANCE):
-                margin = posterior.margin(places, chance).reshape(len(z), len(s))
-                found += [np.asarray(one) for one in contourpy.contour_generator(s, z, margin).lines(0.0)]
+                values = posterior.margin(places, chance).reshape(len(z), len(s))
+                found += [np.asarray(one) for one in contourpy.contour_generator(s, z, values).lines(0.0)]
         at += length
     return tuple(found)
 

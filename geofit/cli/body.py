@@ -67,7 +67,7 @@ def body(
             print_issues(holes.issues)
             print_counts(holes.counts)
             title = getattr(holes, "title", None)
-            run = run_body(holes, out, codes=code or (), settings=settings, progress=progress)
+            run = run_body(holes, out, codes=code, settings=settings, progress=progress)
         if report:
             from geofit.data.languages import language
             from geofit.project.single_reports import write_body_report
@@ -148,7 +148,7 @@ def print_body(run: BodyRun) -> None:
     sound = not run.failed_checks
     reasons = [check.text for check in file.checks if check.name == "grade"]
     rows = [
-        ("verdict", a.verdict if sound or not a.passed else f"{a.verdict} (!)"),
+        ("verdict", run.verdict.word if sound or not a.passed else f"{run.verdict.word} (!)"),
         ("contacts", str(a.n)),
         ("sigma, m", f"{metres(a.sigma)} {'<' if a.passed else '>='} {a.epsilon:g}"),
         ("largest residual, m", metres(a.max_abs)),
@@ -166,5 +166,6 @@ def print_body(run: BodyRun) -> None:
         ),
     ]
     print_table(("body", run.body.name), rows, left=(0, 1))
+    say(f"{run.body.name}: {run.verdict.text}")
     for reason in reasons:
         say(reason)

@@ -11,10 +11,29 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import Message
 
-__all__ = ["LeftOut", "Outlier", "PredictionResult", "Suggestion", "Uncertainty"]
+__all__ = ["LeftOut", "LeftOutBody", "Outlier", "PredictionResult", "Suggestion", "Uncertainty"]
 
 Floats = NDArray[np.float64]
 Scheme = Literal["hole", "section", "block"]
+
+
+@dataclass(frozen=True)
+class LeftOutBody:
+    """Holes or sections of a body left out in turn: how well the others predict them.
+
+    ``error`` is the root mean square distance from a contact to the predicted surface, metres: along a hole, at right
+    angles to the surface on a section; nan if there is none. ``missed`` counts contacts of holes on which no contact is
+    predicted. ``misclassified`` of the ``logged`` metres lie on the wrong side. ``inside`` is the share of contacts
+    that the 90 % band contains: those at which the chance of lying inside is from 5 to 95 %.
+    """
+
+    scheme: Scheme
+    groups: int
+    error: float
+    missed: int
+    misclassified: float
+    logged: float
+    inside: float
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ import numpy as np
 
 from geofit.data.accuracy import Accuracy, Check, ReadBack
 from geofit.data.messages import Message, message
-from geofit.data.prediction import LeftOut, PredictionResult
+from geofit.data.prediction import LeftOut, LeftOutBody, PredictionResult, Scheme
 
 __all__ = ["FAR", "LEAST_INSIDE", "Lamp", "Level", "Verdict", "verdict_of"]
 
@@ -81,25 +81,29 @@ class Verdict:
 
 def verdict_of(
     accuracy: Accuracy,
-    prediction: PredictionResult | None = None,
+    prediction: PredictionResult | LeftOutBody | None = None,
     read_back: ReadBack | None = None,
     orders: Iterable[Check] = (),
 ) -> Verdict:
-    """Return the verdict on a surface from all that is known of it.
+    """Return the verdict on a surface or a body from all that is known of it.
 
     Parameters
     ----------
     accuracy : Accuracy
         Sigma, epsilon (m) and the checks of the surface.
-    prediction : PredictionResult or None
-        Left-out errors; None: not examined.
+    prediction : PredictionResult, LeftOutBody or None
+        Left-out errors, of a surface or of a body; None: not examined.
     read_back : ReadBack or None
         The checks of the file, where one was written.
     orders : iterable of Check
         How the horizon lies to its neighbours.
     """
     checks = (*accuracy.checks, *(read_back.checks if read_back else ()), *orders)
-    return Verdict(_at_the_data(accuracy), _checks(checks), _away(prediction, accuracy.epsilon))
+    if isinstance(prediction, LeftOutBody):
+        away = _away_of_body(prediction, accuracy.epsilon)
+    else:
+        away = _away(prediction, accuracy.epsilon)
+    return Verdict(_at_the_data(accuracy), _checks(checks), away)
 
 
 def _at_the_data(a: Accuracy) -> Lamp:
@@ -141,15 +145,7 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
             text = message("data.verdict-cannot-examine", "the error away from the data cannot be estimated")
         return Lamp(title, "none", text)
     farthest = max(known, key=lambda one: one.rms)
-    ratio = farthest.rms / epsilon
-    level: Level = "pass" if ratio <= 1 else "warning" if ratio < FAR else "fail"
-    error = message(
-        "data.verdict-left-out-error",
-        "left-out error {error:#.3g} m = {ratio:.1f} ε ({scheme})",
-        error=farthest.rms,
-        ratio=ratio,
-        scheme=_SCHEMES[farthest.scheme],
-    )
+    level, error = _error(farthest.rms, farthest.scheme, epsilon)
     worst = _least_inside(known)
     if worst is None:
         return Lamp(title, level, error)
@@ -163,6 +159,51 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
         scheme=_SCHEMES[worst.scheme],
     )
     return Lamp(title, level, text)
+
+
+def _error(rms: float, scheme: Scheme, epsilon: float) -> tuple[Level, Message]:
+    ratio = rms / epsilon
+    level: Level = "pass" if ratio <= 1 else "warning" if ratio < FAR else "fail"
+    text = message(
+        "data.verdict-left-out-error",
+        "left-out error {error:#.3g} m = {ratio:.1f} ε ({scheme})",
+        error=rms,
+        ratio=ratio,
+        scheme=_SCHEMES[scheme],
+    )
+    return level, text
+
+
+def _away_of_body(found: LeftOutBody, epsilon: float) -> Lamp:
+    """Return the lamp of a body: as that of a surface, with the contacts and metres that are predicted wrongly."""
+    title = message("data.verdict-away", "Away from the data")
+    if not np.isfinite(found.error):
+        return Lamp(
+            title,
+            "fail" if found.missed else "none",
+            message(
+                "verdict.body-nothing-predicted", "none of {missed} left-out contacts is predicted", missed=found.missed
+            )
+            if found.missed
+            else message("data.verdict-cannot-examine", "the error away from the data cannot be estimated"),
+        )
+    level, error = _error(found.error, found.scheme, epsilon)
+    parts = [error]
+    if found.missed:
+        parts.append(message("verdict.contacts-missed", "contacts not predicted: {count}", count=found.missed))
+    if found.logged:
+        parts.append(
+            message(
+                "verdict.misclassified",
+                "{wrong:.1f} m of {logged:.1f} m on the wrong side",
+                wrong=found.misclassified,
+                logged=found.logged,
+            )
+        )
+    parts.append(message("verdict.band-contains", "the 90 % band contains {share:.0f} %", share=100 * found.inside))
+    if level == "pass" and (found.missed or round(found.inside, 2) < LEAST_INSIDE):
+        level = "warning"
+    return Lamp(title, level, message("verdict.left-out-body", "{parts}", parts=tuple(parts)))
 
 
 def _least_inside(known: Sequence[LeftOut]) -> LeftOut | None:

@@ -18,6 +18,7 @@ from geofit.bodies.settings import BodySettings
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite
 from geofit.data.progress import Progress, tell
+from geofit.data.verdict import Verdict, verdict_of
 from geofit.implicit.mesh import TriangleMesh
 from geofit.project.body_record import (
     BetweenHorizons,
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from geofit.bodies.simulate import BodyVolumes
     from geofit.bodies.strata import StratumVolume
     from geofit.bodies.violations import Violation
+    from geofit.data.prediction import LeftOutBody
     from geofit.morphing.body import MorphBody
 
 __all__ = [
@@ -60,7 +62,7 @@ class BodyResult:
     """A body with what was found out about it.
 
     ``strata`` are its volumes between horizons, ``divided_by`` the surfaces that were available for them by name,
-    ``questions`` what outlines on sections leave open.
+    ``questions`` what outlines on sections leave open, ``left_out`` how well its holes predict each other.
     ``origin`` is how it came here; ``difference`` the largest distance in metres between a body made again and the
     triangles that the project held, nan where nothing was compared.
     """
@@ -71,6 +73,7 @@ class BodyResult:
     divided_by: tuple[str, ...] = ()
     violations: tuple[Violation, ...] = ()
     questions: tuple[Question, ...] = ()
+    left_out: LeftOutBody | None = None
     origin: Origin = "fitted"
     difference: float = np.nan
 
@@ -78,6 +81,11 @@ class BodyResult:
     def accuracy(self) -> BodyAccuracy | None:
         """The check of a fitted body; None of others."""
         return getattr(self.body, "accuracy", None)
+
+    @property
+    def verdict(self) -> Verdict | None:
+        """The verdict of a fitted body with its three lamps; None of others."""
+        return None if self.accuracy is None else verdict_of(self.accuracy, self.left_out)
 
     @property
     def fitted(self) -> BodyFit | None:
@@ -151,6 +159,7 @@ def _fitted(
     progress: Progress | None,
 ) -> tuple[BodyResult, str]:  # fmt: skip
     """Fit a body to what its source holds; return also the hash of it."""
+    from geofit.bodies.crossval import examined
     from geofit.bodies.fit import fit_body
     from geofit.bodies.questions import section_questions
     from geofit.bodies.violations import violations
@@ -159,8 +168,11 @@ def _fitted(
     tell(progress, "fit", 0.1)
     body = fit_body(read.data, settings, name=name)
     tell(progress, "volumes", 0.5)
+    volumes = body.volumes()
+    tell(progress, "holes left out", 0.65)
     questions = section_questions(read.outlines, body) if read.outlines else ()
-    return BodyResult(body, body.volumes(), violations=violations(body), questions=questions), read.given
+    found = BodyResult(body, volumes, violations=violations(body), questions=questions, left_out=examined(body))
+    return found, read.given
 
 
 def made_body(

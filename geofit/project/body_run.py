@@ -7,12 +7,14 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from geofit.bodies.crossval import examined
 from geofit.bodies.fit import fit_body
 from geofit.bodies.settings import BodySettings
 from geofit.data.accuracy import plain
 from geofit.data.files import file_stems, folder_for
 from geofit.data.messages import Message
 from geofit.data.progress import Progress, tell
+from geofit.data.verdict import Verdict, verdict_of
 from geofit.project.body_files import write_figures, write_triangles
 
 if TYPE_CHECKING:
@@ -21,6 +23,7 @@ if TYPE_CHECKING:
     from geofit.bodies.data import BodyData
     from geofit.bodies.simulate import BodyVolumes
     from geofit.cad.solid import SolidReadBack
+    from geofit.data.prediction import LeftOutBody
     from geofit.data.site import Site
     from geofit.io.boreholes import Boreholes
 
@@ -35,6 +38,12 @@ class BodyRun:
     volumes: BodyVolumes
     read_back: SolidReadBack
     files: tuple[Path, ...]
+    left_out: LeftOutBody | None = None
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict with its three lamps."""
+        return verdict_of(self.accuracy, self.left_out)
 
     @property
     def accuracy(self) -> BodyAccuracy:
@@ -68,10 +77,12 @@ class BodyRun:
             "body",
             {
                 "body": self.body.name,
-                "verdict": self.accuracy.verdict,
+                "verdict": self.verdict.word,
                 "settings": {f.name: plain(getattr(settings, f.name)) for f in fields(settings)},
                 **accuracy,
                 "volumes": volumes,
+                "lamps": plain(self.verdict.lamps),
+                "left_out": None if self.left_out is None else plain(self.left_out),
                 "read_back": {**plain(self.read_back), "file": Path(self.read_back.file).name},
                 "issues": plain(self.body.issues),
                 "version": __version__,
@@ -114,6 +125,8 @@ def run_body(
     stem = folder / file_stems([body.name])[body.name]
     tell(progress, "volumes", 0.3)
     volumes = body.volumes()
+    tell(progress, "holes left out", 0.5)
+    left_out = examined(body)
     tell(progress, "STEP", 0.6)
     step, contacts = stem.with_name(f"{stem.name}.step"), stem.with_name(f"{stem.name}_contacts.csv")
     read_back = body.write_step(step)
@@ -121,6 +134,6 @@ def run_body(
     write_contacts(body, contacts)
     figures = stem.with_name(f"{stem.name}.json")
     files = (step, figures, contacts, *write_triangles(body.overview, stem, body.origin))
-    run = BodyRun(body, volumes, read_back, files)
+    run = BodyRun(body, volumes, read_back, files, left_out)
     write_figures(run.figures(), figures)
     return run

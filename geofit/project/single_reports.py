@@ -38,8 +38,8 @@ __all__ = [
 
 T = TypeVar("T")
 
-#: Holes that are left out in turn, and holes that are suggested.
-LEFT_OUT, SUGGESTED = 30, 3
+#: Holes that are suggested.
+SUGGESTED = 3
 
 
 def body_findings(
@@ -103,9 +103,7 @@ def _findings(
             )
     tell(progress, "holes left out", 0.2)
     left_out = tried(
-        lambda: leave_one_hole_out(body, LEFT_OUT),
-        None,
-        message("project.task-left-out", "the error at holes left out"),
+        lambda: leave_one_hole_out(body), None, message("project.task-left-out", "the error at holes left out")
     )
     tell(progress, "suggested boreholes", 0.7)
     suggested = tried(

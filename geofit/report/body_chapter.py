@@ -7,8 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from geofit.data.languages import Language, sentence, together, translate
+from geofit.data.languages import Language, sentence, translate
 from geofit.data.messages import Message, message
+from geofit.data.verdict import Verdict as Judged
+from geofit.data.verdict import verdict_of
 from geofit.report import digits
 from geofit.report.checks_table import check_table
 from geofit.report.document import (
@@ -70,6 +72,11 @@ class BodyFindings:
             raise ValueError(f"body '{self.body.name}' has not been checked; fit_body() does that.")
         return self.body.accuracy
 
+    @property
+    def verdict(self) -> Judged:
+        """The verdict of the body with its three lamps."""
+        return verdict_of(self.accuracy, None if self.left_out is None else self.left_out.left_out)
+
 
 def body_picture(what: str, name: str) -> str:
     """Return the name by which a report speaks of a picture of a body."""
@@ -79,23 +86,22 @@ def body_picture(what: str, name: str) -> str:
 def body_chapter(found: BodyFindings, t: Language) -> Chapter:
     """Lay out everything about one body."""
     a, name = found.accuracy, found.body.name
-    blocks: list[Block] = [Paragraph(_sentence(a, t)), _facts(found, t)]
+    blocks: list[Block] = [Paragraph(_sentence(found, t)), _facts(found, t)]
     blocks += [Paragraph(sentence(text, t), "warning") for text in found.missing]
     blocks += _pictures(found, t)
     blocks += [*_volumes(found, t), *_logged(a, t), *_checks(found, t), *_left_out(found, t), *_holes(found, t)]
     blocks += _issues(found, t)
-    return Chapter(
-        t("Body {name}", name=name), tuple(blocks), VerdictMark(a.passed, t("PASS") if a.passed else t("FAIL"))
-    )
+    return Chapter(t("Body {name}", name=name), tuple(blocks), _badge(found, t))
 
 
-def _sentence(a: BodyAccuracy, t: Language) -> str:
-    sigma, epsilon = digits.equals(a.sigma), digits.given(a.epsilon)
-    if not a.passed:
-        return t("σ {sigma} is not below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
-    failed = any(check.passed is False for check in a.checks)
-    text = t("σ {sigma} is below the control error ε = {epsilon} m.", sigma=sigma, epsilon=epsilon)
-    return together([text, t("But a check fails: see below.") if failed else ""], t)
+def _badge(found: BodyFindings, t: Language) -> VerdictMark:
+    word = found.verdict.word
+    words = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}
+    return VerdictMark({"PASS": True, "FAIL": False}.get(word), words[word])
+
+
+def _sentence(found: BodyFindings, t: Language) -> str:
+    return " · ".join(t("{title}: {text}", title=lamp.title, text=lamp.text) for lamp in found.verdict.lamps)
 
 
 def _facts(found: BodyFindings, t: Language) -> Facts:

@@ -211,6 +211,11 @@ def other_case(seed: int) -> Case:
     return _case(np.random.default_rng(90_000 + seed), seed, OTHERS, 5, [0.0, 0.0, 0.01, 0.02])
 
 
+def mixed_case(seed: int) -> Case:
+    """Return a case of all kinds in turn that nothing was chosen on: 6 to 11 squared holes, noise of its own."""
+    return _case(np.random.default_rng(777_000 + seed), seed, {**KINDS, **OTHERS}, 6, [0.0, 0.005, 0.015])
+
+
 def _case(
     rng: Random, seed: int, kinds: dict[str, Callable[[Random], Truth]], fewest: int, noises: list[float]
 ) -> Case:

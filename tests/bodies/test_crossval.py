@@ -7,9 +7,11 @@ import pytest
 
 from bodies.planted import ORIGIN, drilled, ellipsoid
 from geofit.bodies.body import BodyFit
-from geofit.bodies.crossval import leave_one_hole_out
+from geofit.bodies.crossval import examined, leave_one_hole_out
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
+from geofit.bodies.outlines import Outline, from_outlines
+from geofit.bodies.posterior import BodyPosterior
 from geofit.bodies.simulate import simulate
 from geofit.data.errors import FitError
 from geofit.streaming.executors import Where
@@ -62,3 +64,52 @@ def test_holes_left_out_and_simulations_on_two_processes(ring: BodyFit) -> None:
     assert one.methods["body"].holes
     alone, apart = simulate(ring), simulate(ring, Where("local", 2))
     assert alone.values == pytest.approx(apart.values, rel=1e-9)
+
+
+@pytest.fixture(scope="module")
+def egg() -> BodyFit:
+    return fit_body(drilled(ellipsoid((0.65, 0.45, 0.35))[0], 3, named=True))
+
+
+def test_what_the_verdict_takes_from_holes_left_out(egg: BodyFit) -> None:
+    found = leave_one_hole_out(egg, holes=8)
+    alone = leave_one_hole_out(egg, holes=8, compared=False)
+    assert list(alone.methods) == ["body"]
+    assert alone.left_out == found.left_out
+    left = found.left_out
+    score = found.methods["body"]
+    errors = np.concatenate([hole.contact_errors for hole in score.holes])
+    assert left.error == pytest.approx(np.sqrt((errors**2).mean()))
+    assert (left.scheme, left.groups, left.misclassified) == ("hole", len(score.holes), score.misclassified)
+    assert 0.5 < left.inside <= 1.0
+
+
+def test_the_band_of_holes_left_out_by_hand(egg: BodyFit) -> None:
+    holes = leave_one_hole_out(egg, holes=8, compared=False).methods["body"].holes
+    hole = next(one for one in holes if one.contacts)
+    again = fit_body(egg.data.without(hole.hole))
+    chance = BodyPosterior(again).probability(egg.data.contacts[egg.data.hole == hole.hole])
+    assert hole.contacts == len(chance) == 2
+    assert hole.covered == ((chance >= 0.05) & (chance <= 0.95)).sum()
+
+
+def test_sections_left_out_are_measured_at_right_angles_to_the_surface() -> None:
+    angle = np.linspace(0, 2 * np.pi, 30, endpoint=False)
+    outlines = [
+        Outline(f"S{k}", ORIGIN + np.sqrt(1 - (x / 50) ** 2) * 30 * np.column_stack(
+            [np.full(30, 0.0), np.cos(angle), np.sin(angle)]) + [x, 0, 0])
+        for k, x in enumerate(np.linspace(-40, 40, 7))
+    ]  # fmt: skip
+    body = fit_body(from_outlines(outlines))
+    found = leave_one_hole_out(body, compared=False)
+    assert found.scheme == "section"
+    middle = next(one for one in found.methods["body"].holes if one.hole == "S3")
+    again = fit_body(body.data.without("S3"))
+    distances = np.abs(again.distance(body.data.contacts[body.data.hole == "S3"]))
+    assert middle.contact_errors == pytest.approx(tuple(distances), abs=1e-9)
+    assert max(middle.contact_errors) < 1.0
+    assert found.left_out.logged == 0.0
+
+
+def test_too_few_holes_leave_nothing_to_examine() -> None:
+    assert examined(fit_body(drilled(ellipsoid((0.6, 0.4, 0.3))[0], 0))) is None

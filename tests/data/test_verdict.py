@@ -9,7 +9,7 @@ import pytest
 
 from geofit.data.accuracy import Accuracy, Check
 from geofit.data.messages import message
-from geofit.data.prediction import LeftOut, PredictionResult
+from geofit.data.prediction import LeftOut, LeftOutBody, PredictionResult
 from geofit.data.verdict import verdict_of
 
 EPSILON = 0.5
@@ -75,3 +75,39 @@ def test_what_was_not_examined_is_no_fault():
     assert found.away.level == "none"
     assert found.word == "PASS"
     assert found.away.text.code == "data.verdict-not-examined"
+
+
+def body_left_out(**changed):
+    given = {
+        "scheme": "hole",
+        "groups": 9,
+        "error": 0.4,
+        "missed": 0,
+        "misclassified": 1.5,
+        "logged": 300.0,
+        "inside": 0.9,
+    }
+    return LeftOutBody(**{**given, **changed})
+
+
+@pytest.mark.parametrize(
+    ("changed", "level", "words"),
+    [
+        ({}, "pass", "left-out error 0.400 m = 0.8 ε (holes left out)"),
+        ({}, "pass", "1.5 m of 300.0 m on the wrong side"),
+        ({"error": 2.0}, "warning", "4.0 ε"),
+        ({"error": 5.0}, "fail", "10.0 ε"),
+        ({"inside": 0.8}, "warning", "the 90 % band contains 80 %"),
+        ({"missed": 2}, "warning", "contacts not predicted: 2"),
+        ({"error": np.nan, "missed": 4}, "fail", "none of 4 left-out contacts"),
+        ({"error": np.nan}, "none", "cannot be estimated"),
+        ({"scheme": "section", "logged": 0.0}, "pass", "sections left out"),
+    ],
+)
+def test_the_lamp_of_a_body_away_from_its_data(changed, level, words):
+    judged = verdict_of(accuracy(), body_left_out(**changed))
+    assert judged.away.level == level
+    assert words in str(judged.away.text)
+    assert judged.word == {"pass": "PASS", "none": "PASS"}.get(level, "WARNING")
+    if changed.get("scheme") == "section":
+        assert "wrong side" not in str(judged.away.text)

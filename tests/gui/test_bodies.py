@@ -92,14 +92,19 @@ def test_a_first_body_from_another_site_file_through_the_panel(opened, sample, m
     assert record.provenance.settings.epsilon == 0.25
     result = opened.document.body("ORE")
     assert result.accuracy.verdict == "PASS"
-    assert "PASS" in panel.badge.text
+    assert result.verdict.away.level == "warning"
+    for said in ("WARNING", "left-out error"):
+        assert said in panel.badge.text
+    assert str(result.verdict.away.text) in panel.badge.text
+    (row,) = (row for row in opened.panels.tree.items.all() if row.target == ("body", "ORE"))
+    assert str(result.verdict.away.text) in row.words
     assert "0.25" in panel.badge.text
     assert panel.list.currentText() == "ORE"
     assert tree_bodies(opened) == ["ORE"]
     layers = opened.panels.view.layers
     assert layers["body:ORE"].colour == record.style.colour
     assert layers["body data:ORE"].visible
-    assert "ORE: PASS" in opened.window.statusBar().currentMessage()
+    assert "ORE: WARNING" in opened.window.statusBar().currentMessage()
     volumes = opened.panels.body_figures.volumes.rows
     cells = [volumes.index(0, k).data() for k in range(volumes.columnCount())]
     assert cells[0] == "whole body"

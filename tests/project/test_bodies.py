@@ -16,17 +16,11 @@ from geofit.data.errors import InputError
 from geofit.io.project import VERSION, open_project
 from geofit.io.site_file import read_site
 from geofit.morphing.errors import MorphError
-from geofit.project.body_building import (
-    BodyResult,
-    given_of_logs,
-    interval_codes,
-    make_body,
-    origin_text,
-    site_codes,
-)
+from geofit.project.body_building import BodyResult, make_body, origin_text
 from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, Intervals, MorphFrame, next_colour
 from geofit.project.body_saving import largest_difference, saved_body
 from geofit.project.body_shelf import SPARE, BodyShelf
+from geofit.project.body_sources import given_of_logs, interval_codes, site_codes
 from geofit.project.mesh_body import MeshBody, read_mesh_body
 from geofit.project.saving import read_project, save_state
 from geofit.project.state import State
