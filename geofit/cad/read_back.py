@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.cad.faces import along, edges_with_faces, faces_of, free_edges, free_loops
+from geofit.cad.step_attributes import attributes_of
 from geofit.data.accuracy import Check, ReadBack, Seam
 from geofit.data.messages import Message, message
 from geofit.geometry.projection import Projection, project
@@ -155,6 +156,7 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             ),
         ),
         _normal_check(found, seams),
+        _attribute_check(surface, shape),
     )
     return ReadBack(
         file=path.name,
@@ -349,6 +351,19 @@ def _outline_check(surface: FittedSurface, shape: FileShape, free: list[Any]) ->
     )
     reach = follows if off <= limit else short
     return Check(name, True if off <= limit else None, off, limit, "m", reach)
+
+
+def _attribute_check(surface: FittedSurface, shape: FileShape) -> Check:
+    """Check that the product has the attributes that were written: sigma, epsilon, the hash of the data."""
+    written = attributes_of(surface)
+    wrong = [key for key, value in written.items() if shape.attributes.get(key) != value]
+    text = message(
+        "export.attributes-of-product",
+        "{found} of {count} attributes of the product (sigma, epsilon, hash of the data) read as written",
+        found=len(written) - len(wrong),
+        count=len(written),
+    )
+    return Check("read-back attributes", not wrong, float(len(wrong)), 0.0, "", text)
 
 
 def _normal_check(found: Surface, seams: tuple[Seam, ...]) -> Check:
