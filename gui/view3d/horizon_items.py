@@ -60,7 +60,7 @@ def points_item(
     ]
     if not used.all():
         ghosts = dots(poly(points.xyz[~used] - look.origin), GHOST[look.dark], balls=not many)
-        parts.append(Part(ghosts, size=SIZE, opacity=GHOSTLY))
+        parts.append(Part(ghosts, size=SIZE * look.points, opacity=GHOSTLY))
     return Item(parts, extent(points.xyz), targets=points.xyz, legend=made.legend)
 
 
@@ -83,7 +83,7 @@ def _dots(
 ) -> Part:
     actor = dots(poly(xyz[which] - look.origin), "#000000", balls=not flat)
     coloured(actor, made.colour[which])
-    return Part(actor, detail, size=size)
+    return Part(actor, detail, size=size * look.points)
 
 
 def shape_item(
