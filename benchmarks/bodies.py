@@ -79,7 +79,7 @@ def planted(count: int, others: bool = False) -> Score:
     from bodies.planted import ORIGIN, SIZE
     from bodies.shapes import KINDS, OTHERS, case, other_case
 
-    from geofit.bodies.posterior import Posterior
+    from geofit.bodies.posterior import BodyPosterior
 
     kinds, make = (OTHERS, other_case) if others else (KINDS, case)
     held: dict[str, list[bool]] = {kind: [] for kind in kinds}
@@ -96,7 +96,7 @@ def planted(count: int, others: bool = False) -> Score:
         held[one.kind].append(volumes.p10 < volume < volumes.p90)
         errors[one.kind].append(volumes.best / volume - 1)
         places = np.random.default_rng(seed).uniform(-0.9, 0.9, (3000, 3))
-        chance.append(Posterior(body).probability(places * SIZE + ORIGIN))
+        chance.append(BodyPosterior(body).probability(places * SIZE + ORIGIN))
         truth.append(one.truth(places) < 0)
     every = {**errors, "all": [e for found in errors.values() for e in found]}
     inside = {**held, "all": [h for found in held.values() for h in found]}

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from geofit.geometry.projection import project
-from geofit.geometry.trim_loops import nearest
+from geofit.geometry.trim_loops import nearest_on_trimmed
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
 
@@ -87,9 +87,9 @@ def against_reference(title: str, patch: Patch, loops: tuple[np.ndarray, ...], s
     u, v = rng.uniform(u0, u1, count), rng.uniform(v0, v1, count)
     xyz = patch.evaluate(u, v) + patch.normal(u, v) * rng.normal(0, spread, count)[:, None]
     trimmed = (loops,) if loops else ()
-    nearest([patch], xyz[:10], trimmed)
+    nearest_on_trimmed([patch], xyz[:10], trimmed)
     start = time.process_time()
-    found = nearest([patch], xyz, trimmed)
+    found = nearest_on_trimmed([patch], xyz, trimmed)
     speed = count / (time.process_time() - start)
     assert found.beyond is not None
     off = np.abs(found.distance[:CHECKED]) - converged_distances(patch, loops, xyz[:CHECKED])

@@ -8,7 +8,7 @@ from PySide6.QtCore import QT_TRANSLATE_NOOP, QCoreApplication, QObject
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence
 from PySide6.QtWidgets import QMainWindow
 
-from geofit.gui.icons import icon
+from geofit.gui.icons import palette_icon
 from geofit.gui.language import LANGUAGES
 from geofit.gui.translate import bare
 
@@ -146,7 +146,7 @@ class Actions(QObject):
         """Draw the icons anew, in the colours of the present theme."""
         for name, (*_, drawing) in (_PLAIN | _SWITCHES).items():
             if drawing:
-                self[name].setIcon(icon(drawing))
+                self[name].setIcon(palette_icon(drawing))
 
 
 def _action(window: QMainWindow, name: str, text: str, key: Any, tip: str, drawing: str, checkable: bool) -> QAction:
@@ -161,7 +161,7 @@ def _action(window: QMainWindow, name: str, text: str, key: Any, tip: str, drawi
     action.setToolTip(f"{words} ({keys})" if keys else words)
     action.setStatusTip(words)
     if drawing:
-        action.setIcon(icon(drawing))
+        action.setIcon(palette_icon(drawing))
     window.addAction(action)
     return action
 

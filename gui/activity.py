@@ -103,7 +103,7 @@ class Activity(QObject):
                 on_done=job.on_done,
                 on_failed=job.on_failed or partial(self._fail, job.title),
                 on_progress=self.progressed.emit,
-                on_cancelled=partial(_LOG.info, message("log.stopped", "Stopped: {task}", task=job.title)),
+                on_cancelled=partial(_LOG.info, message("gui.log-stopped", "Stopped: {task}", task=job.title)),
             )
             self._task.ended.connect(self._after)
             # Not before there is a task: who hears of it checks whether something can be stopped.
@@ -116,5 +116,5 @@ class Activity(QObject):
         self._next()
 
     def _fail(self, title: str, error: Exception) -> None:
-        _LOG.error(message("log.task-error", "{task}: {error}", task=title, error=shown_error(error)))
+        _LOG.error(message("gui.log-task-error", "{task}: {error}", task=title, error=shown_error(error)))
         self.failed.emit(title, error)

@@ -9,7 +9,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QLabel, QMainWindow, QProgressBar, QToolButton
 
 from geofit.gui.activity import Activity
-from geofit.gui.icons import icon
+from geofit.gui.icons import palette_icon
 from geofit.gui.panel_bar import PanelBar
 from geofit.gui.translate import translated
 
@@ -26,7 +26,7 @@ class ActivityBar:
         self.progress.setTextVisible(False)
         self.progress.setFixedWidth(140)
         self.progress.setAccessibleName(QCoreApplication.translate("ActivityBar", "Progress"))
-        self.stop.setIcon(icon("cancel"))
+        self.stop.setIcon(palette_icon("cancel"))
         self.stop.setAutoRaise(True)
         self.stop.setToolTip(QCoreApplication.translate("ActivityBar", "Stop the task (Esc)"))
         self.stop.setAccessibleName(QCoreApplication.translate("ActivityBar", "Stop the task"))

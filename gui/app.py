@@ -31,7 +31,7 @@ def start(file: Path | None) -> int:
         if file is not None and not file.is_file():
             raise GeofitError(
                 message(
-                    "window.no-such-file",
+                    "gui.no-such-file",
                     "There is no file {file}. Give a site file (site.toml) or a project (*.geofit).",
                     file=str(file),
                 )
@@ -44,10 +44,10 @@ def start(file: Path | None) -> int:
         application()
         splash = Splash()
         splash.show()
-        splash.tell(_words(message("window.loading", "Loading…")), 0.1)
+        splash.tell(_words(message("gui.loading", "Loading…")), 0.1)
         from geofit.gui.desktop import Desktop
 
-        splash.tell(_words(message("window.opening", "Opening the window…")), 0.7)
+        splash.tell(_words(message("gui.opening", "Opening the window…")), 0.7)
         desktop = Desktop()
     except GeofitError as error:
         print(f"geofit-gui: {error}", file=sys.stderr)

@@ -36,7 +36,7 @@ from geofit.project.body_record import (
     Intervals,
     next_colour,
 )
-from geofit.project.body_saving import difference
+from geofit.project.body_saving import largest_difference
 from geofit.project.provenance import Provenance
 
 __all__ = ["Bodies"]
@@ -160,10 +160,10 @@ class Bodies(QObject):
         self.showing.chosen = name
         self.showing.renew()
         a = result.accuracy
-        text = message("log.body", "{name}: {volume:.6g} m³", name=name, volume=result.mesh.volume)
+        text = message("gui.log-body-volume", "{name}: {volume:.6g} m³", name=name, volume=result.mesh.volume)
         if a is not None:
             text = message(
-                "log.body-fitted",
+                "gui.log-body-fitted",
                 "{name}: {verdict}, σ {sigma:.3g} m, {volume:.6g} m³, violations: {count}",
                 name=name,
                 verdict=a.verdict,
@@ -208,7 +208,7 @@ class Bodies(QObject):
             self._lost(name, wanted, None)
             return
         former = self._document.bodies.get(wanted)
-        apart = float("nan") if former is None else difference(former, result)
+        apart = float("nan") if former is None else largest_difference(former, result)
         self._put(wanted, replace(result, origin="again", difference=apart))
 
     def _lost(self, name: str, provenance: BodyProvenance, error: Exception | None) -> None:
@@ -218,13 +218,16 @@ class Bodies(QObject):
         self.showing.changed.add(provenance)
         if error is None:
             text = message(
-                "log.body-data-changed",
+                "gui.log-body-data-changed",
                 "The data of body {name} have changed since: it cannot be made again as it was. Fit it.",
                 name=name,
             )
         else:
             text = message(
-                "log.body-not-again", "Body {name} cannot be made again: {error}", name=name, error=shown_error(error)
+                "gui.log-body-not-made-again",
+                "Body {name} cannot be made again: {error}",
+                name=name,
+                error=shown_error(error),
             )
         _LOG.warning(text)
         self.showing.renew()
@@ -242,7 +245,7 @@ class Bodies(QObject):
             left = [one for one in self._using if one not in found.divided_by]
             if left:
                 text = message(
-                    "log.body-not-over",
+                    "gui.log-body-not-covered",
                     "These do not cover all of body {name}: {names}",
                     name=name,
                     names=", ".join(left),
@@ -257,7 +260,7 @@ class Bodies(QObject):
 
     def _exported(self, written: BodyExport) -> None:
         path = str(written.path.resolve())
-        _LOG.info(message("log.wrote", "Wrote {file}", file=path))
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=path))
         text = self.tr("Wrote {names}.").format(names=path)
         back = written.read_back
         if back is not None:

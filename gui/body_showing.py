@@ -17,7 +17,7 @@ from geofit.gui.showing import Showing
 from geofit.gui.translate import translated
 from geofit.gui.workspace import Workspace
 from geofit.implicit.mesh import TriangleMesh
-from geofit.project.body_building import BodyResult, codes_of, given_of_logs, origin_text
+from geofit.project.body_building import BodyResult, given_of_logs, interval_codes, origin_text
 from geofit.project.body_record import BodyProvenance, BodyRecord, Intervals
 from geofit.project.document import Document
 from geofit.project.provenance import Provenance
@@ -88,7 +88,7 @@ class BodyShowing(QObject):
             return
         if self._site:
             self._site = False
-            panel.source.show_own(codes_of(document.site.boreholes))
+            panel.source.show_own(interval_codes(document.site.boreholes))
         if self.chosen not in document.state.bodies:
             self.chosen = next(iter(document.state.bodies), "") if self.chosen else ""
         self._show_tree()

@@ -78,7 +78,7 @@ class Desktop(QObject):
         if missing_chinese():
             _LOG.warning(
                 message(
-                    "log.no-chinese-font",
+                    "gui.log-no-chinese-font",
                     "No font on this machine has Chinese characters: they are shown as boxes. Install one "
                     "(Debian and Ubuntu: apt-get install fonts-noto-cjk) and start again.",
                 )
@@ -126,5 +126,5 @@ class Desktop(QObject):
             self.window.leave_without_asking()
             return
         traceback.print_exception(kind, error, trace)
-        _LOG.error(message("log.task-error", "{task}: {error}", task=kind.__name__, error=shown_error(error)))
+        _LOG.error(message("gui.log-task-error", "{task}: {error}", task=kind.__name__, error=shown_error(error)))
         self.window.fail("", error)

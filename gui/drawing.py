@@ -13,7 +13,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.worker import run_in_process
 
-__all__ = ["Drawing"]
+__all__ = ["SurfaceDrawing"]
 
 #: So many are kept, for undoing at once.
 KEPT = 12
@@ -26,7 +26,7 @@ class _Made:
     drawn: Drawn
 
 
-class Drawing(QObject):
+class SurfaceDrawing(QObject):
     """Calls back with what can be drawn; at once, where it was made already. ``failed(exception)`` if it cannot be."""
 
     failed = Signal(object)

@@ -166,7 +166,7 @@ class Delivering(QObject):
     def list_report(self, path: object) -> None:
         """List a report in the project tree."""
         self._reports.append(str(path))
-        _LOG.info(message("log.wrote", "Wrote {file}", file=str(Path(str(path)).resolve())))
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(Path(str(path)).resolve())))
         self.reported.emit(self.tr("Wrote {names}.").format(names=Path(str(path)).resolve()))
         self._panels.tree.show_reports(self._reports)
 
@@ -191,7 +191,7 @@ class Delivering(QObject):
         surfaces = self._document.surfaces()
         if not surfaces:
             self.refused.emit(
-                GeofitError(message("window.no-surface-to-write", "There is no surface to write yet. Press Fit first."))
+                GeofitError(message("gui.no-surface-to-write", "There is no surface to write yet. Press Fit first."))
             )
         return surfaces
 
@@ -203,4 +203,4 @@ class Delivering(QObject):
         names = ", ".join(str(file.resolve()) for file in files)
         self.reported.emit(self.tr("Wrote {names}.").format(names=names))
         for file in files:
-            _LOG.info(message("log.wrote", "Wrote {file}", file=str(file.resolve())))
+            _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(file.resolve())))

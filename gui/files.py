@@ -22,7 +22,15 @@ from geofit.gui.translate import translated
 from geofit.project.body_saving import saved_body
 from geofit.project.journal import Unfinished, unfinished
 from geofit.project.provenance import Provenance
-from geofit.project.saving import Opened, Written, earlier_data, read_again, read_project, read_surfaces, save_state
+from geofit.project.saving import (
+    Opened,
+    Written,
+    earlier_data,
+    read_again,
+    read_project,
+    read_saved_surfaces,
+    save_state,
+)
 
 __all__ = ["Files"]
 
@@ -192,13 +200,13 @@ class Files(QObject):
         count = self._session.resume(session, site)
         self._fitting.make_missing()
         back = plural_message(
-            "session.brought-back", "Brought back, {count} step.", "Brought back, {count} steps.", count=count
+            "gui.steps-brought-back", "Brought back, {count} step.", "Brought back, {count} steps.", count=count
         )
         self.reported.emit(translated(back))
         for name in self._document.lost():
             _LOG.warning(
                 message(
-                    "log.data-changed",
+                    "gui.log-data-changed",
                     "The data of {name} have changed since: its surface cannot be made again as it was. Fit it.",
                     name=Untranslated(name),
                 )
@@ -218,7 +226,7 @@ class Files(QObject):
             for file, what in found.changed.items():
                 _LOG.warning(
                     message(
-                        "log.file-changed",
+                        "gui.log-file-changed",
                         "{file}: {change} since the project was saved.",
                         file=Untranslated(file),
                         change=what,
@@ -229,7 +237,7 @@ class Files(QObject):
                 blocks_site = self._document.site
                 self._activity.do(
                     title,
-                    read_surfaces,
+                    read_saved_surfaces,
                     found.project,
                     path.parent,
                     blocks_site,
@@ -237,11 +245,11 @@ class Files(QObject):
                     in_process=True,
                 )
         errors = sum(issue.severity == "error" for issue in site.issues)
-        horizons = plural_message("count.horizons", "{count} horizon", "{count} horizons", count=len(site.horizons))
-        holes = plural_message("count.holes", "{count} hole", "{count} holes", count=len(site.holes))
-        rows = plural_message("count.rows", "{count} row", "{count} rows", count=errors)
+        horizons = plural_message("gui.horizons-count", "{count} horizon", "{count} horizons", count=len(site.horizons))
+        holes = plural_message("gui.holes-count", "{count} hole", "{count} holes", count=len(site.holes))
+        rows = plural_message("gui.rows-count", "{count} row", "{count} rows", count=errors)
         opened = message(
-            "session.opened",
+            "gui.site-opened",
             "{name}: {horizons}, {rows} not used.",
             name=Untranslated(site.name),
             horizons=horizons,
@@ -250,7 +258,7 @@ class Files(QObject):
         self.reported.emit(translated(opened))
         _LOG.info(
             message(
-                "log.opened",
+                "gui.log-opened",
                 "Opened {path}: {horizons}, {holes}, {rows} not used",
                 path=str(path),
                 horizons=horizons,
@@ -270,7 +278,7 @@ class Files(QObject):
         self._preferences.opened(written.path)
         self._preferences.folder = str(written.path.resolve().parent)
         self.reported.emit(self.tr("Saved {name}.").format(name=written.path.resolve()))
-        _LOG.info(message("log.saved", "Saved {path}", path=str(written.path)))
+        _LOG.info(message("gui.log-saved", "Saved {path}", path=str(written.path)))
         then, self._after_saving = self._after_saving, None
         if then is not None and not self._document.dirty:
             then()

@@ -30,7 +30,7 @@ from geofit.project.commands import (
     SetSurface,
     SplitAtFaults,
 )
-from geofit.project.fault_blocks import SplitHorizon, measured, split_at_faults
+from geofit.project.fault_blocks import SplitHorizon, cuts_measured, split_at_faults
 from geofit.project.provenance import Corners, DocumentError, Provenance, Row
 from geofit.site.throw import FaultCut
 
@@ -128,7 +128,7 @@ class Fitting(QObject):
         blocks = document.blocks(whole)
         if not names or len(blocks.surfaces) < len(names):
             return None
-        return measured, (blocks,)
+        return cuts_measured, (blocks,)
 
     def _thrown(self, cuts: tuple[FaultCut, ...]) -> None:
         for cut in cuts:
@@ -156,7 +156,7 @@ class Fitting(QObject):
         index = None if surface is None else row.find(surface.points)
         if index is None:
             text = message(
-                "window.point-not-fitted",
+                "gui.point-not-fitted",
                 "{file} row {row} is not among the points of the surface of '{name}'. Include it and fit, or choose "
                 "another point.",
                 file=row.file,
@@ -258,7 +258,7 @@ class Fitting(QObject):
         surface = self._document.shelf.surface(provenance)
         if provenance is None or surface is None:
             text = message(
-                "project.no-surface-adjust-fit",
+                "data.no-surface-to-adjust",
                 "'{name}' has no surface to adjust. Fit it first.",
                 name=command.horizon,
             )
@@ -266,7 +266,7 @@ class Fitting(QObject):
             return None
         if surface.model is None and not self._document.holds(provenance):
             text = message(
-                "window.read-file-data-changed",
+                "gui.surface-data-changed",
                 "'{name}' was read from a file, and its data have changed since. Fit it again, then adjust.",
                 name=command.horizon,
             )
@@ -281,7 +281,7 @@ class Fitting(QObject):
             self.refused.emit(
                 DocumentError(
                     message(
-                        "window.surface-changed-adjusted-adjust",
+                        "gui.surface-changed-while-adjusting",
                         "The surface changed while it was adjusted. Adjust it once more.",
                     )
                 )
@@ -295,9 +295,7 @@ class Fitting(QObject):
         provenance = self._document.state.provenances.get(name)
         surface = self._document.shelf.surface(provenance)
         if provenance is None or surface is None:
-            text = message(
-                "window.no-surface-examine-fit", "'{name}' has no surface to examine. Fit it first.", name=name
-            )
+            text = message("gui.no-surface-to-examine", "'{name}' has no surface to examine. Fit it first.", name=name)
             self.refused.emit(DocumentError(text))
             return None
         return examined, (provenance, surface)

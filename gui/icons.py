@@ -8,14 +8,14 @@ from PySide6.QtCore import QByteArray, QSize
 from PySide6.QtGui import QColor, QGuiApplication, QIcon, QPainter, QPalette, QPixmap
 from PySide6.QtSvg import QSvgRenderer
 
-__all__ = ["application_icon", "icon"]
+__all__ = ["application_icon", "palette_icon"]
 
 FOLDER = Path(__file__).with_name("icons")
 #: Pixels, for tool bars and menus at 1x to 3x.
 SIZES = (16, 24, 32, 48, 72)
 
 
-def icon(name: str, palette: QPalette | None = None) -> QIcon:
+def palette_icon(name: str, palette: QPalette | None = None) -> QIcon:
     """Return an icon in the text's colour of a palette; the application's, if none is given."""
     palette = palette or QGuiApplication.palette()
     drawn = QIcon()

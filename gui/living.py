@@ -21,7 +21,7 @@ from geofit.io.contact_rules import ContactRule
 from geofit.project.adding import Added, add_files
 from geofit.project.comparing import made_comparison
 from geofit.project.data_change import DataChange, arrivals, change_of_data, changed_files
-from geofit.project.horizon_builder import Picks, horizon_table
+from geofit.project.horizon_builder import RulePicks, horizon_table
 from geofit.project.listing import listing
 from geofit.project.provenance import Provenance
 from geofit.project.saving import read_again
@@ -100,7 +100,7 @@ class Living(QObject):
         dialog.built.connect(self._build)
         dialog.exec()
 
-    def _preview(self, picks: Picks | None) -> None:
+    def _preview(self, picks: RulePicks | None) -> None:
         """Show picks in the scene, or take them away."""
         name, view = self.tr("Preview"), self._panels.view
         if picks is None or not len(picks.points):
@@ -137,7 +137,7 @@ class Living(QObject):
         changed = [name for name, what in found.items() if what == "changed"]
         if changed:
             offer = plural_message(
-                "window.files-changed",
+                "gui.files-changed",
                 "{file} has changed since it was read.",
                 "{count} files have changed since they were read, the first {file}.",
                 count=len(changed),
@@ -148,7 +148,7 @@ class Living(QObject):
             self._bar.hide()
         for name, what in found.items():
             if what == "missing":
-                _LOG.warning(message("log.file-missing", "{file} no longer exists.", file=name))
+                _LOG.warning(message("gui.log-file-missing", "{file} no longer exists.", file=name))
 
     def _stamped(self) -> dict[str, _Stamp]:
         document = self._document
@@ -185,7 +185,7 @@ class Living(QObject):
         for text in change.lost:
             _LOG.warning(text)
         carried = plural_message(
-            "window.exclusions-carried", "{count} exclusion kept.", "{count} exclusions kept.", count=change.carried
+            "gui.exclusions-carried", "{count} exclusion kept.", "{count} exclusions kept.", count=change.carried
         )
         words = [translated(one.text) for one in change.arrivals if one.any]
         if change.carried:

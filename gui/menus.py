@@ -10,7 +10,7 @@ from PySide6.QtGui import QAction, QKeySequence, QUndoStack
 from PySide6.QtWidgets import QMainWindow, QMenu, QSizePolicy, QToolBar, QWidget
 
 from geofit.gui.actions import Actions
-from geofit.gui.icons import icon
+from geofit.gui.icons import palette_icon
 from geofit.gui.translate import bare
 
 __all__ = ["Menus"]
@@ -82,8 +82,8 @@ class Menus(QObject):
 
     def draw_icons(self) -> None:
         """Draw the icons anew, in the colours of the present theme."""
-        self.undo.setIcon(icon("undo"))
-        self.redo.setIcon(icon("redo"))
+        self.undo.setIcon(palette_icon("undo"))
+        self.redo.setIcon(palette_icon("redo"))
 
     def show_recent(self, files: Sequence[Path], choose: Callable[[Path], object]) -> None:
         """Fill the menu of recent files."""

@@ -27,9 +27,9 @@ from geofit.project.morph_view import (
     end_shape,
     export_frames,
     finished,
+    frame_as_body,
     frame_body,
     previewed,
-    taken,
 )
 
 __all__ = ["Morphing"]
@@ -132,7 +132,7 @@ class Morphing(QObject):
         if view is None or view.full is None:
             return
         given = [end.given for end in view.way.ends]
-        provenance, result = taken(view, self._panel.timeline.tau, name, given)
+        provenance, result = frame_as_body(view, self._panel.timeline.tau, name, given)
         self._document.put_body(provenance, result)
         style = BodyStyle(next_colour(self._document.state.bodies))
         self._fitting.push(SetBody(name, BodyRecord(provenance, style)))
@@ -253,7 +253,7 @@ class Morphing(QObject):
 
     def _exported(self, done: MorphRun) -> None:
         folder = done.files[0].resolve().parent
-        _LOG.info(message("log.wrote", "Wrote {file}", file=str(folder)))
+        _LOG.info(message("gui.log-file-written", "Wrote {file}", file=str(folder)))
         self.reported.emit(
             self.tr("Wrote {n} files to {folder}. {note}").format(
                 n=len(done.files), folder=folder, note=self._panel.note.text()

@@ -100,13 +100,13 @@ class Ordering(QObject):
         if len(surfaces) < 2 or unready:
             text = (
                 message(
-                    "window.horizon-not-fitted-here",
+                    "gui.horizon-not-fitted-here",
                     "'{name}' was read from a file and not fitted here. Fit it again, then separate the horizons.",
                     name=Untranslated(unready[0]),
                 )
                 if unready
                 else message(
-                    "window.two-fitted-horizons-needed",
+                    "gui.two-horizons-needed",
                     "Two fitted horizons are needed to separate them. Press Fit all first.",
                 )
             )
@@ -129,7 +129,7 @@ class Ordering(QObject):
         for order in crossing:
             _LOG.warning(
                 plural_message(
-                    "log.horizons-cross",
+                    "gui.log-horizons-cross",
                     "{upper} and {lower} cross at {count} place",
                     "{upper} and {lower} cross at {count} places",
                     count=len(order.crossings),
@@ -139,7 +139,7 @@ class Ordering(QObject):
             )
         if crossing:
             text = plural_message(
-                "order.pairs-cross",
+                "gui.pairs-cross",
                 "{count} of {total} pairs of horizons crosses; see Checks.",
                 "{count} of {total} pairs of horizons cross; see Checks.",
                 count=len(crossing),
@@ -155,7 +155,7 @@ class Ordering(QObject):
             self.refused.emit(
                 DocumentError(
                     message(
-                        "window.surface-changed-meanwhile",
+                        "gui.surface-changed-meanwhile",
                         "A surface has changed since. Separate the horizons again.",
                     )
                 )

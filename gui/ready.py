@@ -31,7 +31,7 @@ def require_packages() -> None:
     if missing:
         raise MissingDependencyError(
             plural_message(
-                "window.packages-missing",
+                "gui.packages-missing",
                 "The windows need {names}, which is not installed. Install with: {install}",
                 "The windows need {names}, which are not installed. Install with: {install}",
                 count=len(missing),
@@ -61,7 +61,7 @@ def require_display() -> None:
     if not os.environ.get("DISPLAY") and not os.environ.get("WAYLAND_DISPLAY"):
         raise MissingDependencyError(
             message(
-                "window.no-display-neither-display",
+                "gui.no-display",
                 "There is no display: neither DISPLAY nor WAYLAND_DISPLAY is set. Start geofit-gui on a desktop, over "
                 "'ssh -X', or under a virtual screen (xvfb-run geofit-gui). The command line needs "
                 "no display: geofit -h.",
@@ -70,7 +70,7 @@ def require_display() -> None:
     if not os.environ.get("WAYLAND_DISPLAY") and not _answers():
         raise MissingDependencyError(
             message(
-                "window.display-does-not-answer",
+                "gui.display-silent",
                 "The display '{display}' does not answer. Check DISPLAY, log in on that screen, or use a virtual one "
                 "(xvfb-run geofit-gui).",
                 display=os.environ["DISPLAY"],
@@ -80,7 +80,7 @@ def require_display() -> None:
     if missing and not os.environ.get("WAYLAND_DISPLAY"):
         raise MissingDependencyError(
             message(
-                "window.qt-libraries-missing",
+                "gui.qt-libraries-missing",
                 "Qt needs libraries that this machine lacks. Install them (Debian and Ubuntu: apt-get install "
                 "{packages}) and start again.",
                 packages=" ".join(missing),

@@ -16,7 +16,7 @@ from geofit.data.verdict import verdict_of
 from geofit.gui.translate import shown_error, translated
 from geofit.project.commands import ChangeData, Command, SetSurface
 from geofit.project.document import Document
-from geofit.project.journal import Journal, Unfinished
+from geofit.project.journal import SessionJournal, Unfinished
 from geofit.project.state import State
 
 __all__ = ["Session"]
@@ -37,7 +37,7 @@ class Session(QObject):
         self.document = Document()
         self.stack = QUndoStack(self)
         self._folder = folder
-        self._journal: Journal | None = None
+        self._journal: SessionJournal | None = None
 
     def begin(
         self,
@@ -52,11 +52,11 @@ class Session(QObject):
         self.stack.clear()
         self.document.open(site, site_file, state, project_file, data)
         try:
-            self._journal = Journal(self._folder, self.document.state, site_file, project_file)
+            self._journal = SessionJournal(self._folder, self.document.state, site_file, project_file)
         except OSError as error:
             _LOG.warning(
                 message(
-                    "log.no-journal",
+                    "gui.log-journal-not-written",
                     "No journal can be written, so a crash would lose unsaved work: {error}",
                     error=shown_error(error),
                 )
@@ -89,7 +89,7 @@ class Session(QObject):
             except InputError as error:
                 _LOG.warning(
                     message(
-                        "log.data-not-kept",
+                        "gui.log-data-not-kept",
                         "The earlier data cannot be stored, so they could not be restored after a crash: {error}",
                         error=shown_error(error),
                     )
@@ -122,7 +122,7 @@ class Session(QObject):
             self._journal = None
             _LOG.warning(
                 message(
-                    "log.journal-lost",
+                    "gui.log-journal-lost",
                     "The journal cannot be written any more, so that a crash would lose unsaved work: {error}",
                     error=shown_error(error),
                 )
@@ -132,14 +132,14 @@ class Session(QObject):
         """Log a step, a fit with its figures, and say it."""
         text = command.text
         if action == "undo":
-            text = message("log.undone", "Undone: {step}", step=text)
+            text = message("gui.log-undone", "Undone: {step}", step=text)
         elif action == "redo":
-            text = message("log.redone", "Done again: {step}", step=text)
+            text = message("gui.log-redone", "Done again: {step}", step=text)
         elif isinstance(command, SetSurface):
             surface = self.document.surface(command.provenance.horizon)
             if surface is not None and surface.accuracy is not None:
                 figures = verdict_of(surface.accuracy).data.text
-                text = message("log.fitted", "{step}: {figures}", step=text, figures=figures)
+                text = message("gui.log-fitted", "{step}: {figures}", step=text, figures=figures)
         _LOG.info(text)
         self.recorded.emit(translated(text))
 

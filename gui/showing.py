@@ -14,7 +14,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.settings import FitSettings
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.drawing import Drawing
+from geofit.gui.drawing import SurfaceDrawing
 from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.workspace import Workspace
 from geofit.project.document import Document
@@ -41,7 +41,7 @@ class Showing(QObject):
     ) -> None:
         super().__init__(parent)
         self._document, self._panels, self._busy = document, workspace, busy
-        self.drawing = Drawing(self)
+        self.drawing = SurfaceDrawing(self)
         self._site = False
         self._points: set[str] = set()
         self._results: set[str] = set()

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit import __version__
-from geofit.gui.icons import application_icon, icon
+from geofit.gui.icons import application_icon, palette_icon
 
 __all__ = ["StartPage"]
 
@@ -157,7 +157,7 @@ class StartPage(QWidget):
         return label
 
     def _button(self, text: str, drawing: str, tip: str) -> QPushButton:
-        button = QPushButton(icon(drawing), text)
+        button = QPushButton(palette_icon(drawing), text)
         button.setIconSize(QSize(24, 24))
         button.setMinimumHeight(42)
         button.setToolTip(tip)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QIcon, QPainter, QPalette, QPen
 from PySide6.QtWidgets import QProxyStyle, QStyle, QStyleOption, QStyleOptionComplex, QWidget
 
-from geofit.gui.icons import icon
+from geofit.gui.icons import palette_icon
 
 __all__ = ["Style"]
 
@@ -35,7 +35,7 @@ class Style(QProxyStyle):
 
     def __init__(self, palette: QPalette) -> None:
         super().__init__("Fusion")
-        self._icons = {drawn: icon(name, palette) for drawn, name in _DRAWN.items()}
+        self._icons = {drawn: palette_icon(name, palette) for drawn, name in _DRAWN.items()}
         self._ring = QPen(palette.color(QPalette.ColorRole.Link), _RING)
 
     def standardIcon(  # noqa: N802

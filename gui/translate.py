@@ -37,7 +37,7 @@ def shown_error(error: BaseException) -> Message | str:
         if not error.filename:
             return error.strerror
         return message(
-            "error.at-place", "{place}: {sentence}", place=Untranslated(error.filename), sentence=error.strerror
+            "data.sentence-at-place", "{place}: {sentence}", place=Untranslated(error.filename), sentence=error.strerror
         )
     return Untranslated(error if isinstance(error, OSError) else f"{type(error).__name__}: {error}")
 

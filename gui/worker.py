@@ -106,7 +106,7 @@ class _Job(QRunnable):
         """Run the function; whatever happens is raised in the window's thread."""
         try:
             if self._line.stop.is_set():
-                raise Cancelled(message("window.stopped-began", "Stopped before it began."))
+                raise Cancelled(message("gui.stopped-before-start", "Stopped before it began."))
             result = self._function(*self._args, progress=self._line.listen)
         except Cancelled as stop:
             outcome: tuple[str, object] = ("cancelled", stop)
@@ -115,7 +115,9 @@ class _Job(QRunnable):
         except Exception as error:  # the last frame of this thread: the window must hear of any failure
             _LOG.exception(
                 message(
-                    "log.task-failed", "{task} failed", task=self._title or getattr(self._function, "__name__", "task")
+                    "gui.log-task-failed",
+                    "{task} failed",
+                    task=self._title or getattr(self._function, "__name__", "task"),
                 )
             )
             outcome = ("failed", error)
@@ -251,7 +253,7 @@ class _Helper:
         name, fraction, begun = "start", 0.0, False
         while True:
             if progress(name, fraction) is False:
-                raise Cancelled(message("window.stopped-caller", "Stopped by the caller."))
+                raise Cancelled(message("gui.stopped-by-caller", "Stopped by the caller."))
             if not self.pipe.poll(_LOOK):
                 continue
             try:
@@ -260,7 +262,7 @@ class _Helper:
                 self._process.join(5)
                 ended = GeofitError(
                     message(
-                        "window.process-work-ended-exit",
+                        "gui.worker-ended",
                         "The worker process ended unexpectedly (exit code {code}). Memory may have run out: "
                         "close other programs and try again.",
                         code=self._process.exitcode,

@@ -43,15 +43,15 @@ def with_tables(site_file: bytes, added: Iterable[str], file: str) -> dict[str, 
     InputError
         If the file or a text is not valid TOML, or a text adds a second one of what a site has once.
     """
-    see = message("import.see-docs-site-file", "See docs/site_file.md.")
+    see = message("io.see-site-file-page", "See docs/site_file.md.")
     merged = parse_toml(site_file, file, see)
     for text in added:
         tables = parse_toml(text.encode(), file, see)
         for key, value in tables.items():
             if key in SINGLE and key in merged:
                 raise InputError(
-                    message("import.added-second", "The site has {key} already", key=Untranslated(key)),
-                    message("import.added-second-remedy", "Replace its file, and reload the site."),
+                    message("io.key-taken", "The site has {key} already", key=Untranslated(key)),
+                    message("io.replace-file-and-reload", "Replace its file, and reload the site."),
                     file=file,
                 )
             if key in SINGLE:

@@ -41,15 +41,13 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
         xyz = np.array(entity.vertices, dtype=np.float64).reshape(-1, 3)
         trouble = _no_path(entity, xyz, region)
         if trouble:
-            remedy = message(
-                "import.draw-adit-open-3d", "Draw the adit as an open 3D polyline on a layer with its name."
-            )
+            remedy = message("io.draw-adit", "Draw the adit as an open 3D polyline on a layer with its name.")
             _list(journal, source, entity, trouble, remedy)
             listed += entity.size
             continue
         keep = np.append(True, (np.diff(xyz, axis=0) != 0).any(axis=1))
         for k in np.flatnonzero(~keep).tolist():
-            reason = message("import.corner-repeats", "The corner repeats the one before")
+            reason = message("io.corner-repeated", "The corner repeats the one before")
             journal.add("note", source.name, reason, row=entity.first + k, column=entity.layer)
         listed += int((~keep).sum())
         same = sum(adit.name == entity.layer or adit.name.startswith(f"{entity.layer} ") for adit in adits)
@@ -58,8 +56,8 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
     journal.count(source.name, sum(entity.size for entity in entities), listed)
     if not adits:
         raise InputError(
-            message("import.no-polyline-drawing-adit", "No polyline of the drawing is an adit"),
-            message("import.see-listed-entities", "See the listed entities."),
+            message("io.no-adit-in-drawing", "No polyline of the drawing is an adit"),
+            message("io.see-listed-entities", "See the listed entities."),
             file=source.name,
         )
     return tuple(adits)
@@ -68,19 +66,19 @@ def draw_adits(source: Source, journal: Journal, region: Region | None = None) -
 def _no_path(entity: Entity, xyz: Floats, region: Region | None) -> Message:
     if entity.type == "POINT" or (trouble := problem(entity)):
         return (
-            message("import.no-path", "A {entity} is not a path", entity=entity.type)
+            message("io.entity-not-a-path", "A {entity} is not a path", entity=entity.type)
             if entity.type == "POINT"
             else trouble
         )
     if np.isnan(xyz[:, 2]).any():
-        return message("import.polyline-no-elevation", "The polyline has no elevation")
+        return message("io.polyline-no-elevation", "The polyline has no elevation")
     if not (np.diff(xyz, axis=0) != 0).any():
-        return message("import.polyline-place", "The polyline has only one distinct point")
+        return message("io.polyline-of-one-point", "The polyline has only one distinct point")
     if region is not None:
         west, east, south, north = region
         x, y = xyz[:, :2].mean(axis=0)
         if not (west <= x <= east and south <= y <= north):
-            return message("import.polyline-lies-far-outside", "The polyline lies far outside the study area")
+            return message("io.polyline-far-outside", "The polyline lies far outside the study area")
     return EMPTY
 
 
@@ -99,16 +97,16 @@ def drawn_contacts(
         horizon = horizons.match(entity.words) if entity.words else None
         if horizon is None or entity.words in (entity.layer, *(adit.name for adit in adits)):
             what = (
-                message("import.no-horizon", "'{words}' is not a horizon", words=entity.words)
+                message("io.words-not-a-horizon", "'{words}' is not a horizon", words=entity.words)
                 if entity.words
-                else message("import.names-no-horizon", "A {entity} names no horizon", entity=entity.type)
+                else message("io.entity-without-horizon", "A {entity} names no horizon", entity=entity.type)
             )
             _list(
                 journal,
                 source,
                 entity,
                 what,
-                message("import.write-horizon-text-beside", "Write the horizon as text next to the adit."),
+                message("io.write-horizon-text", "Write the horizon as text next to the adit."),
                 "note",
             )
             listed += entity.size
@@ -116,15 +114,13 @@ def drawn_contacts(
         adit, place, apart = _nearest(adits, np.array(entity.vertices[0][:2]))
         if not apart <= BESIDE:
             reason = message(
-                "import.contact-stands-nearest-adit",
+                "io.contact-far-from-adit",
                 "The contact '{words}' is {apart:.1f} m from the nearest adit, {adit}",
                 words=entity.words,
                 apart=apart,
                 adit=adit.name,
             )
-            remedy = message(
-                "import.place-within-adit-axis", "Place it within {reach:g} m of the adit's axis.", reach=BESIDE
-            )
+            remedy = message("io.place-near-adit", "Place it within {reach:g} m of the adit's axis.", reach=BESIDE)
             _list(journal, source, entity, reason, remedy)
             listed += 1
             continue

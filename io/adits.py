@@ -35,8 +35,8 @@ def load_adits(source: Source, journal: Journal, region: Region | None = None) -
     rows.close()
     if not adits:
         raise InputError(
-            message("import.no-adit-two-usable", "No adit has two usable corners"),
-            message("import.see-listed-rows", "See the listed rows."),
+            message("io.no-usable-adit", "No adit has two usable corners"),
+            message("io.see-listed-rows", "See the listed rows."),
             file=source.name,
         )
     return tuple(adits)
@@ -62,12 +62,12 @@ def load_adit_contacts(
                 i,
                 "chainage",
                 message(
-                    "import.chainage-not-adit-long",
+                    "io.chainage-off-adit",
                     "The chainage is not on adit {adit}, which is {length:.2f} m long",
                     adit=name[i],
                     length=length,
                 ),
-                message("import.correct-chainage-complete-adit", "Correct the chainage, or complete the adit's path."),
+                message("io.correct-chainage", "Correct the chainage, or complete the adit's path."),
             )
             continue
         xyz[i] = along(adit.xyz, s[i : i + 1])[0]

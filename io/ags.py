@@ -49,26 +49,26 @@ def read_group(source: Source, journal: Journal) -> Table:
     if group is None:
         raise InputError(
             message(
-                "import.file-no-group-groups",
+                "io.group-missing",
                 "The file has no group '{table}'; its groups are {names}",
                 table=Untranslated(source.table),
                 names=", ".join(groups),
             ),
-            message("import.name-one", "Name one of them."),
+            message("data.name-one", "Name one of them."),
             file=source.name,
         )
     journal.add(
         "note",
         source.name,
-        message("import.read-ags", "Read as AGS {edition}, {encoding}", edition=edition, encoding=encoding),
-        message("import.state-encoding-wrong", "State encoding where this is wrong."),
+        message("io.read-as-ags", "Read as AGS {edition}, {encoding}", edition=edition, encoding=encoding),
+        message("io.state-encoding", "State encoding where this is wrong."),
     )
     for line, value, reason in group.odd:
         journal.add(
             "error",
             source.name,
             reason,
-            message("import.correct-line", "Correct the line."),
+            message("io.correct-line", "Correct the line."),
             row=line,
             value=value[:120],
         )
@@ -108,9 +108,9 @@ def _parse(text: str, encoding: str, source: Source, journal: Journal) -> tuple[
             _line_of_3(group, number, first, cells, source, journal)
     if not groups:
         raise InputError(
-            message("import.file-no-ags-group", "The file has no AGS group"),
+            message("io.no-group", "The file has no AGS group"),
             message(
-                "import.ags-file-lines-start",
+                "io.give-ags-groups",
                 'An AGS file has lines that start with "GROUP" (edition 4) or "**" (edition 3).',
             ),
             file=source.name,
@@ -130,8 +130,8 @@ def _line_of_4(group: _Group, number: int, first: str, cells: list[str]) -> None
             group.rows.append((number, cells[1:]))
         case _:
             headless, strange = (
-                message("import.row-stands-above-headings", "The row is above the headings of its group"),
-                message("import.no-ags-line", "This line is not valid AGS 4"),
+                message("io.row-above-headings", "The row is above the headings of its group"),
+                message("io.line-not-ags", "This line is not valid AGS 4"),
             )
             reason = headless if first == "DATA" else strange
             group.odd.append((number, ",".join(cells), reason))
@@ -149,7 +149,7 @@ def _line_of_3(group: _Group, number: int, first: str, cells: list[str], source:
             (
                 number,
                 ",".join(cells),
-                message("import.line-continues-heads-nothing", "The line continues or heads nothing"),
+                message("io.line-continues-nothing", "The line continues or heads nothing"),
             )
         )
     else:
@@ -169,11 +169,11 @@ def _continue(group: _Group, number: int, cells: list[str], source: Source, jour
                     "warning",
                     source.name,
                     message(
-                        "import.cont-line-gives-number",
+                        "io.continuation-number-differs",
                         "The <CONT> line gives another number than the row above, '{number}', which is kept",
                         number=row[j],
                     ),
-                    message("import.correct-two", "Correct one of the two."),
+                    message("io.correct-one-of-two", "Correct one of the two."),
                     row=number,
                     column=group.header[j] if j < len(group.header) else "",
                     value=cell,

@@ -11,7 +11,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import message
 from geofit.io.rows import Rows
 
-__all__ = ["Region", "check_axes", "place_in", "region_of"]
+__all__ = ["Region", "check_axes", "grown_box", "place_in"]
 
 Floats = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ _CHUNK = 1 << 16
 Region = tuple[float, float, float, float]
 
 
-def region_of(xy: Floats) -> Region:
+def grown_box(xy: Floats) -> Region:
     """Return the box of (n, 2) places, grown on every side by its own diagonal."""
     low, high = xy.min(axis=0), xy.max(axis=0)
     margin = max(float(np.hypot(*(high - low))), 1.0)
@@ -64,7 +64,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         i = int(swapped[0])
         raise InputError(
             message(
-                "import.look-exchanged-rows-lie",
+                "io.axes-exchanged",
                 "x and y appear to be exchanged: {count} of {total} rows lie far outside the study "
                 "area, and inside it with x and y swapped, the first at x = {x:.15g}, y = {y:.15g}",
                 count=len(swapped),
@@ -73,7 +73,7 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
                 y=y[i],
             ),
             message(
-                "import.easting-northing-exchange-columns",
+                "io.exchange-columns",
                 "x is the easting, y the northing; exchange the columns "
                 "(in many Chinese tables X is the northing and Y the easting).",
             ),
@@ -85,8 +85,8 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
         rows.reject(
             i,
             "x",
-            message("import.look-exchanged-row", "x and y appear to be exchanged in this row"),
-            message("import.easting-northing", "x is the easting, y the northing."),
+            message("io.row-axes-exchanged", "x and y appear to be exchanged in this row"),
+            message("io.x-is-easting", "x is the easting, y the northing."),
         )
     if known and off.size:
         i = int(off[0])
@@ -94,13 +94,13 @@ def check_axes(rows: Rows, x: Floats, y: Floats, region: Region | None) -> None:
             i,
             "x",
             message(
-                "import.rows-far-outside-study",
+                "io.rows-far-outside",
                 "Rows far outside the study area: {count}, the first at x = {x:.15g}, y = {y:.15g}",
                 count=off.size,
                 x=x[i],
                 y=y[i],
             ),
-            message("import.check-coordinates-boundary", "Check the coordinates and the boundary."),
+            message("io.check-coordinates", "Check the coordinates and the boundary."),
         )
 
 

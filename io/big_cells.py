@@ -12,8 +12,8 @@ __all__ = [
     "split_at",
     "split_at_blanks",
     "strange_lines",
-    "trimmed",
     "unquoted",
+    "without_blanks",
 ]
 
 Bytes = NDArray[np.uint8]
@@ -66,7 +66,7 @@ def strange_lines(text: Bytes, starts: Ints) -> Bools:
     return np.asarray(np.logical_or.reduceat(found, starts)) if found.any() else np.zeros(len(starts), bool)
 
 
-def trimmed(text: Bytes, start: Ints, end: Ints) -> tuple[Ints, Ints]:
+def without_blanks(text: Bytes, start: Ints, end: Ints) -> tuple[Ints, Ints]:
     """Return where cells start and end without the blanks around them."""
     while True:
         lead = (start < end) & (text.take(start, mode="clip") == _BLANK)

@@ -212,7 +212,7 @@ class BigRows:
 
     def _parsed(self, piece: Bytes, start: Ints, end: Ints, decimal: str) -> tuple[Floats, Ints]:
         """Return the numbers of cells that are not plain ones, nan where they hold none, and which those are."""
-        start, end = big_cells.trimmed(piece, *self._unquoted(piece, start, end))
+        start, end = big_cells.without_blanks(piece, *self._unquoted(piece, start, end))
         values = np.full(len(start), np.nan)
         filled = np.flatnonzero(start < end)
         values[filled], _ = self.parse(tuple(_texts(piece, start[filled], end[filled])), decimal)

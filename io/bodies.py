@@ -66,19 +66,21 @@ def read_body(path: str | PathLike[str], name: str = "") -> TriangleMesh:
             found = read_solids(target)
         case ending:
             raise InputError(
-                message("import.body-ending", "A body is not read from a file that ends in '{ending}'", ending=ending),
-                message("import.give-file-ends", "Give a file that ends in {names}.", names=", ".join(BODY_ENDINGS)),
+                message(
+                    "io.body-ending-unknown", "A body is not read from a file that ends in '{ending}'", ending=ending
+                ),
+                message("io.give-known-ending", "Give a file that ends in {names}.", names=", ".join(BODY_ENDINGS)),
                 file=str(path),
             )
     if not name and len(found) == 1:
         return next(iter(found.values()))
     if name not in found:
         reason = (
-            message("import.file-body", "The file has no body '{name}'", name=name)
+            message("io.body-missing", "The file has no body '{name}'", name=name)
             if name
-            else message("import.file-bodies", "The file has several bodies")
+            else message("io.several-bodies", "The file has several bodies")
         )
         raise InputError(
-            reason, message("import.name-one-of", "Name one of: {names}.", names=", ".join(found)), file=str(path)
+            reason, message("io.name-one-of-these", "Name one of: {names}.", names=", ".join(found)), file=str(path)
         )
     return found[name]

@@ -171,8 +171,8 @@ def _read_collars(
         rows.reject(
             i,
             "depth",
-            message("import.hole-depth-negative", "The hole's depth is negative"),
-            message("import.give-length-hole-metres", "Give the length of the hole in metres."),
+            message("io.hole-depth-negative", "The hole's depth is negative"),
+            message("io.give-hole-length", "Give the length of the hole in metres."),
         )
     check_axes(rows, x, y, region)
     first: dict[str, int] = {}
@@ -182,27 +182,27 @@ def _read_collars(
             k = first[name[i]]
             same = (x[i], y[i], z[i]) == (x[k], y[k], z[k])
             where = (
-                message("import.same-place", "at the same place")
+                message("io.at-same-location", "at the same place")
                 if same
-                else message("import.at-other-place", "at another place")
+                else message("io.at-other-location", "at another place")
             )
             rows.reject(
                 i,
                 "hole",
                 message(
-                    "import.hole-listed-row-already",
+                    "io.hole-repeated",
                     "The hole is listed in row {row} already, {where}",
                     row=rows.line[k],
                     where=where,
                 ),
-                message("import.keep-rows", "Keep one of the rows."),
+                message("io.keep-rows", "Keep one of the rows."),
             )
             continue
         first[name[i]] = i
         k = places.setdefault((x[i], y[i], z[i]), i)
         if k != i:
             reason = message(
-                "import.collar-lies-exactly-hole",
+                "io.collar-repeats-hole",
                 "The collar lies exactly where hole {hole} (row {row}) starts",
                 hole=name[k],
                 row=rows.line[k],
@@ -214,12 +214,12 @@ def _read_collars(
         if name[i] not in first:
             journal.refused[name[i]] = (
                 Untranslated(rows.file),
-                message("place.row", "row {row}", row=int(rows.line[i])),
+                message("data.place-row", "row {row}", row=int(rows.line[i])),
             )
     if not first:
         raise InputError(
-            message("import.no-row-collar-table", "No row of the collar table can be used"),
-            message("import.see-listed-rows", "See the listed rows."),
+            message("io.no-usable-collar", "No row of the collar table can be used"),
+            message("io.see-listed-rows", "See the listed rows."),
             file=source.name,
         ) from None
     return {hole: _Collar((x[i], y[i], z[i]), end[i], attitudes.get(hole)) for hole, i in first.items() if rows.ok[i]}
@@ -234,18 +234,16 @@ def _drape(rows: Rows, x: Floats, y: Floats, z: Floats, ground: Ground) -> None:
             rows.reject(
                 i,
                 "z",
-                message(
-                    "import.collar-no-elevation-lies", "The collar has no elevation and lies outside the ground's grid"
-                ),
-                message("import.give-elevation", "Give its elevation."),
+                message("io.collar-outside-ground", "The collar has no elevation and lies outside the ground's grid"),
+                message("io.give-elevation", "Give its elevation."),
             )
         else:
             reason = message(
-                "import.collar-no-elevation-ground",
+                "io.collar-elevation-from-ground",
                 "The collar has no elevation; the ground's, {z:.2f} m, is used",
                 z=z[i],
             )
-            rows.warn(i, "z", reason, message("import.give-elevation", "Give its elevation."), severity="note")
+            rows.warn(i, "z", reason, message("io.give-elevation", "Give its elevation."), severity="note")
 
 
 def _collar_stations(rows: Rows, name: list[str], dip: DipSign | None, declination: float) -> dict[str, Stations]:
@@ -267,19 +265,19 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
     if any(elevations) and any("depth" in name or "深" in name for name in named):
         raise InputError(
             message(
-                "import.not-depths-elevations",
+                "io.limits-of-two-kinds",
                 "'{top}' and '{base}' are not both depths or both elevations",
                 top=headers[0],
                 base=headers[1],
             ),
-            message("import.state-columns", "State columns = { from = ..., to = ... } that are."),
+            message("io.state-limit-columns", "State columns = { from = ..., to = ... } that are."),
             file=rows.file,
         )
     if all(elevations):
-        reason = message("import.by-names", "by their names")
+        reason = message("io.by-column-names", "by their names")
     elif sound.sum() >= 3 and falls.sum() > 0.6 * sound.sum() and np.ptp(mouth[sound]) > 0:
         reason = message(
-            "import.because-intervals-descend-collar",
+            "io.because-intervals-descend",
             "because {count} of {total} intervals descend from the collar's elevation",
             count=falls.sum(),
             total=sound.sum(),
@@ -289,8 +287,8 @@ def _by_elevation(rows: Rows, top: Floats, base: Floats, mouth: Floats) -> bool:
     rows.journal.add(
         "warning",
         rows.file,
-        message("import.limits-taken-elevations", "The limits are taken as elevations, {reason}", reason=reason),
-        message("import.state-measure-depth-depths", 'State measure = "depth" where they are depths.'),
+        message("io.limits-taken-elevations", "The limits are taken as elevations, {reason}", reason=reason),
+        message("io.state-measure-depth", 'State measure = "depth" where they are depths.'),
         column=headers[0],
     )
     return True
@@ -311,10 +309,8 @@ def _to_depths(rows: Rows, name: list[str], paths: Mapping[str, WellPath], limit
         mouth = float(path.xyz[0, 2])
         depth[members] = path.depth_of(np.where((z > mouth) & (z < mouth + 0.05), mouth, z))
     for i in np.flatnonzero(np.isnan(depth) & rows.ok).tolist():
-        reason = message(
-            "import.hole-no-elevation-below", "The hole has no elevation {z:g} m below its collar", z=limits[i]
-        )
-        rows.reject(i, role, reason, message("import.correct-elevation", "Correct the elevation."))
+        reason = message("io.hole-without-depth", "The hole has no elevation {z:g} m below its collar", z=limits[i])
+        rows.reject(i, role, reason, message("io.correct-elevation", "Correct the elevation."))
     return depth
 
 
@@ -338,41 +334,41 @@ def _read_log(
         (
             top < 0,
             "from",
-            message("import.interval-starts-above-collar", "The interval starts above the collar"),
-            message("import.depths-count-collar-downwards", "Depths count from the collar, downwards."),
+            message("io.interval-starts-above-collar", "The interval starts above the collar"),
+            message("io.depths-count-down", "Depths count from the collar, downwards."),
         ),
         (
             base < top,
             "to",
-            message("import.interval-reversed-ends-above", "The interval is reversed: it ends above its start"),
-            message("import.exchange-from-to", "Exchange from and to."),
+            message("io.interval-reversed", "The interval is reversed: it ends above its start"),
+            message("io.exchange-limits", "Exchange from and to."),
         ),
         (
             base == top,
             "to",
-            message("import.interval-no-length", "The interval has zero length"),
-            message("import.correct-from-to", "Correct from or to."),
+            message("io.interval-no-length", "The interval has zero length"),
+            message("io.correct-limits", "Correct from or to."),
         ),
     ):
         for i in np.flatnonzero(mask & rows.ok).tolist():
             rows.reject(i, role, reason, remedy)
     for i in np.flatnonzero((top > end - DEPTH_TOLERANCE) & rows.ok).tolist():
         reason = message(
-            "import.interval-starts-beyond-hole",
+            "io.interval-beyond-hole",
             "The interval starts at or beyond the hole's end at {end:g} m",
             end=end[i],
         )
-        rows.reject(i, "from", reason, message("import.correct-depth", "Correct the depth."))
+        rows.reject(i, "from", reason, message("io.correct-depth", "Correct the depth."))
     for i in np.flatnonzero((base > end + DEPTH_TOLERANCE) & rows.ok).tolist():
         rows.warn(
             i,
             "to",
             message(
-                "import.interval-ends-beyond-hole",
+                "io.interval-cut-at-end",
                 "The interval ends {length:.2f} m beyond the hole's end; it is cut there",
                 length=base[i] - end[i],
             ),
-            message("import.correct-depth-interval-hole", "Correct the depth of the interval or of the hole."),
+            message("io.correct-depth-or-hole", "Correct the depth of the interval or of the hole."),
         )
         base[i] = end[i]
     order = np.lexsort((np.arange(len(name)), top, name))
@@ -383,21 +379,21 @@ def _read_log(
                 rows.reject(
                     k,
                     "from",
-                    message("import.interval-repeats-row", "The interval repeats row {row}", row=rows.line[i]),
-                    message("import.remove-two", "Remove one of the two."),
+                    message("io.interval-repeated", "The interval repeats row {row}", row=rows.line[i]),
+                    message("io.remove-one-of-two", "Remove one of the two."),
                 )
                 continue
             rows.warn(
                 k,
                 "from",
                 message(
-                    "import.interval-overlaps-row-limits",
+                    "io.interval-overlaps",
                     "The interval overlaps that of row {row} by {length:.2f} m; limits inside the other "
                     "interval are not contacts",
                     row=rows.line[i],
                     length=min(base[i], base[k]) - top[k],
                 ),
-                message("import.correct-from-to", "Correct from or to."),
+                message("io.correct-limits", "Correct from or to."),
             )
     rows.close()
     order = order[rows.ok[order]]

@@ -63,7 +63,7 @@ def load_boundary(source: Source, journal: Journal) -> Floats:
             "note",
             source.name,
             message(
-                "import.last-corner-repeats-first",
+                "io.boundary-closed-already",
                 "The last corner repeats the first; the boundary is closed without it",
             ),
         )
@@ -78,10 +78,10 @@ def _from_table(source: Source, journal: Journal) -> Floats:
     if RING in rows.table.header and len(set(rows.table.columns[rows.table.header.index(RING)])) > 1:
         raise InputError(
             message(
-                "import.map-several-lines-rings",
+                "io.map-of-several-rings",
                 "The map has several lines or rings; one polygon without holes is needed",
             ),
-            message("import.export-outline-study-area", "Export the outline of the study area alone."),
+            message("io.export-outline-alone", "Export the outline of the study area alone."),
             file=source.name,
         )
     rows.close()
@@ -89,7 +89,7 @@ def _from_table(source: Source, journal: Journal) -> Floats:
         bad = next(issue for issue in journal.issues[before:] if issue.severity == "error")
         raise InputError(
             message(
-                "import.corner-boundary-cannot-read",
+                "io.boundary-corner-unreadable",
                 "A corner of the boundary cannot be read: {reason}",
                 reason=bad.reason,
             ),
@@ -109,19 +109,19 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
         what, line = parser_message(error)
         raise InputError(
-            message("import.no-geojson-polygon", "This is not a valid GeoJSON polygon: {error}", error=what),
-            message("import.export-polygon-without-holes", "Export one polygon without holes."),
+            message("io.geojson-invalid", "This is not a valid GeoJSON polygon: {error}", error=what),
+            message("io.export-polygon-without-holes", "Export one polygon without holes."),
             file=source.name,
             row=line,
         ) from None
     if len(rings) != 1:
         raise InputError(
             message(
-                "import.file-rings-polygon-without",
+                "io.file-of-several-rings",
                 "The file has {count} rings; one polygon without holes is needed",
                 count=len(rings),
             ),
-            message("import.export-outline-study-area", "Export the outline of the study area alone."),
+            message("io.export-outline-alone", "Export the outline of the study area alone."),
             file=source.name,
         )
     try:
@@ -130,8 +130,8 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
         corners = np.empty((0, 0))
     if corners.ndim != 2 or corners.shape[1] != 2 or not np.isfinite(corners).all():
         raise InputError(
-            message("import.corner-polygon-no-pair", "A corner of the polygon is not a pair of finite numbers"),
-            message("import.export-polygon-again", "Export the polygon again."),
+            message("io.polygon-corner-not-finite", "A corner of the polygon is not a pair of finite numbers"),
+            message("io.export-polygon-again", "Export the polygon again."),
             file=source.name,
         )
     if np.abs(corners[:, 0]).max() <= 180.0 and np.abs(corners[:, 1]).max() <= 90.0:
@@ -139,10 +139,10 @@ def _from_geojson(source: Source, journal: Journal) -> Floats:
             "warning",
             source.name,
             message(
-                "import.corners-longitude-latitude-read",
+                "io.corners-maybe-degrees",
                 "The corners may be longitude and latitude; they are read as metres",
             ),
-            message("import.project-site-grid-degrees", "Project them to the site's grid where they are degrees."),
+            message("io.project-degrees", "Project them to the site's grid where they are degrees."),
         )
     return corners
 
@@ -165,6 +165,6 @@ def _check(corners: Floats, name: str) -> None:
     if fault is not None:
         raise InputError(
             fault,
-            message("import.list-corners-order-around", "List the corners in order around the study area, each once."),
+            message("io.list-corners-in-order", "List the corners in order around the study area, each once."),
             file=name,
         )

@@ -53,12 +53,12 @@ def table_of(
                 "error",
                 source.name,
                 message(
-                    "import.cells-row-header",
+                    "io.row-cells-differ",
                     "Cells of the row: {count}, of the header: {width}",
                     count=len(cells),
                     width=width,
                 ),
-                message("import.complete-header-shorten-row", "Complete the header or shorten the row."),
+                message("io.complete-header", "Complete the header or shorten the row."),
                 row=line,
                 value=" ".join(cells)[:120],
             )
@@ -67,11 +67,11 @@ def table_of(
     if not kept and not malformed:
         raise InputError(
             message(
-                "import.table-header-no-rows",
+                "io.table-without-rows",
                 "The table has a header ({names}) but no rows",
                 names=", ".join(header[:40]),
             ),
-            message("import.export-table-again-rows", "Export the table again with its rows."),
+            message("io.export-table-with-rows", "Export the table again with its rows."),
             file=source.name,
         )
     columns = tuple(tuple(cells[j] if j < len(cells) else "" for _, cells in kept) for j in range(width))

@@ -84,18 +84,16 @@ def read_centreline(
     """
     if level not in ("axis", "floor"):
         raise InputError(
-            message("import.level-unknown", "The level '{level}' is unknown", level=level),
-            message("import.give-axis-or-floor", "Give 'axis' or 'floor'."),
+            message("io.level-unknown", "The level '{level}' is unknown", level=level),
+            message("io.give-axis-or-floor", "Give 'axis' or 'floor'."),
         )
     source, journal = as_source(source), journal if journal is not None else Journal()
     first_issue, first_count = len(journal.issues), len(journal.counts)
     rows = _rows(source, journal)
     if not any(role in rows.columns for role in _SIZES):
         raise InputError(
-            message("import.table-size-section", "The table does not give the size of the section"),
-            message(
-                "import.column-radius-width", "Add a column radius, or width and height, or left, right, up and down."
-            ),
+            message("io.section-size-missing", "The table does not give the size of the section"),
+            message("io.add-size-columns", "Add a column radius, or width and height, or left, right, up and down."),
             file=source.name,
         )
     (x, y), z = rows.places(), rows.numbers("z", no_data=True)
@@ -118,8 +116,8 @@ def read_centreline(
                 rows.reject(
                     i,
                     "x",
-                    message("import.station-repeats-row", "The station repeats row {row}", row=int(rows.line[earlier])),
-                    message("import.remove-one", "Remove one."),
+                    message("io.station-repeated", "The station repeats row {row}", row=int(rows.line[earlier])),
+                    message("io.remove-one", "Remove one."),
                 )
                 continue
             shot = shots.add(before, name, offset, int(rows.line[i]))
@@ -133,16 +131,14 @@ def read_centreline(
         journal.add(
             "warning",
             source.name,
-            message(
-                "import.line-usable-station", "The line {line} has one usable station only", line=Untranslated(name)
-            ),
-            message("import.stations", "Add its other stations."),
+            message("io.line-of-one-station", "The line {line} has one usable station only", line=Untranslated(name)),
+            message("io.add-stations", "Add its other stations."),
             value=name,
         )
     if not shots.shots:
         raise InputError(
-            message("import.line-usable-stations", "No line has two usable stations"),
-            message("import.see-listed-rows", "See the listed rows."),
+            message("io.no-usable-line", "No line has two usable stations"),
+            message("io.see-listed-rows", "See the listed rows."),
             file=source.name,
         )
     return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
@@ -161,13 +157,13 @@ def _rows(source: Source, journal: Journal) -> Rows:
                 "note",
                 source.name,
                 message(
-                    "import.column-taken",
+                    "io.column-taken",
                     "Column '{column}' is taken as {role}, by its name",
                     column=Untranslated(header),
                     role=role,
                 ),
                 message(
-                    "import.state-columns-wrong",
+                    "io.state-columns-where-wrong",
                     "State columns = {entry} where this is wrong.",
                     entry=f"{{ {role} = ... }}",
                 ),
@@ -186,7 +182,7 @@ def _walls(rows: Rows, level: str) -> np.ndarray:
             value = value * rows.factors["z"]
         for i in np.flatnonzero((value < 0) & rows.ok).tolist():
             rows.warn(
-                i, role, message("import.taken-missing", "The {role} is below 0; it is taken as missing", role=role)
+                i, role, message("io.size-taken-as-missing", "The {role} is below 0; it is taken as missing", role=role)
             )
         sizes[role] = np.where(value >= 0, value, np.nan)
     # Half a width is zero nowhere: such a section has no area.

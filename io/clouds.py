@@ -142,7 +142,7 @@ def _form(path: Path) -> str:
 
 
 def _opened_las(path: Path) -> Any:
-    laspy = need("laspy", "scale", message("clouds.reading", "Reading the cloud {file}", file=path.name))
+    laspy = need("laspy", "scale", message("io.reading-cloud", "Reading the cloud {file}", file=path.name))
     try:
         return laspy.open(path)
     except Exception as error:  # laspy raises errors of its own, of struct and of lazrs
@@ -150,7 +150,7 @@ def _opened_las(path: Path) -> Any:
 
 
 def _opened_parquet(path: Path) -> Any:
-    parquet = need("pyarrow.parquet", "scale", message("clouds.reading", "Reading the cloud {file}", file=path.name))
+    parquet = need("pyarrow.parquet", "scale", message("io.reading-cloud", "Reading the cloud {file}", file=path.name))
     try:
         return parquet.ParquetFile(path)
     except (OSError, ValueError) as error:
@@ -159,8 +159,8 @@ def _opened_parquet(path: Path) -> Any:
 
 def _damaged(path: Path, error: Exception) -> InputError:
     return InputError(
-        message("clouds.damaged", "The cloud cannot be read: {error}", error=str(error) or type(error).__name__),
-        message("clouds.export-again", "Export it again."),
+        message("io.cloud-damaged", "The cloud cannot be read: {error}", error=str(error) or type(error).__name__),
+        message("io.export-again", "Export it again."),
         file=path.name,
     )
 
@@ -189,9 +189,12 @@ def _parquet(cloud: Cloud) -> Iterator[Floats]:
         if found is None or (stated is not None and stated not in names):
             raise InputError(
                 message(
-                    "clouds.no-column", "No column for {role} was found; there are {names}", role=role, names=names
+                    "io.cloud-column-missing",
+                    "No column for {role} was found; there are {names}",
+                    role=role,
+                    names=names,
                 ),
-                message("clouds.name-columns", "Name it with --{role}.", role=role),
+                message("io.name-cloud-column", "Name it with --{role}.", role=role),
                 file=cloud.path.name,
             )
         chosen.append(str(found))
@@ -272,8 +275,13 @@ def _choose_horizon(cloud: Cloud, rows: Rows) -> None:
     if cloud.horizon is None:
         if len(used) > 1:
             raise InputError(
-                message("clouds.horizons", "The table has {count} horizons: {names}", count=len(used), names=used[:40]),
-                message("clouds.name-horizon", "Name the one to be fitted with --horizon."),
+                message(
+                    "io.cloud-of-several-horizons",
+                    "The table has {count} horizons: {names}",
+                    count=len(used),
+                    names=used[:40],
+                ),
+                message("io.name-cloud-horizon", "Name the one to be fitted with --horizon."),
                 file=cloud.path.name,
             )
         return

@@ -90,9 +90,9 @@ def read_compass(source: Source | str | Path, journal: Journal | None = None) ->
             untouched += found == 2
     if not surveys:
         raise InputError(
-            message("import.file-line-length", "The file has no line FROM TO LENGTH: it is not a Compass survey"),
+            message("io.compass-heading-missing", "The file has no line FROM TO LENGTH: it is not a Compass survey"),
             message(
-                "import.dat-file-compass",
+                "io.give-compass-file",
                 "Give a .dat file of Compass; other surveys are read from .svx or from a table.",
             ),
             file=source.name,
@@ -102,11 +102,11 @@ def read_compass(source: Source | str | Path, journal: Journal | None = None) ->
             "note",
             source.name,
             message(
-                "import.shots-four-walls",
+                "io.walls-not-measured",
                 "Shots with four walls of 0, which are taken as not measured: {count}",
                 count=untouched,
             ),
-            message("import.interpolated-along-passage", "They are interpolated along the passage."),
+            message("io.walls-interpolated", "They are interpolated along the passage."),
         )
     journal.count(source.name, read, read - used)
     return shots.survey(source.name, journal.issues[first_issue:], journal.counts[first_count:])
@@ -146,11 +146,11 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
             "error",
             file,
             message(
-                "import.not-a-shot",
+                "io.line-not-a-shot",
                 "The line is not a shot: two stations and {count} numbers are needed",
                 count=needed - 2,
             ),
-            message("import.correct-line-survey", "Correct the line in the survey editor."),
+            message("io.correct-line-in-editor", "Correct the line in the survey editor."),
             row=row,
             value=line.strip()[:120],
         )
@@ -160,7 +160,7 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
         journal.add(
             "note",
             file,
-            message("import.shot-flagged-excluded", "The shot is flagged X: excluded from all processing"),
+            message("io.shot-excluded", "The shot is flagged X: excluded from all processing"),
             row=row,
             value=f"{start} {end}",
         )
@@ -177,8 +177,8 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
         journal.add(
             "error",
             file,
-            message("import.shot-length-bearing", "The shot has no usable length, bearing and inclination"),
-            message("import.complete-readings", "Complete its readings."),
+            message("io.shot-without-readings", "The shot has no usable length, bearing and inclination"),
+            message("io.complete-readings", "Complete its readings."),
             row=row,
             value=f"{start} {end}",
         )
@@ -195,11 +195,11 @@ def _shot(line: str, row: int, header: _Header, shots: ShotList, file: str, jour
             "error",
             file,
             message(
-                "import.shot-leads-station",
+                "io.shot-to-itself",
                 "The shot leads from station {station} to itself",
                 station=Untranslated(start),
             ),
-            message("import.correct", "Correct one of the names."),
+            message("io.correct-name", "Correct one of the names."),
             row=row,
             value=f"{start} {end}",
         )
@@ -238,11 +238,11 @@ def _angle(
             "warning",
             file,
             message(
-                "import.foresight-backsight-differ",
+                "io.sights-differ",
                 "Foresight and backsight differ by {angle:.1f} degrees; their mean is used",
                 angle=abs(difference),
             ),
-            message("import.check-readings", "Check both readings."),
+            message("io.check-readings", "Check both readings."),
             row=row,
         )
     return fore + difference / 2

@@ -52,7 +52,7 @@ class ContactRule:
         if not self.codes or not is_finite(self.thinner) or self.thinner < 0:
             raise SettingsError(
                 message(
-                    "import.contact-rule",
+                    "io.contact-rule-unusable",
                     "A contact needs a code, and a least thickness of 0 m or more; given: {thinner} m.",
                     thinner=shown(self.thinner),
                 )

@@ -14,7 +14,7 @@ from geofit.data.points import PointSet
 from geofit.data.site import ImportIssue
 from geofit.io.boreholes import DEPTH_TOLERANCE, Boreholes, IntervalLog
 from geofit.io.contact_rules import ContactRule, Limit, simplified
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.journal import Journal
 
 __all__ = ["Contacts", "Limit", "load_contacts", "load_rule", "take_contacts"]
@@ -58,8 +58,8 @@ def take_contacts(boreholes: Boreholes, *, top: str | None = None, base: str | N
     """
     if (top is None) == (base is None):
         raise InputError(
-            message("import.neither-top-base-given", "Both or neither of top and base are given"),
-            message("import.give-code", "Give the code of one of them."),
+            message("io.top-and-base-unclear", "Both or neither of top and base are given"),
+            message("io.give-code", "Give the code of one of them."),
         )
     journal = Journal()
     limit: Limit = "top" if top is not None else "base"
@@ -80,12 +80,12 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
         code = rule.codes[0]
         raise InputError(
             message(
-                "import.no-interval-code-codes",
+                "io.code-not-logged",
                 "No interval has the code '{code}'; the codes are {names}",
                 code=Untranslated(code),
-                names=", ".join(codes[:40]) or message("site.none", "none"),
+                names=", ".join(codes[:40]) or message("data.none", "none"),
             ),
-            nearest(code, codes, message("import.name-one", "Name one of them.")),
+            nearest_name(code, codes, message("data.name-one", "Name one of them.")),
             file=", ".join(log.file for log in boreholes.logs) or None,
         )
     for code in (one for one in rule.codes if one not in codes):
@@ -93,12 +93,12 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
             "warning",
             carrying[0].file,
             message(
-                "import.code-of-rule-unknown",
+                "io.rule-code-not-logged",
                 "No interval has the code '{code}', which counts as one bed with {others}",
                 code=Untranslated(code),
                 others=", ".join(one for one in rule.codes if one in codes),
             ),
-            nearest(code, codes, message("import.name-one", "Name one of them.")),
+            nearest_name(code, codes, message("data.name-one", "Name one of them.")),
             value=code,
         )
     found = []
@@ -110,7 +110,7 @@ def load_rule(boreholes: Boreholes | LoggedHoles, rule: ContactRule, journal: Jo
                 "note",
                 log.file,
                 message(
-                    "import.only-thin-beds",
+                    "io.beds-too-thin",
                     "{limit} of {code}: every bed is thinner than {thinner:g} m in holes ({count}): {holes}",
                     limit=rule.limit,
                     code=rule.label,
@@ -139,15 +139,15 @@ def _contacts_of(boreholes: Boreholes | LoggedHoles, log: IntervalLog, rule: Con
             unseen.append(hole)
     if unseen:
         why = (
-            message("import.starts-collar", "starts at the collar")
+            message("io.bed-starts-at-collar", "starts at the collar")
             if limit == "top"
-            else message("import.open-hole-end", "is open at the hole's end")
+            else message("io.bed-open-at-end", "is open at the hole's end")
         )
         journal.add(
             "note",
             log.file,
             message(
-                "import.contacts-no-sure-contact",
+                "io.contacts-uncertain",
                 "{limit} of {code}: contacts: {count}; no certain contact (the code {why}, or its "
                 "limit is contradicted) in holes ({unseen}): {holes}",
                 limit=limit,
@@ -184,7 +184,7 @@ def _limit_in_hole(
         journal.add(
             "warning",
             log.file,
-            message("import.hole-reason", "Hole {hole}: {reason}", hole=hole, reason=reason),
+            message("io.hole-and-reason", "Hole {hole}: {reason}", hole=hole, reason=reason),
             remedy,
             row=row,
             value=code,
@@ -192,33 +192,31 @@ def _limit_in_hole(
 
     if len(runs) > 1 and rule.occurrence is None:
         which = (
-            message("import.uppermost-top", "uppermost top")
-            if limit == "top"
-            else message("import.lowest-base", "lowest base")
+            message("io.uppermost-top", "uppermost top") if limit == "top" else message("io.lowest-base", "lowest base")
         )
         warn(
             message(
-                "import.occurs-times-taken",
+                "io.code-repeats",
                 "{code} occurs {count} times; the {which} at {depth:g} m is taken",
                 code=code,
                 count=len(runs),
                 which=which,
                 depth=depth,
             ),
-            message("import.give-repeats-own-codes", "Give the repeats codes of their own."),
+            message("io.give-repeats-codes", "Give the repeats codes of their own."),
         )
     tolerance = DEPTH_TOLERANCE
     other = group[log.code[group] != code]
     if ((log.top[other] < depth - tolerance) & (log.base[other] > depth + tolerance)).any():
         warn(
             message(
-                "import.lies-inside-interval-not",
+                "io.limit-inside-interval",
                 "the {limit} of {code} at {depth:g} m lies inside another interval and is not used",
                 limit=limit,
                 code=code,
                 depth=depth,
             ),
-            message("import.mend-overlap", "Remove the overlap."),
+            message("io.remove-overlap", "Remove the overlap."),
         )
         return depth, 0
     if limit == "top":
@@ -235,7 +233,7 @@ def _limit_in_hole(
         side = "above" if limit == "top" else "below"
         warn(
             message(
-                "import.nothing-logged",
+                "io.gap-in-log",
                 "nothing is logged for {gap:.2f} m {side} the {limit} of {code} at {depth:g} m",
                 gap=gap,
                 side=side,
@@ -243,7 +241,7 @@ def _limit_in_hole(
                 code=code,
                 depth=depth,
             ),
-            message("import.complete-log", "Complete the log."),
+            message("io.complete-log", "Complete the log."),
         )
     return depth, row
 

@@ -12,7 +12,7 @@ from geofit.data.errors import InputError, MissingDependencyError
 from geofit.data.messages import message
 from geofit.io.extra import need
 
-__all__ = ["WGS84", "is_code", "project", "refuse_degrees"]
+__all__ = ["WGS84", "is_code", "project_places", "refuse_degrees"]
 
 Floats = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ def is_code(label: str | None) -> bool:
     )
 
 
-def project(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[Floats, Floats]:
+def project_places(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[Floats, Floats]:
     """Return easting and northing (n,) in metres; nan where a place is outside the projection.
 
     ``x`` is the easting or longitude, ``y`` the northing or latitude, whatever order the system itself has.
@@ -40,17 +40,17 @@ def project(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[
     MissingDependencyError
         If pyproj is not installed.
     """
-    pyproj = need("pyproj", "gis", message("import.need-projection", "Projecting {file}", file=file))
+    pyproj = need("pyproj", "gis", message("io.need-projection", "Projecting {file}", file=file))
     before, after = _system(pyproj, source, file), _system(pyproj, target, file)
     units = {axis.unit_name for axis in after.axis_info[:2]}
     if not after.is_projected or units != {"metre"}:
         raise InputError(
             message(
-                "import.target-no-projected-system",
+                "io.target-not-projected",
                 "The target '{target}' is not a projected system in metres",
                 target=target,
             ),
-            message("import.name-grid-site-utm", "Name the grid of the site, such as a UTM zone: EPSG:32650."),
+            message("io.name-site-grid", "Name the grid of the site, such as a UTM zone: EPSG:32650."),
             file=file,
         )
     if before == after:
@@ -73,12 +73,12 @@ def refuse_degrees(crs: str, file: str) -> None:
     if crs == WGS84 or _is_geographic(crs):
         raise InputError(
             message(
-                "import.places-longitude-latitude-easting",
+                "io.places-in-degrees",
                 "The places are longitude and latitude ({crs}); easting and northing in metres are needed",
                 crs=crs[:60],
             ),
             message(
-                "import.project-site-grid",
+                "io.project-to-site-grid",
                 'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
                 "(geofit fit and geofit import: --crs).",
             ),
@@ -91,7 +91,7 @@ def _is_geographic(crs: str) -> bool:
     try:
         return bool(
             _system(
-                need("pyproj", "gis", message("import.need-projection", "Projecting {file}", file="")), crs, ""
+                need("pyproj", "gis", message("io.need-projection", "Projecting {file}", file="")), crs, ""
             ).is_geographic
         )
     except (InputError, MissingDependencyError):
@@ -104,11 +104,11 @@ def _system(pyproj: Any, text: str, file: str) -> Any:
     except pyproj.exceptions.CRSError as error:
         raise InputError(
             message(
-                "import.coordinate-system-unknown",
+                "io.crs-unknown",
                 "The coordinate system '{text}' is unknown: {error}",
                 text=text,
                 error=error,
             ),
-            message("import.give-code-epsg-32650", "Give a code such as EPSG:32650."),
+            message("io.give-epsg-code", "Give a code such as EPSG:32650."),
             file=file,
         ) from None

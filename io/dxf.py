@@ -83,11 +83,11 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
     except failures as error:
         raise InputError(
             message(
-                "import.drawing-cannot-read",
+                "io.drawing-unreadable",
                 "The drawing cannot be read: {error}",
                 error=_clean(str(error)) or type(error).__name__,
             ),
-            message("import.open-cad-audit-save", "Open it in CAD, audit it and save it as DXF (2007 or later)."),
+            message("io.audit-in-cad", "Open it in CAD, audit it and save it as DXF (2007 or later)."),
             file=source.name,
         ) from None
     if unit in _UNITS and not scale_stated and source.unit is None:
@@ -96,12 +96,12 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
             "warning",
             source.name,
             message(
-                "import.drawing-says-unit-read",
+                "io.drawing-unit-ignored",
                 "The drawing states that its unit is {unit}; it is read as metres",
                 unit=name,
             ),
             message(
-                "import.state-scale-section-unit",
+                "io.state-scale-or-unit",
                 "State scale = {scale:g} (a section), or unit (a map), where that is so.",
                 scale=per_metre,
             ),
@@ -176,7 +176,7 @@ def on_layers(entities: Iterable[Entity], source: Source, journal: Journal) -> t
             aside[entity.layer] = aside.get(entity.layer, 0) + entity.size
     for layer, size in aside.items():
         reason = message(
-            "import.layer-not-among-layers",
+            "io.layer-not-used",
             "Layer '{layer}' is not among the layers '{pattern}'; its points are not used ({count})",
             layer=layer,
             pattern=source.table,
@@ -190,13 +190,13 @@ def problem(entity: Entity, *, closed: bool = False) -> Message:
     """Return why an entity is not a line of points, empty if it is one; ``closed`` allows closed polylines."""
     if entity.type not in LINES or not entity.vertices:
         return message(
-            "import.no-lwpolyline-polyline-line",
+            "io.entity-not-a-line",
             "A {entity} is not an LWPOLYLINE, POLYLINE, LINE or POINT",
             entity=entity.type,
         )
     xyz = np.array(entity.vertices)
     if not np.isfinite(xyz[:, :2]).all() or np.isinf(xyz[:, 2]).any():
-        return message("import.coordinate-no-finite-number", "A coordinate is not a finite number")
+        return message("io.coordinate-not-finite", "A coordinate is not a finite number")
     if entity.closed and not closed:
-        return message("import.polyline-closed-horizon-line", "The polyline is closed, a horizon line is open")
+        return message("io.polyline-closed", "The polyline is closed, a horizon line is open")
     return EMPTY

@@ -26,7 +26,7 @@ def need(module: str, extra: str, what: Message) -> Any:
         package = module.split(".")[0]
         raise MissingDependencyError(
             message(
-                "import.needs-package-cannot-imported",
+                "io.package-missing",
                 "{what} needs the package {package}, which cannot be imported ({error}). Install it: {install}",
                 what=what,
                 package=package,

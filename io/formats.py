@@ -103,17 +103,17 @@ def _choose(source: Source, form: str, kind: str, journal: Journal) -> Source:
             journal.add(
                 "note",
                 source.name,
-                message("import.kind-taken-from", "The {kind} is taken from {table}", kind=kind, table=usual),
-                message("import.state-table-wrong", "State table where this is wrong."),
+                message("io.kind-taken", "The {kind} is taken from {table}", kind=kind, table=usual),
+                message("io.state-table", "State table where this is wrong."),
             )
             return replace(source, table=usual)
     raise InputError(
         message(
-            "import.file-holds-tables",
+            "io.several-tables",
             "The file contains {count} tables: {names}",
             count=len(names),
-            names=", ".join(names[:40]) or message("site.none", "none"),
+            names=", ".join(names[:40]) or message("data.none", "none"),
         ),
-        message("import.name-table", "Name one of them with table = ..."),
+        message("io.name-table", "Name one of them with table = ..."),
         file=source.name,
     )

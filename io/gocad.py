@@ -27,8 +27,8 @@ def read_vertices(source: Source, journal: Journal) -> Table:
     lines = text.splitlines()
     if not lines or not lines[0].startswith("GOCAD"):
         raise InputError(
-            message("import.file-not-start-gocad", "The file does not start with GOCAD"),
-            message("import.export-vset-pline-tsurf", "Export a VSet, PLine or TSurf."),
+            message("io.gocad-heading-missing", "The file does not start with GOCAD"),
+            message("io.export-gocad-points", "Export a VSet, PLine or TSurf."),
             file=source.name,
         )
     rows: list[tuple[int, list[str]]] = []
@@ -52,7 +52,7 @@ def read_vertices(source: Source, journal: Journal) -> Table:
                     "warning",
                     source.name,
                     message(
-                        "import.positive-downwards-turned-elevation",
+                        "io.z-turned-to-elevation",
                         "z is positive downwards; it is turned into an elevation",
                     ),
                     row=number,
@@ -63,14 +63,14 @@ def read_vertices(source: Source, journal: Journal) -> Table:
                 journal.add(
                     "error",
                     source.name,
-                    message("import.vertex-no-three-coordinates", "The vertex does not have three coordinates"),
+                    message("io.vertex-incomplete", "The vertex does not have three coordinates"),
                     row=number,
                     value=line[:120],
                 )
                 continue
             x, y, z = words[2:5]
             rows.append((number, [name, x, y, _turned(z) if down else z]))
-    journal.add("note", source.name, message("import.read-gocad", "Read as GOCAD, {encoding}", encoding=encoding))
+    journal.add("note", source.name, message("io.read-as-gocad", "Read as GOCAD, {encoding}", encoding=encoding))
     return table_of(source, journal, ["horizon", "x", "y", "z"], rows, units=units, malformed=malformed)
 
 

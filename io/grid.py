@@ -83,18 +83,18 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
     if name is None:
         raise InputError(
             message(
-                "import.grid-no-horizon-site",
+                "io.grid-horizon-unknown",
                 "The grid is of '{horizon}', which is not a horizon of the site",
                 horizon=horizon,
             ),
-            message("import.state-horizon-grids-add", 'State horizon = "..." in [[grids]], or add the [[horizon]].'),
+            message("io.state-grid-horizon", 'State horizon = "..." in [[grids]], or add the [[horizon]].'),
             file=source.name,
         )
     own = Journal()
     grid = load_ground(source, own)
     for file, digest in own.inputs.items():
         journal.inputs[file] = digest
-    journal.take(issue for issue in own.issues if issue.reason.code != "import.cells-no-data")
+    journal.take(issue for issue in own.issues if issue.reason.code != "io.cells-without-data")
     x, y = np.meshgrid(grid.x, grid.y[::-1])
     xyz = np.column_stack([x.ravel(), y.ravel(), grid.z[::-1].ravel()])
     known = np.isfinite(xyz[:, 2])
@@ -104,7 +104,7 @@ def load_grid(source: Source, horizon: str, horizons: HorizonNames, journal: Jou
             "note",
             source.name,
             plural_message(
-                "import.nodes-no-data-no",
+                "io.nodes-without-data",
                 "{count} of {total} nodes has no data and makes no point",
                 "{count} of {total} nodes have no data and make no points",
                 count=missing,
@@ -129,16 +129,16 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     dx, dy = (head.get(key, head.get("cellsize", float("nan"))) for key in ("dx", "dy"))
     if not (dx > 0 and dy > 0 and np.isfinite(dx + dy)):
         raise InputError(
-            message("import.grid-no-cellsize-above", "The grid has no cellsize above 0"),
-            message("import.add-line-cellsize-10", "Add a line 'cellsize 10'."),
+            message("io.cellsize-missing", "The grid has no cellsize above 0"),
+            message("io.add-cellsize-line", "Add a line 'cellsize 10'."),
             file=source.name,
         )
     west = _corner(head, "x", dx, source.name)
     south = _corner(head, "y", dy, source.name)
     if not np.isfinite(west + south):
         raise InputError(
-            message("import.grid-corner-no-finite", "The grid's corner is not a finite location"),
-            message("import.export-grid-again", "Export the grid again."),
+            message("io.grid-corner-not-finite", "The grid's corner is not a finite location"),
+            message("io.export-grid-again", "Export the grid again."),
             file=source.name,
         )
     body = [(at + k + 1, line.split()) for k, line in enumerate(lines[at:]) if line.strip()]
@@ -146,13 +146,13 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     if len(cells) != columns * rows:
         raise InputError(
             message(
-                "import.grid-cells-ncols-nrows",
+                "io.grid-cells-differ",
                 "The grid has {count} cells; ncols x nrows = {columns} x {rows} are needed",
                 count=len(cells),
                 columns=columns,
                 rows=rows,
             ),
-            message("import.export-grid-again", "Export the grid again."),
+            message("io.export-grid-again", "Export the grid again."),
             file=source.name,
         )
     try:
@@ -166,8 +166,8 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
     z[blank] = np.nan
     if blank.all():
         raise InputError(
-            message("import.no-cell-grid-elevation", "No cell of the grid has an elevation"),
-            message("import.check-nodata-value", "Check nodata_value."),
+            message("io.grid-without-elevation", "No cell of the grid has an elevation"),
+            message("io.check-nodata-value", "Check nodata_value."),
             file=source.name,
         )
     if blank.any():
@@ -175,7 +175,7 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
             "note",
             source.name,
             message(
-                "import.cells-no-data", "{count} of {total} cells have no data", count=int(blank.sum()), total=z.size
+                "io.cells-without-data", "{count} of {total} cells have no data", count=int(blank.sum()), total=z.size
             ),
         )
     journal.count(source.name, len(body), 0)
@@ -189,8 +189,8 @@ def _number(word: str, file: str, row: int, column: str) -> float:
         return float(word)
     except ValueError:
         raise InputError(
-            message("import.no-number", "This is not a number"),
-            message("import.export-grid-again", "Export the grid again."),
+            message("io.not-a-number", "This is not a number"),
+            message("io.export-grid-again", "Export the grid again."),
             file=file,
             row=row,
             column=column,
@@ -203,12 +203,12 @@ def _size(head: dict[str, float], key: str, file: str) -> int:
     if not (np.isfinite(value) and value >= 2 and value == int(value)):
         raise InputError(
             message(
-                "import.grid-head-no-whole",
+                "io.grid-header-incomplete",
                 "The grid's header has no {key} that is a whole number of at least 2",
                 key=Untranslated(key),
             ),
             message(
-                "import.esri-ascii-grid-starts",
+                "io.give-ascii-grid",
                 "An ESRI ASCII grid starts with ncols, nrows, xllcorner, yllcorner, cellsize.",
             ),
             file=file,
@@ -223,7 +223,7 @@ def _corner(head: dict[str, float], axis: str, step: float, file: str) -> float:
     if f"{axis}llcorner" in head:
         return head[f"{axis}llcorner"] + 0.5 * step
     raise InputError(
-        message("import.grid-no-llcorner", "The grid has no {axis}llcorner", axis=Untranslated(axis)),
-        message("import.add-line-llcorner-500000", "Add a line '{axis}llcorner 500000'.", axis=Untranslated(axis)),
+        message("io.grid-corner-missing", "The grid has no {axis}llcorner", axis=Untranslated(axis)),
+        message("io.add-corner-line", "Add a line '{axis}llcorner 500000'.", axis=Untranslated(axis)),
         file=file,
     )

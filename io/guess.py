@@ -13,10 +13,10 @@ from geofit.data.errors import InputError
 from geofit.data.messages import Message, Untranslated, message
 from geofit.io.columns import GEOGRAPHIC, SCHEMAS, Schema, plain_name
 from geofit.io.guess_values import by_values
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.io.tables import Table, parse_numbers, shown
+from geofit.io.tables import Table, first_names, parse_numbers
 
 __all__ = ["RoleGuess", "find_columns", "guess_roles", "locate", "sample_of", "taken_as"]
 
@@ -76,7 +76,7 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
     """
     stated = _stated(table, schema, source)
     found = {
-        role: RoleGuess(role, j, table.header[j], 1.0, message("import.stated", "stated"), "stated")
+        role: RoleGuess(role, j, table.header[j], 1.0, message("io.stated", "stated"), "stated")
         for role, j in stated.items()
     }
     unknown = not stated and _unknown(table)
@@ -96,7 +96,7 @@ def guess_roles(table: Table, schema: Schema, source: Source) -> dict[str, RoleG
     if not table.named:
         if not stated and len(table.header) == len(schema.required):
             return {
-                role: RoleGuess(role, j, table.header[j], 0.5, message("import.by-place", "by its place"), "place")
+                role: RoleGuess(role, j, table.header[j], 0.5, message("io.by-location", "by its place"), "place")
                 for j, role in enumerate(schema.required)
             }
         return found
@@ -143,13 +143,13 @@ def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, Messa
     """Return how well the values of a named column suit a role, 0.1 to 1, and why it is taken or doubted."""
     cells = [table.columns[j][i].strip() for i in rows]
     filled = tuple(cell for cell in cells if cell)
-    why = message("import.by-name", "by its name")
+    why = message("io.by-name", "by its name")
     if not filled:
-        return (0.1, message("import.name-cells-empty", "by its name; all its cells are empty")) if rows else (1.0, why)
+        return (0.1, message("io.name-and-empty-cells", "by its name; all its cells are empty")) if rows else (1.0, why)
     fill = len(filled) / len(cells)
     merit = 0.3 + 0.7 * fill
     if fill < 0.9:
-        why = message("import.name-cells-filled", "by its name; {share:.0%} of its cells are filled", share=fill)
+        why = message("io.name-and-filled-cells", "by its name; {share:.0%} of its cells are filled", share=fill)
     if role in WORDS:
         return merit, why
     values, bad = parse_numbers(filled, table.decimal)
@@ -157,14 +157,14 @@ def _fit(table: Table, role: str, j: int, rows: list[int]) -> tuple[float, Messa
     if share < 0.9:
         merit *= max(share, 0.1)
         why = message(
-            "import.name-cells-no-numbers", "by its name; {share:.0%} of its cells are not numbers", share=1 - share
+            "io.name-without-numbers", "by its name; {share:.0%} of its cells are not numbers", share=1 - share
         )
     low, high = _LIMITS.get(role, (-np.inf, np.inf))
     inside = np.mean((values >= low) & (values <= high)) if share > 0 else 1.0
     if inside < 0.5 and share > 0.5:
         merit *= 0.3
         why = message(
-            "import.name-values-not", "by its name; its values are not between {low:g} and {high:g}", low=low, high=high
+            "io.name-despite-values", "by its name; its values are not between {low:g} and {high:g}", low=low, high=high
         )
     return merit, why
 
@@ -183,8 +183,8 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
         journal.add(
             "warning",
             table.name,
-            message("import.no-header-columns-taken", "No header: the columns are taken as {order}", order=order),
-            message("import.add-header", "Add a header."),
+            message("io.header-missing", "No header: the columns are taken as {order}", order=order),
+            message("io.add-header", "Add a header."),
             row=1,
         )
         return {role: guess.index for role, guess in guesses.items()}
@@ -199,7 +199,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
                 table.name,
                 taken_as(guess),
                 message(
-                    "import.state-columns-wrong",
+                    "io.state-columns-where-wrong",
                     "State columns = {entry} where this is wrong.",
                     entry=f"{{ {role} = ... }}",
                 ),
@@ -218,7 +218,7 @@ def find_columns(table: Table, schema: Schema, source: Source, journal: Journal)
 def taken_as(guess: RoleGuess) -> Message:
     """Say which column was taken as what, why, how surely, and which other ones it could be."""
     text = message(
-        "import.column-taken-confidence",
+        "io.column-guessed",
         "Column '{column}' is taken as {role}, {reason}, confidence {confidence:.2f}",
         column=Untranslated(guess.column),
         role=guess.role,
@@ -227,8 +227,8 @@ def taken_as(guess: RoleGuess) -> Message:
     )
     if not guess.others:
         return text
-    others = tuple(message("place.quoted-name", "'{name}'", name=Untranslated(name)) for name in guess.others)
-    return message("import.column-alternatives", "{text}; also possible: {others}", text=text, others=others)
+    others = tuple(message("io.quoted-name", "'{name}'", name=Untranslated(name)) for name in guess.others)
+    return message("io.column-alternatives", "{text}; also possible: {others}", text=text, others=others)
 
 
 def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> dict[str, int]:
@@ -246,12 +246,12 @@ def _geographic(table: Table, columns: Mapping[str, int], journal: Journal) -> d
         "warning",
         table.name,
         message(
-            "import.taken-longitude-latitude-epsg",
+            "io.columns-taken-as-degrees",
             "'{x}' and '{y}' are taken as longitude and latitude (EPSG:4326) and projected",
             x=Untranslated(table.header[found["x"]]),
             y=Untranslated(table.header[found["y"]]),
         ),
-        message("import.state-crs-columns-wrong", "State crs and columns where this is wrong."),
+        message("io.state-crs-and-columns", "State crs and columns where this is wrong."),
     )
     return found
 
@@ -275,12 +275,12 @@ def _warn_of_constant(table: Table, columns: Mapping[str, int], journal: Journal
             "warning",
             table.name,
             message(
-                "import.same-horizons-place-hole",
+                "io.column-same-for-horizons",
                 "'{column}' has the same value for all horizons at one location: it may be a property of the hole",
                 column=Untranslated(table.header[columns["z"]]),
             ),
             message(
-                "import.state-columns-elevation-horizon",
+                "io.state-horizon-elevation",
                 "State columns = { z = ... } with the elevation of the horizon.",
             ),
             column=table.header[columns["z"]],
@@ -294,12 +294,12 @@ def _stated(table: Table, schema: Schema, source: Source) -> dict[str, int]:
         if role not in roles:
             raise InputError(
                 message(
-                    "import.table-no-column-role",
+                    "io.role-unknown",
                     "A {kind} table has no column role '{role}'",
                     kind=schema.name,
                     role=Untranslated(role),
                 ),
-                nearest(role, roles, message("import.known-roles", "The roles are {names}.", names=", ".join(roles))),
+                nearest_name(role, roles, message("io.known-roles", "The roles are {names}.", names=", ".join(roles))),
                 file=table.name,
             )
         columns[role] = locate(table, role, wanted)
@@ -325,14 +325,14 @@ def locate(table: Table, role: str, wanted: str | int) -> int:
         return number - 1
     raise InputError(
         message(
-            "import.no-column-columns",
+            "io.column-unknown",
             "There is no column '{wanted}' for {role}; the columns are {names}",
             wanted=Untranslated(wanted),
             role=Untranslated(role),
-            names=shown(table.header),
+            names=first_names(table.header),
         ),
         message(
-            "import.name-give-number",
+            "io.name-or-number-column",
             "Name one of them, or give its number from 1 to {count}.",
             count=len(table.header),
         ),
@@ -344,28 +344,28 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
     if {"x", "y"} & set(missing) and any(plain_name(name)[0] in GEOGRAPHIC for name in table.header):
         return InputError(
             message(
-                "import.longitude-latitude-degrees-easting",
+                "io.degrees-not-metres",
                 "Longitude and latitude are degrees; easting and northing in metres are needed",
             ),
             message(
-                "import.project-to-site-grid",
+                "io.project-to-site-grid",
                 'Project them to the site\'s grid first, or name the grid: [site] crs = "EPSG:..." '
                 "(geofit fit and geofit import: --crs).",
             ),
             file=table.name,
         )
-    names = tuple(message("place.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing)
+    names = tuple(message("io.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing)
     what = (
         message(
-            "import.no-column-found-table",
+            "io.column-not-found",
             "No column for {names} was found in this {kind} table; its columns are {found}",
             names=names,
             kind=schema.name,
-            found=shown(table.header),
+            found=first_names(table.header),
         )
         if table.named
         else message(
-            "import.no-column-found-table-without",
+            "io.column-not-found-no-header",
             "No column for {names} was found in this {kind} table without a header; its columns: {count}",
             names=names,
             kind=schema.name,
@@ -375,17 +375,15 @@ def _missing(table: Table, schema: Schema, missing: list[str]) -> InputError:
     example = ", ".join(f'{role} = "..."' for role in missing)
     on_ground = schema.name == "collar" and missing == ["z"]
     remedy = message(
-        "import.name-column-header-state",
+        "io.name-column",
         "Name the column in the header, or state columns = {{ {example} }} (--x, --y, --z, --surface, "
         "--section for a bare CSV; a column's number counted from 1 will do).",
         example=example,
     )
-    ground = message(
-        "import.give-ground-ground-grid", "Or give the ground ([ground], a grid): collars are placed on it."
-    )
+    ground = message("io.give-ground", "Or give the ground ([ground], a grid): collars are placed on it.")
     return InputError(
         what,
-        message("import.first-second", "{first} {second}", first=remedy, second=ground) if on_ground else remedy,
+        message("io.column-pair", "{first} {second}", first=remedy, second=ground) if on_ground else remedy,
         file=table.name,
         row=int(table.lines[0]) - 1 if table.named and len(table) and table.lines[0] > 1 else None,
         column=missing[0],

@@ -82,16 +82,14 @@ def _place(columns: list[_Column]) -> dict[str, ValueGuess]:
     if len(large) != 2 or not small:
         return {}
     first, second = large
-    why = message("import.by-size-of-coordinates", "by its values, the size of map coordinates")
+    why = message("io.by-size-of-coordinates", "by its values, the size of map coordinates")
     # Northings have seven digits; eastings six, or eight with the zone in front.
     turned = 1e6 <= first.size < 1e7 and not 1e6 <= second.size < 1e7
     if turned:
         first, second, why = (
             second,
             first,
-            message(
-                "import.by-size-seven-digits", "by its values, the size of map coordinates; seven digits are a northing"
-            ),
+            message("io.by-seven-digits", "by its values, the size of map coordinates; seven digits are a northing"),
         )
     after = [column for column in small if column.index > max(first.index, second.index)] or small
     z = after[0]
@@ -102,7 +100,7 @@ def _place(columns: list[_Column]) -> dict[str, ValueGuess]:
         "z": ValueGuess(
             z.index,
             sure,
-            message("import.by-size-of-elevations", "by its values, the size of elevations"),
+            message("io.by-size-of-elevations", "by its values, the size of elevations"),
             tuple(c.index for c in small if c is not z),
         ),
     }
@@ -116,7 +114,7 @@ def _picks(columns: list[_Column]) -> dict[str, ValueGuess]:
     found = _place(columns)
     repeated = [column for column in _texts(columns) if column.words <= 0.5 * len(column.cells)]
     if found and len(repeated) == 1:
-        why = message("import.by-words-that-repeat", "by its values, words that repeat")
+        why = message("io.by-words-that-repeat", "by its values, words that repeat")
         found["horizon"] = ValueGuess(repeated[0].index, CONFIDENCE, why)
     return found
 
@@ -128,7 +126,7 @@ def _collar(columns: list[_Column]) -> dict[str, ValueGuess]:
         return {}
     return {
         "hole": ValueGuess(
-            names[0].index, CONFIDENCE, message("import.by-unique-words", "by its values, words of which none repeats")
+            names[0].index, CONFIDENCE, message("io.by-unique-words", "by its values, words of which none repeats")
         ),
         **found,
     }
@@ -150,17 +148,17 @@ def _intervals(columns: list[_Column]) -> dict[str, ValueGuess]:
         return {}
     (top, base), why = (
         pairs[0],
-        message("import.by-consecutive-depths", "by its values, depths that follow each other down a hole"),
+        message("io.by-consecutive-depths", "by its values, depths that follow each other down a hole"),
     )
     sure = CONFIDENCE if len(codes) == 1 else UNSURE
     return {
-        "hole": ValueGuess(hole.index, CONFIDENCE, message("import.by-words-in-runs", "by its values, words in runs")),
+        "hole": ValueGuess(hole.index, CONFIDENCE, message("io.by-words-in-runs", "by its values, words in runs")),
         "from": ValueGuess(top.index, CONFIDENCE, why),
         "to": ValueGuess(base.index, CONFIDENCE, why),
         "code": ValueGuess(
             codes[0].index,
             sure,
-            message("import.by-words-that-repeat", "by its values, words that repeat"),
+            message("io.by-words-that-repeat", "by its values, words that repeat"),
             tuple(c.index for c in codes[1:]),
         ),
     }

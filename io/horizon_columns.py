@@ -38,8 +38,8 @@ def load_horizon_columns(
     """
     if not source.horizons:
         raise InputError(
-            message("import.no-column-named-horizon", "No column is named as a horizon"),
-            message("import.state-horizons-headers", 'State horizons = ["..."] with their headers.'),
+            message("io.no-horizon-column", "No column is named as a horizon"),
+            message("io.state-horizons-headers", 'State horizons = ["..."] with their headers.'),
             file=source.name,
         )
     depths = source.measure == "depth"
@@ -47,12 +47,10 @@ def load_horizon_columns(
     if depths and "z" not in rows.columns:
         raise InputError(
             message(
-                "import.depths-need-elevation-count",
+                "io.depths-without-origin",
                 "Depths need the elevation of their origin, and there is no column for it",
             ),
-            message(
-                "import.state-columns-elevation-collar", "State columns = { z = ... } with the elevation of the collar."
-            ),
+            message("io.state-collar-elevation", "State columns = { z = ... } with the elevation of the collar."),
             file=source.name,
         )
     (x, y), mouth = rows.places(), rows.numbers("z", no_data=True) if depths else np.zeros(len(rows))
@@ -65,7 +63,7 @@ def load_horizon_columns(
         name = horizons.match(header)
         if name is None:
             reason = message(
-                "import.column-no-horizon-site",
+                "io.column-not-a-horizon",
                 "Column '{column}' is not a horizon of the site; its values are not used",
                 column=Untranslated(header),
             )
@@ -73,14 +71,14 @@ def load_horizon_columns(
                 "warning",
                 rows.file,
                 reason,
-                message("import.add-horizon-name", "Add a [[horizon]] of its name."),
+                message("io.add-horizon", "Add a [[horizon]] of its name."),
                 column=header,
             )
             continue
         if name in found:
             raise InputError(
-                message("import.two-columns-horizon", "Two columns are of horizon '{name}'", name=name),
-                message("import.name-horizon-once", "Name each horizon once."),
+                message("io.horizon-column-repeated", "Two columns are of horizon '{name}'", name=name),
+                message("io.name-horizon-once", "Name each horizon once."),
                 file=source.name,
             )
         values = _values(rows, j, depths)
@@ -90,8 +88,8 @@ def load_horizon_columns(
         rows.reject(
             i,
             "horizons",
-            message("import.row-holds-no-horizon", "The row contains no horizon's value"),
-            message("import.complete-row-remove", "Complete the row or remove it."),
+            message("io.row-without-value", "The row contains no horizon's value"),
+            message("io.complete-or-remove-row", "Complete the row or remove it."),
         )
     rows.close()
     rows.require_any()
@@ -113,17 +111,15 @@ def load_horizon_columns(
 def _tell_measure(rows: Rows, places: list[int], depths: bool) -> None:
     names = ", ".join(dict.fromkeys(rows.table.header[j] for j in places))
     if depths:
-        reason = message(
-            "import.depths-taken-straight-down", "Depths of {names} are taken straight down from z", names=names
-        )
+        reason = message("io.depths-taken-straight", "Depths of {names} are taken straight down from z", names=names)
         rows.journal.add("note", rows.file, reason)
     elif rows.source.measure is None:
-        reason = message("import.values-taken-elevations", "The values of {names} are taken as elevations", names=names)
+        reason = message("io.values-taken-elevations", "The values of {names} are taken as elevations", names=names)
         rows.journal.add(
             "note",
             rows.file,
             reason,
-            message("import.state-measure-depth-depths", 'State measure = "depth" where they are depths.'),
+            message("io.state-measure-depth", 'State measure = "depth" where they are depths.'),
         )
 
 
@@ -133,21 +129,17 @@ def _values(rows: Rows, j: int, depths: bool) -> Floats:
     values, bad = parse_numbers(cells, rows.table.decimal)
     wrong = [i for i in bad.tolist() if cells[i].strip()]
     values[np.isin(values, NO_DATA)] = np.nan
-    reasons = dict.fromkeys(
-        wrong, message("import.cell-no-finite-number", "The cell is not a finite number; it gives no pick")
-    )
+    reasons = dict.fromkeys(wrong, message("io.cell-not-finite", "The cell is not a finite number; it gives no pick"))
     if depths:
         above = np.flatnonzero(values < 0).tolist()
-        reasons |= dict.fromkeys(
-            above, message("import.depth-negative-no-pick", "The depth is negative; it gives no pick")
-        )
+        reasons |= dict.fromkeys(above, message("io.depth-negative", "The depth is negative; it gives no pick"))
         values[above] = np.nan
     for i, reason in sorted(reasons.items()):
         rows.journal.add(
             "warning",
             rows.file,
             reason,
-            message("import.correct-cell", "Correct the cell."),
+            message("io.correct-cell", "Correct the cell."),
             row=int(rows.line[i]),
             column=header,
             value=cells[i].strip(),
@@ -165,7 +157,7 @@ def _count_blanks(rows: Rows, found: dict[str, Floats]) -> None:
             "note",
             rows.file,
             message(
-                "import.cells-without-value-rows",
+                "io.cells-without-value",
                 "Cells without a value in rows that are used, which give no pick: {counts}",
                 counts=counts,
             ),

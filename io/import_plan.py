@@ -21,14 +21,14 @@ from geofit.io.rows import read_rows
 from geofit.io.sections import load_lines
 from geofit.io.source import Source
 
-__all__ = ["Part", "Plan", "campaigns", "complete", "look_at"]
+__all__ = ["ImportPlan", "TablePart", "campaigns", "complete", "look_at"]
 
 #: Kinds of which a site has one table.
 SINGLE = ("boundary", "ground", "adit path", "adit contacts")
 
 
 @dataclass
-class Part:
+class TablePart:
     """One table of one file, under the name that the site file uses; ``section`` is the line that it lies on."""
 
     name: str
@@ -39,14 +39,14 @@ class Part:
 
 
 @dataclass
-class Plan:
+class ImportPlan:
     """The parts that are used by kind, and what was set aside."""
 
-    parts: dict[str, list[Part]] = field(default_factory=dict)
+    parts: dict[str, list[TablePart]] = field(default_factory=dict)
     issues: list[ImportIssue] = field(default_factory=list)
     counts: list[TableCount] = field(default_factory=list)
 
-    def of(self, kind: str) -> list[Part]:
+    def of(self, kind: str) -> list[TablePart]:
         """Return the tables of a kind, in the order of the files."""
         return self.parts.get(kind, [])
 
@@ -67,7 +67,7 @@ class Plan:
                     self.set_aside(
                         part.source.name,
                         part.preview.read,
-                        message("import.file-not-used", "The file is not used: {reason}", reason=error.reason),
+                        message("io.file-not-used", "The file is not used: {reason}", reason=error.reason),
                         error.remedy,
                         row=error.row or 0,
                         column=error.column or "",
@@ -77,7 +77,7 @@ class Plan:
         return False
 
 
-def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, plan: Plan) -> None:
+def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: str, plan: ImportPlan) -> None:
     """Preview a file and put its tables where they belong."""
     name = _relative(path, folder)
     if legible(name) != name:
@@ -85,7 +85,7 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
             legible(name),
             0,
             message("import.file-not-utf", "The name of the file is not UTF-8, and a site file cannot name it"),
-            message("import.rename-file", "Rename the file."),
+            message("io.rename-file", "Rename the file."),
         )
         return
     source = Source(path=path, name=name, target=crs or None)
@@ -101,12 +101,12 @@ def look_at(path: Path, folder: Path, mappings: Sequence[ColumnMapping], crs: st
         mapping = replace(preview.mapping, file=name)
         if own is not None:
             mapping = replace(own, file=name, table=preview.table, columns={**mapping.columns, **own.columns})
-        part = Part(name, preview, mapping, part_source)
+        part = TablePart(name, preview, mapping, part_source)
         if preview.kind == "skip":
             plan.set_aside(
                 part_source.name,
                 preview.read,
-                message("import.mapping-leaves-table", "The mapping leaves this table out"),
+                message("io.table-left-out", "The mapping leaves this table out"),
                 EMPTY,
                 "note",
             )
@@ -136,44 +136,44 @@ def _not_recognised(preview: TablePreview) -> tuple[Message, Message]:
             nearest, missing, best = kind, absent, share
     if names & GEOGRAPHIC and not preview.crs:
         return message(
-            "import.file-not-used-places",
+            "io.file-in-degrees",
             "The file is not used: its places are longitude and latitude ({names})",
             names=tuple(Untranslated(name) for name in preview.header if plain_name(name)[0] in GEOGRAPHIC),
         ), message(
-            "import.grid-site-crs",
+            "io.name-grid-with-crs",
             "Name the grid of the site, in metres, with --crs, such as EPSG:32650: they are projected to it.",
         )
     if best >= 0.5:
         return message(
-            "import.file-not-used-nearest",
+            "io.file-without-columns",
             "The file is not used: nearest to a {kind} table, but without {names}",
             kind=nearest,
-            names=tuple(message("place.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing),
+            names=tuple(message("io.quoted-name", "'{name}'", name=Untranslated(role)) for role in missing),
         ), _REMEDY
     return message(
-        "import.file-not-used-columns",
+        "io.file-of-unknown-kind",
         "The file is not used: its columns ({names}) are of no known kind",
         names=", ".join(preview.header[:12]),
     ), _REMEDY
 
 
-_REMEDY = message("import.name-kind-columns-mapping", "Name its kind and columns in a mapping file (--mapping).")
+_REMEDY = message("io.name-kind-in-mapping", "Name its kind and columns in a mapping file (--mapping).")
 
 
-def complete(plan: Plan) -> None:
+def complete(plan: ImportPlan) -> None:
     """Set aside what a site has no place for: second boundaries, surveys and sections without a line."""
     plan.of("ground").sort(key=lambda part: not any(word in part.source.path.stem.casefold() for word in _GROUND))
     for kind in SINGLE:
         for part in plan.of(kind)[1:]:
             plan.parts[kind].remove(part)
             first = plan.of(kind)[0].source.name
-            remedy = message("import.import-only-one", "Import one of them.")
+            remedy = message("io.import-only-one", "Import one of them.")
             if kind == "ground":
                 remedy = message(
-                    "import.state-kind-grid-mapping",
+                    "io.state-grid-in-mapping",
                     'State kind = "grid" in a mapping file (--mapping) where it is a horizon.',
                 )
-            reason = message("import.taken-already", "The {kind} is taken from {file} already", kind=kind, file=first)
+            reason = message("io.kind-taken-already", "The {kind} is taken from {file} already", kind=kind, file=first)
             plan.set_aside(part.source.name, _rows_of(part), reason, remedy)
     lacking = [
         ("survey", "collar"),
@@ -187,9 +187,9 @@ def complete(plan: Plan) -> None:
                     part.source.name,
                     part.preview.read,
                     message(
-                        "import.table-no-table", "The {kind} table has no {needed} table", kind=kind, needed=needed
+                        "io.companion-table-missing", "The {kind} table has no {needed} table", kind=kind, needed=needed
                     ),
-                    message("import.add-table", "Add the {needed} table.", needed=needed),
+                    message("io.add-table", "Add the {needed} table.", needed=needed),
                 )
     _place_sections(plan)
 
@@ -198,7 +198,7 @@ def complete(plan: Plan) -> None:
 _GROUND = ("ground", "dem", "dtm", "dgm", "topo", "terrain", "surface", "地面", "地形")
 
 
-def _rows_of(part: Part) -> int:
+def _rows_of(part: TablePart) -> int:
     """Return the rows of a table, and those of a grid, which a preview does not read."""
     if part.preview.kind != "ground":
         return part.preview.read
@@ -210,7 +210,7 @@ def _rows_of(part: Part) -> int:
     return journal.counts[0].read
 
 
-def _place_sections(plan: Plan) -> None:
+def _place_sections(plan: ImportPlan) -> None:
     """Keep sections and drawings whose file is named like a section line; other drawings are of unknown place."""
     lines: set[str] = set()
     for part in plan.of("section lines"):
@@ -226,26 +226,26 @@ def _place_sections(plan: Plan) -> None:
             part.section = known.get(stem.casefold(), "")
             if part.section in placed:
                 reason = message(
-                    "import.section-taken-already",
+                    "io.section-taken-already",
                     "Section '{name}' is taken from {file} already",
                     name=part.section,
                     file=placed[part.section],
                 )
-                remedy = message("import.import-only-one", "Import one of them.")
+                remedy = message("io.import-only-one", "Import one of them.")
             elif not part.section:
-                reason = message("import.section-no-line-plan", "The section has no line in plan")
+                reason = message("io.section-without-line", "The section has no line in plan")
                 remedy = message(
-                    "import.add-table-section-corners",
+                    "io.add-section-table",
                     "Add a table section, x, y with the corners of section '{name}', or write [[section]] with its "
                     "line into the site file.",
                     name=stem,
                 )
                 if kind == "drawing":
                     a_map = message(
-                        "import.map-state-kind-traces",
+                        "io.state-map-kind",
                         'A map: state kind = "traces", "adit path" or "adit contacts" in a mapping file.',
                     )
-                    remedy = message("import.first-second", "{first} {second}", first=remedy, second=a_map)
+                    remedy = message("io.column-pair", "{first} {second}", first=remedy, second=a_map)
             else:
                 placed[part.section] = part.source.name
                 continue
@@ -253,11 +253,11 @@ def _place_sections(plan: Plan) -> None:
             plan.set_aside(part.source.name, part.preview.read, reason, remedy)
 
 
-def campaigns(plan: Plan) -> list[tuple[Part, Part | None, list[Part]]]:
+def campaigns(plan: ImportPlan) -> list[tuple[TablePart, TablePart | None, list[TablePart]]]:
     """Return each collar table with its survey and its interval tables: those that share most holes with it."""
     collars = plan.of("collar")
-    surveys: dict[int, Part] = {}
-    intervals: dict[int, list[Part]] = {}
+    surveys: dict[int, TablePart] = {}
+    intervals: dict[int, list[TablePart]] = {}
     holes = [_holes(part, "collar") for part in collars] if len(collars) > 1 else [set[str]()]
     for kind in ("survey", "intervals"):
         for part in list(plan.of(kind)):
@@ -273,17 +273,17 @@ def campaigns(plan: Plan) -> list[tuple[Part, Part | None, list[Part]]]:
                     part.source.name,
                     part.preview.read,
                     message(
-                        "import.taken-already",
+                        "io.kind-taken-already",
                         "The {kind} is taken from {file} already",
                         kind=kind,
                         file=surveys[k].source.name,
                     ),
-                    message("import.join-survey-tables", "Join the survey tables."),
+                    message("io.join-survey-tables", "Join the survey tables."),
                 )
     return [(collar, surveys.get(k), intervals.get(k, [])) for k, collar in enumerate(collars)]
 
 
-def _holes(part: Part, kind: str) -> set[str]:
+def _holes(part: TablePart, kind: str) -> set[str]:
     try:
         return set(read_rows(part.mapping.fill(part.source), SCHEMAS[kind], Journal()).text("hole"))
     except InputError:

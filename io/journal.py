@@ -72,7 +72,7 @@ class Journal:
                 "",
                 severity,
                 message(
-                    "import.more-alike",
+                    "io.more-alike",
                     "{count} more of this kind, the last in this row: {reason}",
                     count=count - MOST,
                     reason=reason,

@@ -49,8 +49,8 @@ def read_log(source: Source, journal: Journal) -> Table:
         return table_of(source, journal, list(_WELL), [(1, cells)], units=units)
     if source.table != "CURVES":
         raise InputError(
-            message("import.las-file-no-table", "A LAS file has no table '{table}'", table=source.table),
-            message("import.name-well-curves", "Name WELL or CURVES."),
+            message("io.las-table-unknown", "A LAS file has no table '{table}'", table=source.table),
+            message("io.name-las-table", "Name WELL or CURVES."),
             file=source.name,
         )
     depth = np.asarray(log.index, dtype=np.float64)
@@ -69,11 +69,11 @@ def read_log(source: Source, journal: Journal) -> Table:
         "note",
         source.name,
         message(
-            "import.samples-interval-reaches-next",
+            "io.samples-as-intervals",
             "{count} samples; each is an interval that reaches to the next sample",
             count=len(depth),
         ),
-        message("import.give-interval-table-log", "Give an interval table where the log has one."),
+        message("io.give-interval-table", "Give an interval table where the log has one."),
     )
     return table_of(source, journal, header, rows, units=["", unit, unit, *(str(c.unit) for c in curves)])
 
@@ -84,7 +84,7 @@ def _cell(value: Any) -> str:
 
 def _open(source: Source, journal: Journal) -> tuple[Any, int]:
     """Return the log and the line of its first sample."""
-    lasio = need("lasio", "las", message("import.reading-log", "Reading the log {file}", file=source.name))
+    lasio = need("lasio", "las", message("io.reading-log", "Reading the log {file}", file=source.name))
     text, _ = decode(journal.read(source), source.name, source.encoding)
     failures = (
         lasio.exceptions.LASHeaderError,
@@ -104,16 +104,14 @@ def _open(source: Source, journal: Journal) -> tuple[Any, int]:
             size = len(np.asarray(log.index, dtype=np.float64))
     except failures as error:
         raise InputError(
-            message(
-                "import.log-cannot-read", "The log cannot be read: {error}", error=str(error) or type(error).__name__
-            ),
-            message("import.export-las", "Export it as LAS 2.0."),
+            message("io.log-unreadable", "The log cannot be read: {error}", error=str(error) or type(error).__name__),
+            message("io.export-las", "Export it as LAS 2.0."),
             file=source.name,
         ) from None
     if not size:
         raise InputError(
-            message("import.log-no-sample", "The log has no sample"),
-            message("import.export-ascii-section", "Export it with its ~ASCII section."),
+            message("io.log-without-sample", "The log has no sample"),
+            message("io.export-ascii-section", "Export it with its ~ASCII section."),
             file=source.name,
         )
     lines = text.splitlines()

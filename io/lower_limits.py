@@ -31,10 +31,10 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
         "note",
         rows.file,
         message(
-            "import.lower-limits-upper-limits",
+            "io.upper-limits-taken-from-above",
             "There are lower limits only; upper limits were taken from the row above, 0 at the first row of a hole",
         ),
-        message("import.state-columns-upper-limits", "State columns = { from = ... } where there are upper limits."),
+        message("io.state-upper-limits", "State columns = { from = ... } where there are upper limits."),
         column=rows.table.header[rows.columns["to"]],
     )
     holes, stray = _rows_of_holes(hole, collars)
@@ -47,7 +47,7 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
     else:
         for i, k in back:
             reason = message(
-                "import.lower-limit-row-lies",
+                "io.lower-limit-contradicts",
                 "The lower limit of row {last} lies above that of row {first}; one of the two is wrong",
                 first=rows.line[i],
                 last=rows.line[k],
@@ -55,7 +55,7 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
             for wrong in (i, k):
                 known[wrong] = False
                 if rows.ok[wrong]:
-                    rows.reject(wrong, "to", reason, message("import.correct-depth", "Correct the depth."))
+                    rows.reject(wrong, "to", reason, message("io.correct-depth", "Correct the depth."))
     top = np.full(len(base), np.nan)
     for members in holes.values():
         top[members[0]] = 0.0
@@ -64,11 +64,11 @@ def tops_from_above(rows: Rows, hole: Sequence[str], base: Floats, collars: Cont
                 top[i] = base[above]
             elif rows.ok[i]:
                 reason = message(
-                    "import.upper-limit-not-known",
+                    "io.upper-limit-unknown",
                     "The upper limit is not known: row {row}, the one above, gives none",
                     row=rows.line[above],
                 )
-                rows.reject(i, "from", reason, message("import.correct-row", "Correct that row."))
+                rows.reject(i, "from", reason, message("io.correct-row", "Correct that row."))
     return top
 
 
@@ -98,15 +98,13 @@ def _sort(
         "warning",
         rows.file,
         message(
-            "import.rows-not-order-depth",
+            "io.rows-out-of-order",
             "The rows are not in order of depth ({back} of {steps} steps within a hole go up); those of each hole were "
             "sorted by depth",
             back=back,
             steps=steps,
         ),
-        message(
-            "import.state-measure-elevation-limits", 'State measure = "elevation" where the limits are elevations.'
-        ),
+        message("io.state-measure-elevation", 'State measure = "elevation" where the limits are elevations.'),
         column=rows.table.header[rows.columns["to"]],
     )
     for members in holes.values():

@@ -13,7 +13,7 @@ from geofit.data.files import replacing
 from geofit.data.messages import Untranslated, message
 from geofit.data.numbers import shown
 from geofit.io.columns import SCHEMAS
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.source import Source
 from geofit.io.toml_file import parse_toml
 from geofit.io.toml_text import toml_key, toml_value
@@ -61,9 +61,9 @@ class ColumnMapping:
         object.__setattr__(self, "horizons", tuple(self.horizons))
         if self.kind not in KINDS:
             raise InputError(
-                message("import.mapping-no-kind", "A mapping has no kind '{kind}'", kind=Untranslated(self.kind)),
-                nearest(
-                    self.kind, KINDS, message("import.known-kinds", "The kinds are {names}.", names=", ".join(KINDS))
+                message("io.mapping-kind-unknown", "A mapping has no kind '{kind}'", kind=Untranslated(self.kind)),
+                nearest_name(
+                    self.kind, KINDS, message("io.known-kinds", "The kinds are {names}.", names=", ".join(KINDS))
                 ),
                 file=self.file,
             )
@@ -166,29 +166,29 @@ def load_mappings(path: str | Path) -> tuple[ColumnMapping, ...]:
     Keys: ``docs/site_file.md``.
     """
     source = Source(path=Path(path))
-    top = parse_toml(source.read(), source.name, message("import.see-docs-formats-md", "See docs/formats_in.md."))
+    top = parse_toml(source.read(), source.name, message("io.see-formats-page", "See docs/formats_in.md."))
     version, tables = top.pop("version", VERSION), top.pop("table", [])
     if not isinstance(version, int) or version > VERSION:
         raise InputError(
             message(
-                "import.mapping-version-geofit-reads",
+                "io.mapping-too-new",
                 "The mapping is of version {version}; this geofit reads up to {known}",
                 version=version,
                 known=VERSION,
             ),
-            message("import.use-newer-geofit", "Use a newer geofit."),
+            message("io.use-newer-geofit", "Use a newer geofit."),
             file=source.name,
         )
     if top or not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise InputError(
             message(
-                "import.mapping-holds-version-table",
+                "io.mapping-key-unknown",
                 "A mapping contains only version and [[table]], not '{key}'",
                 key=Untranslated(next(iter(top))),
             )
             if top
-            else message("import.mapping-holds-version-table-2", "A mapping contains only version and [[table]]"),
-            message("import.see-docs-formats-md", "See docs/formats_in.md."),
+            else message("io.mapping-not-tables", "A mapping contains only version and [[table]]"),
+            message("io.see-formats-page", "See docs/formats_in.md."),
             file=source.name,
         )
     return tuple(_mapping(table, source.name) for table in tables)
@@ -200,15 +200,15 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
         if key not in known:
             raise InputError(
                 message(
-                    "import.table-mapping-no-key", "[[table]] of a mapping has no key '{key}'", key=Untranslated(key)
+                    "io.mapping-table-key-unknown", "[[table]] of a mapping has no key '{key}'", key=Untranslated(key)
                 ),
-                nearest(key, known, message("import.known-keys", "The keys are {names}.", names=", ".join(known))),
+                nearest_name(key, known, message("io.known-keys", "The keys are {names}.", names=", ".join(known))),
                 file=file,
                 column=key,
             )
         kind = {
-            "columns": message("import.table-headers-numbers", "a table of headers or numbers"),
-            "horizons": message("import.list-headers-numbers", "a list of headers or numbers"),
+            "columns": message("io.table-headers-numbers", "a table of headers or numbers"),
+            "horizons": message("io.list-headers-numbers", "a list of headers or numbers"),
         }
         match key:
             case "columns":
@@ -220,13 +220,13 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
         if not sound:
             raise InputError(
                 message(
-                    "import.key-where-kind",
+                    "io.mapping-value-wrong-kind",
                     "{key} in {where} must be {kind}",
                     key=Untranslated(key),
-                    where=message("import.a-mapping", "a mapping"),
-                    kind=kind.get(key, message("import.a-text", "a text")),
+                    where=message("io.a-mapping", "a mapping"),
+                    kind=kind.get(key, message("io.a-text", "a text")),
                 ),
-                message("import.correct-value", "Correct its value."),
+                message("io.correct-value", "Correct its value."),
                 file=file,
                 column=key,
                 value=shown(value),
@@ -234,8 +234,10 @@ def _mapping(table: dict[str, Any], file: str) -> ColumnMapping:
     for key in ("file", "kind"):
         if key not in table:
             raise InputError(
-                message("import.table-mapping-no", "A [[table]] of the mapping has no '{key}'", key=Untranslated(key)),
-                message("import.write-key", 'Write {key} = "...".', key=Untranslated(key)),
+                message(
+                    "io.mapping-table-key-missing", "A [[table]] of the mapping has no '{key}'", key=Untranslated(key)
+                ),
+                message("io.write-key", 'Write {key} = "...".', key=Untranslated(key)),
                 file=file,
             )
     return ColumnMapping(**table)

@@ -178,8 +178,8 @@ def _origin(path: Path) -> Floats:
 
 def _damaged(source: Source, kind: str, row: int | None = None) -> InputError:
     return InputError(
-        message("import.mesh-damaged", "The file cannot be read as {kind}", kind=kind),
-        message("import.export-mesh-again", "Export the triangles again."),
+        message("io.mesh-damaged", "The file cannot be read as {kind}", kind=kind),
+        message("io.export-mesh-again", "Export the triangles again."),
         file=source.name,
         row=row,
     )

@@ -14,7 +14,7 @@ from geofit.io.columns import ORIENTATIONS
 from geofit.io.journal import Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
-from geofit.io.tables import shown
+from geofit.io.tables import first_names
 
 __all__ = ["load_orientations"]
 
@@ -40,8 +40,8 @@ def load_orientations(source: Source, journal: Journal, region: Region | None = 
     rows.close()
     if not rows.ok.any():
         raise InputError(
-            message("import.no-row-orientations-used", "No row of the orientations can be used"),
-            message("import.see-listed-rows", "See the listed rows."),
+            message("io.no-usable-orientation", "No row of the orientations can be used"),
+            message("io.see-listed-rows", "See the listed rows."),
             file=source.name,
         )
     used = np.flatnonzero(rows.ok)
@@ -61,11 +61,11 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
     if "dip" not in rows.columns or not {"azimuth", "strike"} & set(rows.columns):
         raise InputError(
             message(
-                "import.no-columns-attitude-found",
+                "io.attitude-columns-missing",
                 "No columns for an attitude were found in this orientations table; its columns are {names}",
-                names=shown(rows.table.header),
+                names=first_names(rows.table.header),
             ),
-            message("import.name-dip-azimuth-strike", "Name dip with azimuth or strike, or the normal nx, ny, nz."),
+            message("io.name-attitude-columns", "Name dip with azimuth or strike, or the normal nx, ny, nz."),
             file=rows.file,
         )
     dip = rows.numbers("dip")
@@ -77,25 +77,25 @@ def _attitudes(rows: Rows) -> tuple[Floats, Floats]:
             "warning",
             rows.file,
             message(
-                "import.strike-read-right-hand",
+                "io.strike-by-right-hand",
                 "The strike is read by the right-hand rule: the plane dips to the right of it",
             ),
-            message("import.give-azimuth-dip-wrong", "Give the azimuth of the dip where that is wrong."),
+            message("io.give-azimuth-instead", "Give the azimuth of the dip where that is wrong."),
             column=rows.table.header[rows.columns["strike"]],
         )
     for i in np.flatnonzero(~((dip >= 0) & (dip <= 90)) & rows.ok).tolist():
         rows.reject(
             i,
             "dip",
-            message("import.dip-not-90-degrees", "The dip is not between 0 and 90 degrees"),
-            message("import.give-angle-below-horizontal", "Give the angle below the horizontal."),
+            message("io.dip-out-of-range", "The dip is not between 0 and 90 degrees"),
+            message("io.give-dip-angle", "Give the angle below the horizontal."),
         )
     for i in np.flatnonzero((np.abs(azimuth) > 450.0) & rows.ok).tolist():
         rows.reject(
             i,
             "azimuth",
-            message("import.azimuth-not-360-degrees", "The azimuth is not between 0 and 360 degrees"),
-            message("import.give-degrees-north", "Give degrees from north."),
+            message("io.azimuth-out-of-range", "The azimuth is not between 0 and 360 degrees"),
+            message("io.give-azimuth", "Give degrees from north."),
         )
     return azimuth % 360.0, dip
 
@@ -107,7 +107,7 @@ def _from_normals(rows: Rows) -> tuple[Floats, Floats]:
         rows.reject(
             i,
             "nx",
-            message("import.normal-no-length", "The normal has zero length"),
-            message("import.give-three-components-plane", "Give the three components of the plane's normal."),
+            message("io.normal-zero", "The normal has zero length"),
+            message("io.give-normal-components", "Give the three components of the plane's normal."),
         )
     return attitudes(n)

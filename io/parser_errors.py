@@ -13,9 +13,7 @@ __all__ = ["parser_message"]
 def parser_message(error: Exception) -> tuple[Message | str, int | None]:
     """Return what a parser says is wrong, and the line of the file where it reports it."""
     if isinstance(error, UnicodeDecodeError):
-        return message(
-            "import.byte-belongs-no-character", "byte {place} belongs to no character", place=error.start + 1
-        ), None
+        return message("io.byte-not-a-character", "byte {place} belongs to no character", place=error.start + 1), None
     if isinstance(error, json.JSONDecodeError):
         return error.msg, error.lineno
     what, place = re.fullmatch(r"(.*?)(?: \(at (.*)\))?", str(error), re.DOTALL).groups()  # type: ignore[union-attr]

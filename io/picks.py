@@ -129,7 +129,7 @@ def load_picks(
         journal.add(
             "note",
             source.name,
-            message("import.depth-below-turned-elevation", "z is a depth below 0; it is turned into an elevation"),
+            message("io.depth-turned-to-elevation", "z is a depth below 0; it is turned into an elevation"),
         )
     tell(progress, "check rows", 0.6)
     accuracy = rows.numbers("accuracy", required=False) if "accuracy" in rows.columns else np.nan
@@ -137,8 +137,8 @@ def load_picks(
         rows.reject(
             i,
             "accuracy",
-            message("import.accuracy-not-above", "The accuracy is not above 0"),
-            message("import.give-standard-deviation-metres", "Give one standard deviation in metres."),
+            message("io.accuracy-not-positive", "The accuracy is not above 0"),
+            message("io.give-standard-deviation", "Give one standard deviation in metres."),
         )
     names = horizons.labels(rows) if "horizon" in rows.columns else Labels.same(alone or "", len(rows))
     check_axes(rows, xyz[:, 0], xyz[:, 1], region)

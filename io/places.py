@@ -27,8 +27,8 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
         journal.add(
             "warning",
             points.labels["file"].word(0),
-            message("import.horizon-point", "Horizon {horizon} has one point only", horizon=horizon),
-            message("import.three-needed-surface", "Three or more are needed for a surface."),
+            message("io.horizon-of-one-point", "Horizon {horizon} has one point only", horizon=horizon),
+            message("io.give-three-points", "Three or more are needed for a surface."),
             row=int(points.row[0]),
             value=horizon,
         )
@@ -39,13 +39,13 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
             "warning",
             points.labels["file"].word(int(order[repeated[MOST]])),
             message(
-                "import.horizon-points-place",
+                "io.horizon-points-repeated",
                 "Horizon {horizon}: {count} points lie at the place of another; the first {most} are listed",
                 horizon=horizon,
                 count=len(repeated),
                 most=MOST,
             ),
-            message("import.remove-what-repeated", "Remove what is repeated."),
+            message("io.remove-repeated", "Remove what is repeated."),
         )
     for k in repeated[:MOST].tolist():
         i, j = int(order[k]), int(order[k + 1])
@@ -56,7 +56,7 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
                 "note",
                 points.labels["file"].word(j),
                 message(
-                    "import.horizon-point-repeats",
+                    "io.horizon-point-repeated",
                     "Horizon {horizon}: the point repeats {before}",
                     horizon=horizon,
                     before=before,
@@ -68,14 +68,14 @@ def list_places(horizon: str, points: PointSet, journal: Journal, nearness: floa
                 "warning",
                 points.labels["file"].word(j),
                 message(
-                    "import.horizon-two-elevations-place",
+                    "io.horizon-elevations-differ",
                     "Horizon {horizon}: two elevations at one location, {rise:+.3f} m against {before}",
                     horizon=horizon,
                     rise=rise,
                     before=before,
                 ),
                 message(
-                    "import.correct-state-accuracies-fit",
+                    "io.correct-or-state-accuracy",
                     "Correct one of them, or state accuracies: the fit keeps the more accurate one.",
                 ),
                 row=int(points.row[j]),

@@ -37,14 +37,14 @@ def named_lines(rows: Rows, role: str, places: Floats, what: str) -> dict[str, F
             rows.reject(
                 int(corners[k + 1]),
                 "x",
-                message("import.corner-repeats", "The corner repeats the one before"),
-                message("import.remove-two", "Remove one of the two."),
+                message("io.corner-repeated", "The corner repeats the one before"),
+                message("io.remove-one-of-two", "Remove one of the two."),
             )
         corners = corners[rows.ok[corners]]
         if len(corners) < 2:
-            reason = message("import.one-corner-only", "{what} {name} has one corner only", what=what, name=name)
+            reason = message("io.one-corner-only", "{what} {name} has one corner only", what=what, name=name)
             rows.reject(
-                int(corners[0]), role, reason, message("import.two-corners-needed", "Two or more corners are needed.")
+                int(corners[0]), role, reason, message("io.two-corners-needed", "Two or more corners are needed.")
             )
         else:
             lines[name] = places[corners]

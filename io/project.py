@@ -225,11 +225,11 @@ def save_project(
     except OSError as error:
         raise InputError(
             message(
-                "project.project-cannot-written",
+                "io.project-not-written",
                 "The project cannot be written: {error}",
                 error=error.strerror or str(error),
             ),
-            message("project.folder-name", "Make the folder, or name another."),
+            message("data.make-or-name-folder", "Make the folder, or name another."),
             file=str(target),
         ) from None
     for old_file in former - {result.surface for result in saved.results} - {body.mesh for body in bodies}:
@@ -268,35 +268,35 @@ def open_project(path: str | PathLike[str]) -> Project:
     except (ValueError, RecursionError) as error:
         what, line = parser_message(error)
         raise InputError(
-            message("project.no-project-file", "This is not a valid project file: {error}", error=what),
-            message("project.open-geofit-file-mend", "Open a *.geofit file, or correct its JSON."),
+            message("io.project-invalid", "This is not a valid project file: {error}", error=what),
+            message("io.open-or-correct-project", "Open a *.geofit file, or correct its JSON."),
             file=str(source),
             row=line,
         ) from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise InputError(
-            message("project.file-not-say", "The file does not say '{format}'", format=FORMAT),
-            message("project.open-geofit-file", "Open a *.geofit file."),
+            message("io.format-not-stated", "The file does not say '{format}'", format=FORMAT),
+            message("io.open-project-file", "Open a *.geofit file."),
             file=str(source),
         )
     version = data.get("version")
     if not isinstance(version, int) or isinstance(version, bool) or version < 0:
         raise InputError(
-            message("project.project-no-version", "The project has no version"),
-            message("project.should-stand-number", "Give it as a number up to {known}.", known=VERSION),
+            message("io.version-missing", "The project has no version"),
+            message("io.give-version-number", "Give it as a number up to {known}.", known=VERSION),
             file=str(source),
         )
     if version > VERSION:
         raise InputError(
             message(
-                "project.project-saved-newer-geofit",
+                "io.version-too-new",
                 "The project was saved by a newer geofit: its version is {version}, this geofit ({program}) "
                 "reads up to {known}",
                 version=version,
                 program=__version__,
                 known=VERSION,
             ),
-            message("project.newer-geofit-needed", "Open it with the geofit that saved it, or with a newer one."),
+            message("io.use-newer-geofit-for-project", "Open it with the geofit that saved it, or with a newer one."),
             file=str(source),
         )
     try:
@@ -306,12 +306,12 @@ def open_project(path: str | PathLike[str]) -> Project:
     except (KeyError, TypeError, ValueError, OverflowError, AttributeError, SettingsError) as error:
         raise InputError(
             message(
-                "project.project-not-hold-version",
+                "io.project-incomplete",
                 "The project does not contain what version {version} requires: {error}",
                 version=version,
                 error=repr(error),
             ),
-            message("project.undo-last-change-hand", "Undo the last manual edit, or open a copy."),
+            message("data.undo-last-edit", "Undo the last manual edit, or open a copy."),
             file=str(source),
         ) from None
 

@@ -61,8 +61,8 @@ def _stored(name: str, target: Path, ending: str, write: Callable[[Path], object
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            message("run.folder-cannot", "The folder cannot be made: {error}", error=error.strerror or str(error)),
-            message("project.save-elsewhere", "Save elsewhere."),
+            message("data.folder-not-made", "The folder cannot be made: {error}", error=error.strerror or str(error)),
+            message("io.save-elsewhere", "Save elsewhere."),
             file=str(folder),
         ) from None
     # Its own name: another window may save the same project.

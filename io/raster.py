@@ -28,7 +28,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
     MissingDependencyError
         If rasterio is not installed.
     """
-    rasterio = need("rasterio", "gis", message("import.reading-raster", "Reading the raster {file}", file=source.name))
+    rasterio = need("rasterio", "gis", message("io.reading-raster", "Reading the raster {file}", file=source.name))
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # a raster without georeference is refused below
@@ -37,31 +37,31 @@ def read_raster(source: Source, journal: Journal) -> Ground:
                 place, crs, bands = raster.transform, raster.crs, raster.count
     except (rasterio.errors.RasterioError, OSError, ValueError, MemoryError) as error:
         raise InputError(
-            message("import.raster-cannot-read", "The raster cannot be read: {error}", error=error),
-            message("import.open-gis-save-geotiff", "Open it in a GIS and save it as GeoTIFF."),
+            message("io.raster-unreadable", "The raster cannot be read: {error}", error=error),
+            message("io.save-as-geotiff", "Open it in a GIS and save it as GeoTIFF."),
             file=source.name,
         ) from None
     if place.is_identity or place.b or place.d or place.a <= 0 or place.e >= 0:
         raise InputError(
-            message("import.raster-no-place-map", "The raster has no location on the map, or is rotated")
+            message("io.raster-rotated-or-unplaced", "The raster has no location on the map, or is rotated")
             if not place.is_identity
-            else message("import.raster-no-georeference", "The raster has no georeference"),
-            message("import.save-gis-geotiff-north", "Save it from a GIS as a GeoTIFF with north up."),
+            else message("io.raster-without-georeference", "The raster has no georeference"),
+            message("io.save-north-up", "Save it from a GIS as a GeoTIFF with north up."),
             file=source.name,
         )
     _check_crs(source, crs, journal)
     if min(band.shape) < 2:
         raise InputError(
-            message("import.raster-less-cells", "The raster has less than 2 x 2 cells"),
-            message("import.export-again", "Export it again."),
+            message("io.raster-too-small", "The raster has less than 2 x 2 cells"),
+            message("io.export-again", "Export it again."),
             file=source.name,
         )
     z = np.ma.filled(np.ma.asarray(band, dtype=np.float64), np.nan)[::-1].copy()
     z[~np.isfinite(z)] = np.nan
     if np.isnan(z).all():
         raise InputError(
-            message("import.no-cell-raster-elevation", "No cell of the raster has an elevation"),
-            message("import.check-no-data-value", "Check its no-data value."),
+            message("io.raster-without-elevation", "No cell of the raster has an elevation"),
+            message("io.check-no-data-value", "Check its no-data value."),
             file=source.name,
         )
     if np.isnan(z).any():
@@ -69,7 +69,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
             "note",
             source.name,
             message(
-                "import.cells-no-data",
+                "io.cells-without-data",
                 "{count} of {total} cells have no data",
                 count=int(np.isnan(z).sum()),
                 total=z.size,
@@ -80,7 +80,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
             "warning",
             source.name,
             message(
-                "import.raster-bands-first-elevation",
+                "io.raster-of-several-bands",
                 "The raster has {count} bands; the first is the elevation",
                 count=bands,
             ),
@@ -99,20 +99,20 @@ def _check_crs(source: Source, crs: object, journal: Journal) -> None:
     journal.add(
         "note",
         source.name,
-        message("import.coordinate-system-raster", "The coordinate system of the raster is {crs}", crs=str(crs)[:120]),
+        message("io.crs-of-raster", "The coordinate system of the raster is {crs}", crs=str(crs)[:120]),
     )
     if getattr(crs, "is_geographic", False):
         raise InputError(
             message(
-                "import.raster-longitude-latitude-metres",
+                "io.raster-in-degrees",
                 "The raster is in longitude and latitude ({crs}); metres are needed",
                 crs=str(crs)[:60],
             ),
-            message("import.warp-site-grid-gdalwarp", "Warp it to the site's grid (gdalwarp -t_srs EPSG:...)."),
+            message("io.warp-to-site-grid", "Warp it to the site's grid (gdalwarp -t_srs EPSG:...)."),
             file=source.name,
         )
     if source.target and is_code(source.target):
-        pyproj = need("pyproj", "gis", message("import.reading-raster", "Reading the raster {file}", file=source.name))
+        pyproj = need("pyproj", "gis", message("io.reading-raster", "Reading the raster {file}", file=source.name))
         try:
             same = pyproj.CRS.from_user_input(source.target).to_2d() == pyproj.CRS.from_user_input(str(crs)).to_2d()
         except pyproj.exceptions.CRSError:
@@ -120,11 +120,11 @@ def _check_crs(source: Source, crs: object, journal: Journal) -> None:
         if not same:
             raise InputError(
                 message(
-                    "import.raster-site",
+                    "io.raster-in-other-crs",
                     "The raster is in {crs}, the site in {target}",
                     crs=str(crs)[:60],
                     target=source.target,
                 ),
-                message("import.warp-gdalwarp-srs", "Warp it (gdalwarp -t_srs {target}).", target=source.target),
+                message("io.warp-to-target", "Warp it (gdalwarp -t_srs {target}).", target=source.target),
                 file=source.name,
             )

@@ -16,7 +16,7 @@ from geofit.data.labels import Labels
 from geofit.data.messages import EMPTY, Message, Untranslated, message
 from geofit.io.big_columns import BigColumn
 from geofit.io.columns import GEOGRAPHIC, Schema, plain_name
-from geofit.io.crs import WGS84, is_code, project, refuse_degrees
+from geofit.io.crs import WGS84, is_code, project_places, refuse_degrees
 from geofit.io.formats import read_any_table
 from geofit.io.guess import WORDS, find_columns
 from geofit.io.journal import Journal, Severity
@@ -67,9 +67,9 @@ class Rows:
         written = cells.labels() if isinstance(cells, BigColumn) else Labels.of(cells)
         found = written.renamed([_cleaned(cell) for cell in written.table])
         if required and "" in found.table:
-            empty = message("row.empty-cell", "The {role} is empty", role=role)
+            empty = message("io.cell-empty", "The {role} is empty", role=role)
             for i in np.flatnonzero(found.codes == found.table.index("")).tolist():
-                self.reject(i, role, empty, message("row.complete-cell", "Complete the cell."))
+                self.reject(i, role, empty, message("io.complete-the-cell", "Complete the cell."))
         return found
 
     def numbers(self, role: str, *, required: bool = True, no_data: bool = False) -> Floats:
@@ -83,11 +83,11 @@ class Rows:
         values, bad = parse_numbers(cells, self.table.decimal)
         # One sentence for all rows: a column of words may have a million of them.
         empty, wrong = (
-            message("row.empty-cell", "The {role} is empty", role=role),
-            message("row.not-a-number", "The {role} is not a finite number", role=role),
+            message("io.cell-empty", "The {role} is empty", role=role),
+            message("io.cell-not-a-number", "The {role} is not a finite number", role=role),
         )
         remedy = message(
-            "import.give-number-decimal-mark",
+            "io.give-plain-number",
             "Give a number with the decimal mark '{mark}' and no unit.",
             mark=self.table.decimal,
         )
@@ -95,12 +95,12 @@ class Rows:
             if cells[i].strip():
                 self.reject(i, role, wrong, remedy)
             elif required:
-                self.reject(i, role, empty, message("row.complete-cell", "Complete the cell."))
+                self.reject(i, role, empty, message("io.complete-the-cell", "Complete the cell."))
         if no_data:
-            unknown = message("row.no-data-mark", "The {role} is a mark for 'no data'", role=role)
+            unknown = message("io.cell-marks-no-data", "The {role} is a mark for 'no data'", role=role)
             for i in np.flatnonzero(np.isin(values, NO_DATA)).tolist():
                 self.reject(
-                    i, role, unknown, message("import.complete-cell-remove-row", "Complete the cell or remove the row.")
+                    i, role, unknown, message("io.complete-cell-or-remove-row", "Complete the cell or remove the row.")
                 )
         return values * self.factors[role] if role in self.factors else values
 
@@ -118,16 +118,16 @@ class Rows:
             refuse_degrees(crs, self.file)
         if not (is_code(crs) and is_code(target)) or crs is None or target is None:
             return x, y
-        east, north = project(x, y, crs, target, self.file)
+        east, north = project_places(x, y, crs, target, self.file)
         lost = np.isnan(east) & np.isfinite(x) & np.isfinite(y)
         for i in np.flatnonzero(lost & self.ok).tolist():
             reason = message(
-                "import.place-cannot-projected",
+                "io.place-not-projectable",
                 "The place cannot be projected from {crs} to {target}",
                 crs=crs,
                 target=target,
             )
-            self.reject(i, "x", reason, message("import.correct-coordinates", "Correct the coordinates."))
+            self.reject(i, "x", reason, message("io.correct-coordinates", "Correct the coordinates."))
         return east, north
 
     def reject(
@@ -156,20 +156,20 @@ class Rows:
             if name in self.journal.refused:
                 place = self.journal.refused[name]
                 hints[name] = message(
-                    "import.row-not-used-mend", "Its own row was not used ({place}): correct that first.", place=place
+                    "io.referred-row-not-used", "Its own row was not used ({place}): correct that first.", place=place
                 )
             if name not in hints:
                 near = get_close_matches(name, present, 1) if len(hints) < 20 else []
                 hints[name] = (
-                    message("import.did-you-mean", "Did you mean '{name}'?", name=Untranslated(near[0]))
+                    message("io.did-you-mean", "Did you mean '{name}'?", name=Untranslated(near[0]))
                     if near
-                    else message("row.add-name", "Add it to the {where}.", where=where)
+                    else message("io.add-name-to-list", "Add it to the {where}.", where=where)
                 )
             self.reject(
                 i,
                 role,
                 message(
-                    "row.unknown-name",
+                    "io.name-unknown",
                     "The {role} '{name}' is not in the {where}",
                     role=role,
                     name=Untranslated(name),
@@ -202,13 +202,13 @@ class Rows:
         )
         raise InputError(
             message(
-                "import.none-rows-used-row",
+                "io.no-usable-row-because",
                 "None of the rows can be used; row {row}: {reason}",
                 row=first.row,
                 reason=first.reason,
             )
             if first
-            else message("import.none-rows-used", "None of the rows can be used"),
+            else message("io.no-usable-row", "None of the rows can be used"),
             first.remedy if first else EMPTY,
             file=self.file,
             column=first.column if first else None,

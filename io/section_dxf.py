@@ -14,11 +14,11 @@ from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 
-__all__ = ["Drawn", "read_drawing"]
+__all__ = ["DrawnLines", "read_drawing"]
 
 
 @dataclass(frozen=True, eq=False)
-class Drawn:
+class DrawnLines:
     """Vertices of the horizon lines in drawing order.
 
     ``xyz`` (n, 3) in drawing units, z nan where the drawing is flat; ``horizon`` the name of each, ``number``
@@ -39,7 +39,7 @@ class Drawn:
 
 def read_drawing(
     source: Source, horizons: HorizonNames, journal: Journal, *, scale_stated: bool, closed: bool = False
-) -> Drawn:
+) -> DrawnLines:
     """Read LWPOLYLINE, POLYLINE, LINE and POINT of the model space; everything else is listed.
 
     ``closed`` allows closed polylines (outcrops on a map). ``source.table`` chooses layers by a pattern.
@@ -52,8 +52,8 @@ def read_drawing(
     entities = open_drawing(source, journal, scale_stated=scale_stated)
     if not entities:
         raise InputError(
-            message("import.drawing-empty", "The drawing is empty"),
-            message("import.draw-horizons-model-space", "Draw the horizons in model space."),
+            message("io.drawing-empty", "The drawing is empty"),
+            message("io.draw-in-model-space", "Draw the horizons in model space."),
             file=source.name,
         )
     entities, listed = on_layers(entities, source, journal)
@@ -64,23 +64,19 @@ def read_drawing(
         layer = entity.layer
         horizon, trouble = horizons.match(layer.strip()), problem(entity, closed=closed)
         if horizon is None or trouble:
-            stranger = message(
-                "import.layer-no-horizon-site", "Layer '{layer}' is not a horizon of the site", layer=layer
-            )
+            stranger = message("io.layer-not-a-horizon", "Layer '{layer}' is not a horizon of the site", layer=layer)
             reason = trouble if horizon is not None else stranger
             journal.add(
                 "error" if horizon is not None else "note",
                 source.name,
                 message(
-                    "import.not-used-points",
+                    "io.entity-not-used",
                     "{reason}; {entity} is not used (points: {count})",
                     reason=reason,
                     entity=entity.type,
                     count=entity.size,
                 ),
-                message(
-                    "import.draw-horizon-polyline-layer", "Draw the horizon as a polyline on the layer with its name."
-                ),
+                message("io.draw-polyline-on-layer", "Draw the horizon as a polyline on the layer with its name."),
                 row=entity.first,
                 column=layer,
                 value=entity.type,
@@ -91,8 +87,8 @@ def read_drawing(
             journal.add(
                 "warning",
                 source.name,
-                message("import.polyline-arcs-corners-used", "The polyline has arcs; only its corners are used"),
-                message("import.add-corners-along-arcs", "Add corners along the arcs."),
+                message("io.polyline-with-arcs", "The polyline has arcs; only its corners are used"),
+                message("io.add-corners-on-arcs", "Add corners along the arcs."),
                 row=entity.first,
                 column=layer,
             )
@@ -101,7 +97,7 @@ def read_drawing(
                 journal.add(
                     "note",
                     source.name,
-                    message("import.point-repeats", "The point repeats the one before"),
+                    message("io.point-repeated", "The point repeats the one before"),
                     row=number,
                     column=layer,
                 )
@@ -110,4 +106,4 @@ def read_drawing(
             xyz.append(vertex)
             names.append(horizon)
             numbers.append(number)
-    return Drawn(np.array(xyz, dtype=np.float64).reshape(-1, 3), names, np.array(numbers, dtype=np.int64), listed)
+    return DrawnLines(np.array(xyz, dtype=np.float64).reshape(-1, 3), names, np.array(numbers, dtype=np.int64), listed)

@@ -96,7 +96,7 @@ def load_sections(
                 rows.reject(
                     i,
                     "section",
-                    message("import.section-no-line-plan-2", "Section {section} has no line in plan", section=each),
+                    message("io.named-section-without-line", "Section {section} has no line in plan", section=each),
                     _NO_LINE,
                 )
             continue
@@ -108,15 +108,15 @@ def load_sections(
     rows.close()
     if not rows.ok.any():
         raise InputError(
-            message("import.none-rows-sections-used", "None of the rows of the sections can be used"),
-            message("import.see-listed-rows", "See the listed rows."),
+            message("io.no-usable-section-row", "None of the rows of the sections can be used"),
+            message("io.see-listed-rows", "See the listed rows."),
             file=source.name,
         )
     return sections, horizons.split(rows, horizon, xyz, kind="section", section=name)
 
 
 _NO_LINE = message(
-    "import.add-corners-section-lines",
+    "io.add-section-corners",
     "Add its corners to [[section_lines]] (section, x, y), or columns x0, y0, x1, y1 with the ends of its line.",
 )
 
@@ -129,8 +129,8 @@ def _ends(rows: Rows, region: Region | None) -> Floats:
     known = np.isfinite(ends).all(axis=1)
     if region is not None and known.any() and place_in(ends[known][:, :2], region) == "exchanged":
         raise InputError(
-            message("import.section-lines-look-exchanged", "x and y of the section lines appear to be exchanged"),
-            message("import.easting-northing", "x is the easting, y the northing."),
+            message("io.section-axes-exchanged", "x and y of the section lines appear to be exchanged"),
+            message("io.x-is-easting", "x is the easting, y the northing."),
             file=rows.file,
         )
     return ends
@@ -143,7 +143,7 @@ def _own_line(rows: Rows, own: NDArray[np.intp], ends: Floats) -> Floats | None:
         return None
     for i in stated[(ends[stated] != ends[stated[0]]).any(axis=1)].tolist():
         reason = message(
-            "import.row-states-section-line",
+            "io.section-line-contradicts",
             "The row states another section line than row {row}",
             row=rows.line[stated[0]],
         )
@@ -151,7 +151,7 @@ def _own_line(rows: Rows, own: NDArray[np.intp], ends: Floats) -> Floats | None:
             i,
             "x0",
             reason,
-            message("import.section-line-give-bent", "A section has one line; give bent ones in [[section_lines]]."),
+            message("io.section-line-bent", "A section has one line; give bent ones in [[section_lines]]."),
         )
     return np.asarray(ends[stated[0]].reshape(2, 2))
 
@@ -241,13 +241,11 @@ def _off_line_text(section: Section, distance: float) -> tuple[Message, Message]
     length = chainage(section.line)[-1]
     return (
         message(
-            "import.distance-not-line-section",
+            "io.distance-off-section",
             "The distance {distance:.2f} m is not on the line of section {section} ({length:.2f} m long)",
             distance=distance,
             section=section.name,
             length=length,
         ),
-        message(
-            "import.correct-distance-line-drawing", "Correct the distance, the line, or the drawing's scale and origin."
-        ),
+        message("io.correct-distance-or-line", "Correct the distance, the line, or the drawing's scale and origin."),
     )

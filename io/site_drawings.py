@@ -37,29 +37,29 @@ def read_sections(
         lines |= load_lines(reader.source(table, "[section_lines]", kind="section lines"), journal, region)
     sections: list[Section] = []
     for table in reader.tables(top, "section"):
-        name = reader.need(table, "name", str, "[[section]]", message("import.write-name", 'Write name = "...".'))
-        where = message("place.section", "section '{name}'", name=name)
+        name = reader.need(table, "name", str, "[[section]]", message("io.write-name", 'Write name = "...".'))
+        where = message("io.section", "section '{name}'", name=name)
         if any(section.name == name for section in sections):
             raise reader.fail(
-                message("import.two-sections-name", "Two sections have the name '{name}'", name=name),
-                message("import.give-each-own-name", "Give each its own."),
+                message("io.section-name-repeated", "Two sections have the name '{name}'", name=name),
+                message("io.give-each-own-name", "Give each its own."),
                 "name",
             )
         source = reader.source(table, where, ("name", "line", "scale", "origin"), "section")
-        remedy = message("import.write-line", "Write line = [[x, y], [x, y]], the corners of the section line in plan.")
+        remedy = message("io.write-line", "Write line = [[x, y], [x, y]], the corners of the section line in plan.")
         if "line" not in table and name in lines:
             line = lines[name]
         else:
             line = _pairs(
                 reader,
                 reader.need(table, "line", list, where, remedy),
-                message("place.line", "line of {where}", where=where),
+                message("io.line", "line of {where}", where=where),
                 remedy,
             )
         if len(line) < 2 or not (np.diff(line, axis=0) != 0).any(axis=1).all():
             raise reader.fail(
                 message(
-                    "import.line-needs-two-different",
+                    "io.line-too-short",
                     "The line of {where} needs two or more different corners",
                     where=where,
                 ),
@@ -76,8 +76,8 @@ def read_sections(
         for one in found:
             if any(section.name == one.name for section in sections):
                 raise InputError(
-                    message("import.two-sections-name", "Two sections have the name '{name}'", name=one.name),
-                    message("import.give-each-own-name", "Give each its own."),
+                    message("io.section-name-repeated", "Two sections have the name '{name}'", name=one.name),
+                    message("io.give-each-own-name", "Give each its own."),
                     file=source.name,
                 )
         sections += found
@@ -86,11 +86,11 @@ def read_sections(
         elevation = reader.get(table, "elevation", float, "[[level]]")
         if elevation is None:
             raise reader.fail(
-                message("import.level-no-elevation", "A [[level]] has no elevation"),
-                message("import.write-elevation-1200", "Write elevation = 1200.0."),
+                message("io.level-no-elevation", "A [[level]] has no elevation"),
+                message("io.write-elevation-1200", "Write elevation = 1200.0."),
                 "elevation",
             )
-        where = message("place.level", "level {elevation:g}", elevation=elevation)
+        where = message("io.level", "level {elevation:g}", elevation=elevation)
         source = reader.source(table, where, ("elevation", "scale", "origin"), "traces")
         drawing = _drawing(reader, table, where)
         gather(gathered, load_level(source, elevation, drawing, names, journal, region))
@@ -101,16 +101,16 @@ def _drawing(reader: Reader, table: Mapping[str, Any], where: Message | str) -> 
     scale = reader.get(table, "scale", float, where)
     if scale is not None and scale <= 0:
         raise reader.fail(
-            message("import.scale-above", "scale in {where} must be above 0", where=where),
-            message("import.give-drawing-units-metre", "Give drawing units a metre."),
+            message("io.scale-not-positive", "scale in {where} must be above 0", where=where),
+            message("io.give-drawing-units-metre", "Give drawing units a metre."),
             "scale",
             scale,
         )
     remedy = message(
-        "import.write-origin", "Write origin = [u, v], the drawing's coordinates of distance 0 and elevation 0."
+        "io.write-origin", "Write origin = [u, v], the drawing's coordinates of distance 0 and elevation 0."
     )
     origin = _pairs(
-        reader, [table.get("origin", [0.0, 0.0])], message("place.origin", "origin of {where}", where=where), remedy
+        reader, [table.get("origin", [0.0, 0.0])], message("io.origin", "origin of {where}", where=where), remedy
     )[0]
     return Drawing(scale=1.0 if scale is None else scale, origin=(float(origin[0]), float(origin[1])))
 
@@ -122,7 +122,7 @@ def _pairs(reader: Reader, value: Any, where: Message | str, remedy: Message) ->
         pairs = np.empty(0)
     if pairs.ndim != 2 or pairs.shape[1] != 2 or not np.isfinite(pairs).all():
         raise reader.fail(
-            message("import.no-list-finite-pairs", "The {where} is not a list of finite pairs", where=where),
+            message("io.not-finite-pairs", "The {where} is not a list of finite pairs", where=where),
             remedy,
             value=value,
         )
@@ -133,12 +133,12 @@ def _check_line(reader: Reader, line: Floats, where: Message | str, region: Regi
     if region is not None and place_in(line, region) == "exchanged":
         raise reader.fail(
             message(
-                "import.look-exchanged-line-lies",
+                "io.line-axes-exchanged",
                 "x and y appear to be exchanged in the line of {where}: it lies far outside the study "
                 "area, and inside it with x and y swapped",
                 where=where,
             ),
-            message("import.easting-northing", "x is the easting, y the northing."),
+            message("io.x-is-easting", "x is the easting, y the northing."),
             "line",
             line.tolist(),
         )

@@ -19,7 +19,7 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Ground, Hole, Orientations, Site
 from geofit.io.added_tables import with_tables
 from geofit.io.adits import load_adit_contacts, load_adits
-from geofit.io.axes import Region, place_in, region_of
+from geofit.io.axes import Region, grown_box, place_in
 from geofit.io.boreholes import Boreholes, load_boreholes
 from geofit.io.boundary import load_boundary
 from geofit.io.contact_rules import ContactRule
@@ -27,7 +27,7 @@ from geofit.io.contacts import load_rule
 from geofit.io.crs import is_code
 from geofit.io.desurvey import METHODS
 from geofit.io.grid import load_grid, load_ground
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.horizon_columns import load_horizon_columns
 from geofit.io.horizons import HorizonNames
 from geofit.io.journal import Journal
@@ -89,8 +89,8 @@ def read_site(path: str | Path, progress: Progress | None = None, *, added: Sequ
     site = load_site(path, progress, added=added)
     if not site.horizons:
         raise Reader(Path(path)).fail(
-            message("import.site-no-horizon", "The site has no horizon"),
-            message("import.add-horizon-table-files", "Add a [[horizon]] table and files that contain its points."),
+            message("io.site-without-horizon", "The site has no horizon"),
+            message("io.add-horizon-and-files", "Add a [[horizon]] table and files that contain its points."),
         )
     return site
 
@@ -145,8 +145,8 @@ def build_site(
     names = HorizonNames([horizon.name for horizon in horizons])
     if len(set(map(str.casefold, names.names))) < len(horizons):
         raise reader.fail(
-            message("import.two-horizon-tables-name", "Two [[horizon]] tables have one name"),
-            message("import.give-each-own-name", "Give each its own."),
+            message("io.horizon-name-repeated", "Two [[horizon]] tables have one name"),
+            message("io.give-each-own-name", "Give each its own."),
             "name",
         )
 
@@ -212,22 +212,22 @@ def build_site(
 
 
 def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
-    name = reader.need(table, "name", str, "[[horizon]]", message("import.write-name", 'Write name = "...".')).strip()
-    where = message("place.horizon", "horizon '{name}'", name=name)
+    name = reader.need(table, "name", str, "[[horizon]]", message("io.write-name", 'Write name = "...".')).strip()
+    where = message("io.horizon", "horizon '{name}'", name=name)
     if not name:
         raise reader.fail(
-            message("import.horizon-empty-name", "A [[horizon]] has an empty name"),
-            message("import.write-name", 'Write name = "...".'),
+            message("io.horizon-empty-name", "A [[horizon]] has an empty name"),
+            message("io.write-name", 'Write name = "...".'),
             "name",
         )
     reader.keys(table, HORIZON, where)
     rule = read_rule(reader, table, where)
     accuracy = reader.get(table, "accuracy", dict, where) or {}
     for kind in accuracy:
-        if not reader.get(accuracy, kind, float, message("place.accuracy", "accuracy of {where}", where=where)) > 0:
+        if not reader.get(accuracy, kind, float, message("io.accuracy", "accuracy of {where}", where=where)) > 0:
             raise reader.fail(
-                message("import.accuracy-above", "accuracy of {where} must be above 0", where=where),
-                message("import.give-standard-deviation-metres", "Give one standard deviation in metres."),
+                message("io.accuracy-of-key-not-positive", "accuracy of {where} must be above 0", where=where),
+                message("io.give-standard-deviation", "Give one standard deviation in metres."),
                 kind,
                 accuracy[kind],
             )
@@ -235,8 +235,8 @@ def _horizon(reader: Reader, table: dict[str, Any]) -> _Horizon:
         settings = FitSettings(**{key: table[key] for key in SETTINGS if key in table})
     except (SettingsError, TypeError) as error:
         raise reader.fail(
-            message("import.where-error", "{where}: {error}", where=where, error=error),
-            message("import.correct-site-file", "Correct it in the site file."),
+            message("io.key-and-error", "{where}: {error}", where=where, error=error),
+            message("io.correct-site-file", "Correct it in the site file."),
         ) from None
     return _Horizon(name, rule, {kind: float(value) for kind, value in accuracy.items()}, settings)
 
@@ -247,12 +247,12 @@ def _site_area(
     boundary = ground = region = None
     if "ground" in top:
         ground = load_ground(reader.source(top["ground"], "[ground]", kind="ground"), journal)
-        region = region_of(np.array([[ground.x[0], ground.y[0]], [ground.x[-1], ground.y[-1]]]))
+        region = grown_box(np.array([[ground.x[0], ground.y[0]], [ground.x[-1], ground.y[-1]]]))
     if "boundary" in top:
         boundary = load_boundary(reader.source(top["boundary"], "[boundary]", kind="boundary"), journal)
         if region is not None:
             _compare(reader, boundary, region)
-        region = region_of(boundary)
+        region = grown_box(boundary)
     return boundary, ground, region
 
 
@@ -263,7 +263,7 @@ def _compare(reader: Reader, boundary: Floats, ground: Region) -> None:
         swapped = place == "exchanged"
         raise reader.fail(
             message(
-                "import.boundary-around-lies-far",
+                "io.boundary-far-exchanged",
                 "The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid, and on it with x "
                 "and y exchanged",
                 x=x,
@@ -271,14 +271,14 @@ def _compare(reader: Reader, boundary: Floats, ground: Region) -> None:
             )
             if swapped
             else message(
-                "import.boundary-around-lies-far-off",
+                "io.boundary-far-off",
                 "The boundary (around x = {x:.10g}, y = {y:.10g}) lies far off the ground's grid",
                 x=x,
                 y=y,
             ),
-            message("import.exchange-boundary", "Exchange x and y of the boundary.")
+            message("io.exchange-boundary", "Exchange x and y of the boundary.")
             if swapped
-            else message("import.give-same-coordinates", "Give both in the same coordinates."),
+            else message("io.give-one-coordinate-system", "Give both in the same coordinates."),
             "boundary",
         )
 
@@ -290,23 +290,23 @@ def _boreholes(
     reader.keys(table, ("collar", "survey", "intervals", "dip", "declination", "desurvey"), where)
     if "collar" not in table:
         raise reader.fail(
-            message("import.no-collar", "{where} has no 'collar'", where=where),
-            message("import.write-collar-collar-csv", 'Write collar = "collar.csv".'),
+            message("io.collar-missing", "{where} has no 'collar'", where=where),
+            message("io.write-collar", 'Write collar = "collar.csv".'),
             "collar",
         )
     dip = reader.get(table, "dip", str, where)
     if dip not in (None, "down-positive", "down-negative"):
         raise reader.fail(
-            message("import.sign-dips-unknown", "The sign of the dips is unknown"),
-            message("import.write-down-positive-down", 'Write "down-positive" or "down-negative".'),
+            message("io.dip-sign-unknown", "The sign of the dips is unknown"),
+            message("io.write-dip-sign", 'Write "down-positive" or "down-negative".'),
             "dip",
             dip,
         )
     method = reader.get(table, "desurvey", str, where) or METHODS[0]
     if method not in METHODS:
         raise reader.fail(
-            message("import.way-desurvey-unknown", "The way to desurvey is unknown"),
-            message("import.write-names", "Write {names}.", names=" or ".join(METHODS)),
+            message("io.desurvey-unknown", "The way to desurvey is unknown"),
+            message("io.write-names", "Write {names}.", names=" or ".join(METHODS)),
             "desurvey",
             method,
         )
@@ -315,12 +315,12 @@ def _boreholes(
     return load_boreholes(
         reader.source(
             table["collar"],
-            message("import.key-where", "{key} in {where}", key=Untranslated("collar"), where=where),
+            message("io.key-of-table", "{key} in {where}", key=Untranslated("collar"), where=where),
             kind="collar",
         ),
         reader.source(
             table["survey"],
-            message("import.key-where", "{key} in {where}", key=Untranslated("survey"), where=where),
+            message("io.key-of-table", "{key} in {where}", key=Untranslated("survey"), where=where),
             kind="survey",
         )
         if "survey" in table
@@ -328,7 +328,7 @@ def _boreholes(
         [
             reader.source(
                 entry,
-                message("import.key-where", "{key} in {where}", key=Untranslated("intervals"), where=where),
+                message("io.key-of-table", "{key} in {where}", key=Untranslated("intervals"), where=where),
                 kind="intervals",
             )
             for entry in intervals
@@ -357,13 +357,13 @@ def _gather_contacts(
         if not logged:
             raise reader.fail(
                 message(
-                    "import.horizon-limit-site-no",
+                    "io.limit-without-intervals",
                     "horizon '{name}' is a limit of '{code}', but the site has no intervals",
                     name=horizon.name,
                     code=rule.label,
                 ),
                 message(
-                    "import.add-intervals-lithology-csv",
+                    "io.add-intervals",
                     'Add intervals = ["lithology.csv"] to [boreholes], or remove top and base.',
                 ),
                 rule.limit,
@@ -387,14 +387,14 @@ def _adits(
     reader.keys(table, ("path", "contacts"), "[adits]")
     if "path" not in table:
         raise reader.fail(
-            message("import.adits-no-path", "[adits] has no 'path'"),
-            message("import.write-path-adits-csv", 'Write path = "adits.csv".'),
+            message("io.adit-path-missing", "[adits] has no 'path'"),
+            message("io.write-adit-path", 'Write path = "adits.csv".'),
             "path",
         )
     adits = load_adits(
         reader.source(
             table["path"],
-            message("import.key-where", "{key} in {where}", key=Untranslated("path"), where="[adits]"),
+            message("io.key-of-table", "{key} in {where}", key=Untranslated("path"), where="[adits]"),
             kind="adit path",
         ),
         journal,
@@ -403,7 +403,7 @@ def _adits(
     if "contacts" in table:
         contacts = reader.source(
             table["contacts"],
-            message("import.key-where", "{key} in {where}", key=Untranslated("contacts"), where="[adits]"),
+            message("io.key-of-table", "{key} in {where}", key=Untranslated("contacts"), where="[adits]"),
             kind="adit contacts",
         )
         gather(gathered, load_adit_contacts(contacts, adits, names, journal))
@@ -420,8 +420,8 @@ def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> Point
     """Return the points with the site file's accuracy where their own file states none."""
     if not len(points):
         raise reader.fail(
-            message("import.horizon-no-point-file", "Horizon '{name}' has no point in any file", name=horizon.name),
-            message("import.correct-name-code-remove", "Correct its name or code, or remove its [[horizon]] table."),
+            message("io.horizon-without-point", "Horizon '{name}' has no point in any file", name=horizon.name),
+            message("io.correct-or-remove-horizon", "Correct its name or code, or remove its [[horizon]] table."),
             "name",
         )
     accuracy = np.array(points.accuracy)
@@ -430,12 +430,12 @@ def _with_accuracy(reader: Reader, points: PointSet, horizon: _Horizon) -> Point
         if kind not in kinds:
             raise reader.fail(
                 message(
-                    "import.accuracy-unknown-kind",
+                    "io.accuracy-unknown-kind",
                     "accuracy of horizon '{name}' names the kind '{kind}', which no point has",
                     name=horizon.name,
                     kind=Untranslated(kind),
                 ),
-                nearest(kind, kinds, message("import.known-kinds", "The kinds are {names}.", names=", ".join(kinds))),
+                nearest_name(kind, kinds, message("io.known-kinds", "The kinds are {names}.", names=", ".join(kinds))),
                 kind,
             )
         accuracy[(points.kind == kind) & np.isnan(accuracy)] = value

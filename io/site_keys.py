@@ -11,7 +11,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import Message, Untranslated, message
 from geofit.data.numbers import is_finite, shown
 from geofit.data.settings import FitSettings
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.mapping import ColumnMapping
 from geofit.io.source import Source
 
@@ -43,10 +43,10 @@ TOP = (
 )
 
 _KINDS = {
-    str: message("import.a-text", "a text"),
-    dict: message("import.a-table", "a table"),
-    list: message("import.a-list", "a list"),
-    float: message("import.a-number", "a number"),
+    str: message("io.a-text", "a text"),
+    dict: message("io.a-table", "a table"),
+    list: message("io.a-list", "a list"),
+    float: message("io.a-number", "a number"),
 }
 
 
@@ -77,11 +77,11 @@ class Reader:
         for key in table:
             if key not in allowed:
                 raise self.fail(
-                    message("import.no-key", "{where} has no key '{key}'", where=where, key=Untranslated(key)),
-                    nearest(
+                    message("io.no-key", "{where} has no key '{key}'", where=where, key=Untranslated(key)),
+                    nearest_name(
                         key,
                         allowed,
-                        message("import.known-keys", "The keys are {names}.", names=", ".join(allowed)),
+                        message("io.known-keys", "The keys are {names}.", names=", ".join(allowed)),
                         cutoff=0.5,
                     ),
                     key,
@@ -96,13 +96,13 @@ class Reader:
         if not (numeric if kind is float else isinstance(value, kind)):
             raise self.fail(
                 message(
-                    "import.key-where-kind",
+                    "io.mapping-value-wrong-kind",
                     "{key} in {where} must be {kind}",
                     key=Untranslated(key),
                     where=where,
                     kind=_KINDS[kind],
                 ),
-                message("import.correct-value", "Correct its value."),
+                message("io.correct-value", "Correct its value."),
                 key,
                 value,
             )
@@ -113,7 +113,7 @@ class Reader:
         value = self.get(table, key, kind, where)
         if value is None:
             raise self.fail(
-                message("import.missing-key", "{where} has no '{key}'", where=where, key=Untranslated(key)), remedy, key
+                message("io.missing-key", "{where} has no '{key}'", where=where, key=Untranslated(key)), remedy, key
             )
         return value
 
@@ -123,8 +123,8 @@ class Reader:
         value = [value] if isinstance(value, dict) else value
         if not isinstance(value, list) or not all(isinstance(table, dict) for table in value):
             raise self.fail(
-                message("import.no-table", "'{key}' is not a table", key=Untranslated(key)),
-                message("import.write-above-keys", "Write [{key}] or [[{key}]] above its keys.", key=Untranslated(key)),
+                message("io.no-table", "'{key}' is not a table", key=Untranslated(key)),
+                message("io.write-above-keys", "Write [{key}] or [[{key}]] above its keys.", key=Untranslated(key)),
                 key,
             )
         return value
@@ -138,23 +138,23 @@ class Reader:
             value = {"file": value}
         if not isinstance(value, dict):
             raise self.fail(
-                message("import.name-file", "{where} must name a file", where=where),
-                message("import.write-name-csv", 'Write "name.csv" or { file = "name.csv" }.'),
+                message("io.name-file", "{where} must name a file", where=where),
+                message("io.write-name-csv", 'Write "name.csv" or { file = "name.csv" }.'),
                 value=value,
             )
         self.keys(value, (*TABLE, *more), where)
-        file = self.need(value, "file", str, where, message("import.write-file", 'Write file = "name.csv".'))
+        file = self.need(value, "file", str, where, message("io.write-file", 'Write file = "name.csv".'))
         columns = self.get(value, "columns", dict, where) or {}
         for role, column in columns.items():
             if not isinstance(column, (str, int)) or isinstance(column, bool):
                 raise self.fail(
                     message(
-                        "import.column-header-number",
+                        "io.column-header-number",
                         "Column '{role}' in {where} must be a header or a number",
                         role=Untranslated(role),
                         where=where,
                     ),
-                    message("import.correct-value", "Correct its value."),
+                    message("io.correct-value", "Correct its value."),
                     role,
                     column,
                 )

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from geofit.data.messages import Untranslated, message
-from geofit.io.hints import nearest
+from geofit.io.hints import nearest_name
 from geofit.io.site_keys import Reader
 
 __all__ = ["read_relations"]
@@ -23,18 +23,18 @@ def read_relations(
     for fault, cut in faults.items():
         if fault in cut:
             raise reader.fail(
-                message("import.fault-said-cut", "The fault '{fault}' is listed as cutting itself", fault=fault),
-                message("import.name-horizons-cuts", "Name the horizons that it cuts."),
+                message("io.fault-cuts-itself", "The fault '{fault}' is listed as cutting itself", fault=fault),
+                message("io.name-horizons-cuts", "Name the horizons that it cuts."),
                 fault,
             )
         if fault in order:
             raise reader.fail(
                 message(
-                    "import.fault-stands-order-strata",
+                    "io.fault-in-order",
                     "The fault '{fault}' is listed in the order of strata",
                     fault=fault,
                 ),
-                message("import.take-out", "Take it out of it."),
+                message("io.take-out-of-order", "Take it out of it."),
                 "order",
             )
     return order, faults
@@ -47,16 +47,16 @@ def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horiz
         if name not in horizons:
             raise reader.fail(
                 message(
-                    "import.names-unknown-horizon",
+                    "io.key-names-unknown-horizon",
                     "{key} in {where} names '{name}', which is not a horizon",
                     key=Untranslated(key),
                     where=where,
                     name=name,
                 ),
-                nearest(
+                nearest_name(
                     str(name),
                     horizons,
-                    message("run.known-horizons", "The horizons are: {names}.", names=", ".join(horizons)),
+                    message("data.known-horizons", "The horizons are: {names}.", names=", ".join(horizons)),
                 ),
                 key,
                 name,
@@ -64,13 +64,13 @@ def _named(reader: Reader, table: Mapping[str, Any], key: str, where: str, horiz
         if names.count(name) > 1:
             raise reader.fail(
                 message(
-                    "import.names-twice",
+                    "io.key-names-horizon-twice",
                     "{key} in {where} names '{name}' twice",
                     key=Untranslated(key),
                     where=where,
                     name=name,
                 ),
-                message("import.name-horizon-once", "Name each horizon once."),
+                message("io.name-horizon-once", "Name each horizon once."),
                 key,
             )
     return tuple(names)

@@ -23,15 +23,15 @@ def read_rule(reader: Reader, table: dict[str, Any], where: Message) -> ContactR
     stated = [key for key in ("top", "base") if key in table]
     if len(stated) > 1:
         raise reader.fail(
-            message("import.top-base", "{where} has both top and base", where=where),
-            message("import.keep-horizon", "Keep the one that is this horizon."),
+            message("io.top-and-base", "{where} has both top and base", where=where),
+            message("io.keep-one-limit", "Keep the one that is this horizon."),
             "base",
         )
     occurrence = reader.get(table, "occurrence", str, where)
     if occurrence not in (None, "first", "last"):
         raise reader.fail(
-            message("import.occurrence", "{where}: which bed of several is meant is unknown", where=where),
-            message("import.occurrence-remedy", 'Write "first" or "last", counted from the collar down.'),
+            message("io.occurrence-unknown", "{where}: which bed of several is meant is unknown", where=where),
+            message("io.write-occurrence", 'Write "first" or "last", counted from the collar down.'),
             "occurrence",
             occurrence,
         )
@@ -40,8 +40,8 @@ def read_rule(reader: Reader, table: dict[str, Any], where: Message) -> ContactR
         for key in ("occurrence", "thinner"):
             if key in table:
                 raise reader.fail(
-                    message("import.rule-without-code", "{where} names no code whose limit it takes", where=where),
-                    message("import.rule-without-code-remedy", "Write top or base, or leave this key out."),
+                    message("io.rule-without-code", "{where} names no code whose limit it takes", where=where),
+                    message("io.write-top-or-base", "Write top or base, or leave this key out."),
                     key,
                 )
         return None
@@ -49,8 +49,8 @@ def read_rule(reader: Reader, table: dict[str, Any], where: Message) -> ContactR
     codes = value if isinstance(value, list) else [reader.get(table, limit, str, where)]
     if not codes or not all(isinstance(code, str) and code for code in codes):
         raise reader.fail(
-            message("import.codes", "{where}: the codes are not text", where=where),
-            message("import.codes-remedy", 'Write base = "T2", or base = ["T2", "T2a"] for codes that count as one.'),
+            message("io.codes-not-text", "{where}: the codes are not text", where=where),
+            message("io.write-codes", 'Write base = "T2", or base = ["T2", "T2a"] for codes that count as one.'),
             limit,
         )
     chosen: Limit = "top" if limit == "top" else "base"
@@ -59,7 +59,7 @@ def read_rule(reader: Reader, table: dict[str, Any], where: Message) -> ContactR
         return ContactRule(tuple(codes), chosen, which, thinner or 0.0)
     except SettingsError as error:
         raise reader.fail(
-            message("import.where-error", "{where}: {error}", where=where, error=error),
-            message("import.correct-site-file", "Correct it in the site file."),
+            message("io.key-and-error", "{where}: {error}", where=where, error=error),
+            message("io.correct-site-file", "Correct it in the site file."),
             "thinner",
         ) from None

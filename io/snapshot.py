@@ -87,8 +87,8 @@ def read_snapshot(path: Path) -> Site:
         return _site(words, arrays)
     except (OSError, ValueError, KeyError, TypeError, AttributeError, GeofitError, zipfile.BadZipFile) as error:
         raise InputError(
-            message("project.snapshot-unreadable", "The earlier data cannot be read: {error}", error=str(error)),
-            message("project.snapshot-remedy", "Without this file the earlier state cannot be compared."),
+            message("io.snapshot-unreadable", "The earlier data cannot be read: {error}", error=str(error)),
+            message("io.keep-snapshot", "Without this file the earlier state cannot be compared."),
             file=str(path),
         ) from None
 

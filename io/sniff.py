@@ -63,26 +63,26 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
             return data.decode(encoding).removeprefix("\ufeff"), encoding
         except LookupError:
             raise InputError(
-                message("import.encoding-unknown", "The encoding {encoding!r} is unknown", encoding=encoding),
-                message("import.give-utf-utf-16", "Give utf-8, utf-16, gb18030 or cp1252."),
+                message("io.encoding-unknown", "The encoding {encoding!r} is unknown", encoding=encoding),
+                message("io.give-known-encoding", "Give utf-8, utf-16, gb18030 or cp1252."),
                 file=name,
             ) from None
         except UnicodeError as error:
             what, _ = parser_message(error)
             raise InputError(
                 message(
-                    "import.file-not-written",
+                    "io.not-in-encoding",
                     "The file is not written in {encoding}: {error}",
                     encoding=encoding,
                     error=what,
                 ),
-                message("import.leave-encoding", "Leave the encoding out."),
+                message("io.leave-encoding-out", "Leave the encoding out."),
                 file=name,
             ) from None
     if data[:4] in (b"PK\x03\x04", b"\xd0\xcf\x11\xe0"):
         raise InputError(
-            message("import.workbook-not-text-table", "This is a workbook, not a text table"),
-            message("import.save-sheet-csv-utf", "Save the sheet as CSV UTF-8."),
+            message("io.workbook-not-text", "This is a workbook, not a text table"),
+            message("io.save-sheet-as-csv", "Save the sheet as CSV UTF-8."),
             file=name,
         )
     for codec in _candidates(data):
@@ -91,8 +91,8 @@ def decode(data: bytes, name: str, encoding: str | None = None) -> tuple[str, st
         except UnicodeError:
             continue
     raise InputError(
-        message("import.file-no-text-utf", "The file is not text in UTF-8, UTF-16, GB18030 or Windows-1252"),
-        message("import.save-csv-utf-state", "Save it as CSV UTF-8, or state its encoding."),
+        message("io.not-text", "The file is not text in UTF-8, UTF-16, GB18030 or Windows-1252"),
+        message("io.save-as-utf8", "Save it as CSV UTF-8, or state its encoding."),
         file=name,
     )
 

@@ -63,26 +63,26 @@ class Source:
         object.__setattr__(self, "sep", words.get(self.sep, self.sep) if self.sep is not None else None)
         if self.sep is not None and len(self.sep) != 1:
             raise InputError(
-                message("import.separator-not-character", "The separator {sep!r} is not one character", sep=self.sep),
-                message("import.give-character-tab-space", "Give one character, 'tab' or 'space'."),
+                message("io.separator-not-character", "The separator {sep!r} is not one character", sep=self.sep),
+                message("io.give-separator", "Give one character, 'tab' or 'space'."),
                 file=self.name,
             )
         if self.decimal not in (None, ".", ","):
             raise InputError(
-                message("import.decimal-mark-unknown", "The decimal mark {decimal!r} is unknown", decimal=self.decimal),
-                message("import.give-decimal-mark", "Give '.' or ','."),
+                message("io.decimal-mark-unknown", "The decimal mark {decimal!r} is unknown", decimal=self.decimal),
+                message("io.give-decimal-mark", "Give '.' or ','."),
                 file=self.name,
             )
         if self.measure not in (None, "depth", "elevation"):
             raise InputError(
-                message("import.measure-unknown", "The measure {measure!r} is unknown", measure=self.measure),
-                message("import.give-depth-elevation", "Give 'depth' or 'elevation'."),
+                message("io.measure-unknown", "The measure {measure!r} is unknown", measure=self.measure),
+                message("io.give-measure", "Give 'depth' or 'elevation'."),
                 file=self.name,
             )
         if self.decimal == "," and self.sep == ",":
             raise InputError(
-                message("import.comma-cannot-separator-decimal", "The comma cannot be both separator and decimal mark"),
-                message("import.name-separator-cells", "Name the separator between the cells."),
+                message("io.comma-ambiguous", "The comma cannot be both separator and decimal mark"),
+                message("io.name-separator", "Name the separator between the cells."),
                 file=self.name,
             )
 
@@ -91,22 +91,22 @@ class Source:
         try:
             if self.path.exists() and not is_file(self.path) and not self.path.is_dir():
                 raise InputError(
-                    message("import.pipe-device-not", "It is a pipe or a device, not a file"),
-                    message("import.name-a-file", "Name a file."),
+                    message("io.not-a-file", "It is a pipe or a device, not a file"),
+                    message("io.name-a-file", "Name a file."),
                     file=self.name,
                 )
             return self.path.read_bytes()
         except ValueError:
             raise InputError(
-                message("import.file-nul-character", "The name of the file has a NUL character"),
-                message("import.name-a-file", "Name a file."),
+                message("io.file-name-with-nul", "The name of the file has a NUL character"),
+                message("io.name-a-file", "Name a file."),
                 file=self.name.replace("\0", "?"),
             ) from None
         except FileNotFoundError:
             raise InputError(
-                message("import.file-missing", "There is no such file"),
+                message("data.file-missing", "There is no such file"),
                 message(
-                    "import.looked-names-site-file",
+                    "io.path-searched",
                     "It was looked for at {path}; names in a site file count from the site file's folder.",
                     path=self.path,
                 ),
@@ -115,11 +115,11 @@ class Source:
         except OSError as error:
             raise InputError(
                 message(
-                    "import.file-cannot-opened",
+                    "io.file-not-opened",
                     "The file cannot be opened: {error}",
                     error=error.strerror or str(error),
                 ),
-                message("import.name-file-read", "Name a file that you may read."),
+                message("io.name-readable-file", "Name a file that you may read."),
                 file=self.name,
             ) from None
 

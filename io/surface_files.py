@@ -53,12 +53,12 @@ def read_surface(path: str | PathLike[str], name: str = "") -> PatchSurface | Me
         return next(iter(found.values()))
     if name not in found:
         reason = (
-            message("import.file-surface", "The file has no surface '{name}'", name=name)
+            message("io.surface-missing", "The file has no surface '{name}'", name=name)
             if name
-            else message("import.file-surfaces", "The file has several surfaces")
+            else message("io.several-surfaces", "The file has several surfaces")
         )
         raise InputError(
-            reason, message("import.name-one-of", "Name one of: {names}.", names=", ".join(found)), file=str(path)
+            reason, message("io.name-one-of-these", "Name one of: {names}.", names=", ".join(found)), file=str(path)
         )
     return found[name]
 
@@ -96,8 +96,8 @@ def read_surfaces(
             unique = name if name not in found else f"{file.stem} {name}"
             if unique in found:
                 raise InputError(
-                    message("export.file-given-twice", "The file is given twice"),
-                    message("export.name-file-once", "Name each file once."),
+                    message("io.file-given-twice", "The file is given twice"),
+                    message("io.name-file-once", "Name each file once."),
                     file=str(file),
                 )
             found[unique] = replace(surface, name=unique)
@@ -119,11 +119,11 @@ def _read(path: Path) -> Mapping[str, PatchSurface | MeshSurface]:
         case ending:
             raise InputError(
                 message(
-                    "import.surface-not-read-file",
+                    "io.surface-ending-unknown",
                     "A surface is not read from a file that ends in '{ending}'",
                     ending=ending,
                 ),
-                message("import.give-file-ends", "Give a file that ends in {names}.", names=", ".join(ENDINGS)),
+                message("io.give-known-ending", "Give a file that ends in {names}.", names=", ".join(ENDINGS)),
                 file=str(path),
             )
     return read(path)

@@ -40,44 +40,44 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
     except (struct.error, ValueError, IndexError, OverflowError) as error:
         raise InputError(
             message(
-                "import.surfer-grid-damaged",
+                "io.surfer-grid-damaged",
                 "The Surfer grid is damaged: {error}",
                 error=str(error) or type(error).__name__,
             ),
-            message("import.export-grid-again", "Export the grid again."),
+            message("io.export-grid-again", "Export the grid again."),
             file=source.name,
         ) from None
     west, east, south, north = corners
     if columns < 2 or rows < 2 or z.size != columns * rows:
         raise InputError(
             message(
-                "import.grid-cells-columns-rows",
+                "io.surfer-cells-differ",
                 "The grid has {count} cells; columns x rows = {columns} x {rows} are needed, 2 x 2 at least",
                 count=z.size,
                 columns=columns,
                 rows=rows,
             ),
-            message("import.export-grid-again", "Export the grid again."),
+            message("io.export-grid-again", "Export the grid again."),
             file=source.name,
         )
     if not (np.isfinite(corners).all() and east > west and north > south):
         raise InputError(
             message(
-                "import.grid-corners-no-area",
+                "io.grid-without-area",
                 "The grid's corners enclose no area: x {west:g} to {east:g}, y {south:g} to {north:g}",
                 west=west,
                 east=east,
                 south=south,
                 north=north,
             ),
-            message("import.export-grid-again", "Export the grid again."),
+            message("io.export-grid-again", "Export the grid again."),
             file=source.name,
         )
     z = np.where(np.isfinite(z) & (z < BLANK) & (z != blank), z, np.nan)
     if np.isnan(z).all():
         raise InputError(
-            message("import.no-cell-grid-elevation", "No cell of the grid has an elevation"),
-            message("import.export-grid-again", "Export the grid again."),
+            message("io.grid-without-elevation", "No cell of the grid has an elevation"),
+            message("io.export-grid-again", "Export the grid again."),
             file=source.name,
         )
     if np.isnan(z).any():
@@ -85,7 +85,7 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
             "note",
             source.name,
             message(
-                "import.cells-no-data",
+                "io.cells-without-data",
                 "{count} of {total} cells have no data",
                 count=int(np.isnan(z).sum()),
                 total=z.size,

@@ -70,8 +70,8 @@ class _Reader:
             elif word == "end":
                 if not stack:
                     raise InputError(
-                        message("import.end-without-begin", "*end without *begin"),
-                        message("import.remove-begin", "Remove it, or add *begin."),
+                        message("io.end-without-begin", "*end without *begin"),
+                        message("io.remove-end-or-add-begin", "Remove it, or add *begin."),
                         file=source.name,
                         row=row,
                         value=line.strip(),
@@ -83,8 +83,8 @@ class _Reader:
                 settings = self.command(word, rest, settings, source.name, row, line.strip())
         if stack:
             raise InputError(
-                message("import.begin-not-closed", "*begin {name} is not closed", name=Untranslated(stack[-1][0])),
-                message("import.end-lines-may", "Add *end: lines may be missing from the file."),
+                message("io.begin-not-closed", "*begin {name} is not closed", name=Untranslated(stack[-1][0])),
+                message("io.add-end", "Add *end: lines may be missing from the file."),
                 file=source.name,
             )
 
@@ -97,11 +97,9 @@ class _Reader:
         beside = path.resolve().is_relative_to(self.source.path.parent.resolve())
         if depth >= _DEEPEST or not beside or not is_file(path):
             raise InputError(
+                message("io.include-unreadable", "The included file {name} cannot be read", name=Untranslated(name)),
                 message(
-                    "import.included-file-cannot", "The included file {name} cannot be read", name=Untranslated(name)
-                ),
-                message(
-                    "import.put-folder-file",
+                    "io.put-include-into-folder",
                     "Put it into the folder of the file that includes it; files must not include each other.",
                 ),
                 file=source.name,
@@ -122,12 +120,12 @@ class _Reader:
                         self.list_(
                             "error",
                             message(
-                                "import.data-style-not",
+                                "io.data-style-unknown",
                                 "Data of this style are not read: {style}",
                                 style=Untranslated(" ".join(rest)),
                             ),
                             message(
-                                "import.write-data-normal",
+                                "io.write-data-normal",
                                 "Write one line a shot with *data normal from to tape compass clino.",
                             ),
                             file,
@@ -164,8 +162,8 @@ class _Reader:
         except (ValueError, IndexError, KeyError):
             self.list_(
                 "error",
-                message("import.command-cannot-read", "The command *{word} cannot be read", word=Untranslated(word)),
-                message("import.correct-arguments", "Correct its arguments."),
+                message("io.command-unreadable", "The command *{word} cannot be read", word=Untranslated(word)),
+                message("io.correct-arguments", "Correct its arguments."),
                 file,
                 row,
                 line,
@@ -173,8 +171,8 @@ class _Reader:
             return settings
         self.list_(
             "warning",
-            message("import.command-not-read", "The command *{word} is not read", word=Untranslated(word)),
-            message("import.check-shots", "Check that it does not change the shots."),
+            message("io.command-not-read", "The command *{word} is not read", word=Untranslated(word)),
+            message("io.check-shots", "Check that it does not change the shots."),
             file,
             row,
             line,
@@ -187,7 +185,7 @@ class _Reader:
         if settings.style == "ignore":
             self.list_(
                 "note",
-                message("import.data-ignored", "The line is in a block of data that is ignored"),
+                message("io.data-ignored", "The line is in a block of data that is ignored"),
                 EMPTY,
                 file,
                 row,
@@ -212,11 +210,11 @@ class _Reader:
         self.list_(
             "error",
             message(
-                "import.line-not-data",
+                "io.line-out-of-order",
                 "The line is not data in the order {order}",
                 order=Untranslated(" ".join(order) or settings.style),
             ),
-            message("import.correct-line-or-data", "Correct the line or the *data command."),
+            message("io.correct-line-or-data", "Correct the line or the *data command."),
             file,
             row,
             " ".join(cells),
@@ -265,8 +263,8 @@ class _Reader:
             if a == b:
                 self.list_(
                     "error",
-                    message("import.shot-joins-station", "The shot joins two names of one station"),
-                    message("import.check-equate", "Check *equate."),
+                    message("io.shot-joins-itself", "The shot joins two names of one station"),
+                    message("io.check-equate", "Check *equate."),
                     self.source.name,
                     row,
                     a,
@@ -283,8 +281,8 @@ class _Reader:
             else:
                 self.list_(
                     "warning",
-                    message("import.fixed-station-without-shot", "The fixed station is not in any shot"),
-                    message("import.check-name", "Check its name."),
+                    message("io.fixed-station-without-shot", "The fixed station is not in any shot"),
+                    message("io.check-name", "Check its name."),
                     self.source.name,
                     row,
                     name,
@@ -300,7 +298,7 @@ class _Reader:
             if names[i] not in found.stations:
                 self.list_(
                     "warning",
-                    message("import.walls-without-shot", "The walls are at a station without a shot"),
+                    message("io.walls-without-shot", "The walls are at a station without a shot"),
                     EMPTY,
                     self.source.name,
                     0,
@@ -355,9 +353,7 @@ def read_survex(source: Source | str | Path, journal: Journal | None = None) -> 
         journal.add(
             "note",
             source.name,
-            message(
-                "import.commands-not-change", "Commands that do not change geometry: {names}", names=Untranslated(names)
-            ),
+            message("io.commands-ignored", "Commands that do not change geometry: {names}", names=Untranslated(names)),
         )
     journal.count(source.name, reader.read, reader.read - reader.used)
     return replace(survey, issues=tuple(journal.issues[first_issue:]), counts=tuple(journal.counts[first_count:]))

@@ -60,22 +60,22 @@ class Stations:
             rows.reject(
                 i,
                 "azimuth",
-                message("import.azimuth-inclined-hole-empty", "The azimuth of an inclined hole is empty"),
-                message("row.complete-cell", "Complete the cell."),
+                message("io.azimuth-empty", "The azimuth of an inclined hole is empty"),
+                message("io.complete-the-cell", "Complete the cell."),
             )
         for i in np.flatnonzero((np.abs(dip) > 90.0) & rows.ok).tolist():
             rows.reject(
                 i,
                 "dip",
-                message("import.dip-not-90-90", "The dip is not between -90 and 90 degrees"),
-                message("import.give-angle-horizontal", "Give the angle from horizontal."),
+                message("io.station-dip-out-of-range", "The dip is not between -90 and 90 degrees"),
+                message("io.give-angle-from-horizontal", "Give the angle from horizontal."),
             )
         for i in np.flatnonzero((np.abs(azimuth) > 360.0) & rows.ok).tolist():
             rows.reject(
                 i,
                 "azimuth",
-                message("import.azimuth-not-360-degrees", "The azimuth is not between 0 and 360 degrees"),
-                message("import.give-degrees-north", "Give degrees from north."),
+                message("io.azimuth-out-of-range", "The azimuth is not between 0 and 360 degrees"),
+                message("io.give-azimuth", "Give degrees from north."),
             )
         azimuth = azimuth + declination
         dip = _downwards(rows, dip, sign)
@@ -111,17 +111,17 @@ def read_stations(
         rows.reject(
             i,
             "depth",
-            message("import.station-lies-above-collar", "The station lies above the collar"),
-            message("import.depths-count-collar-downwards", "Depths count from the collar, downwards."),
+            message("io.station-above-collar", "The station lies above the collar"),
+            message("io.depths-count-down", "Depths count from the collar, downwards."),
         )
     stations = Stations.from_rows(rows, name, depth, sign, declination=declination)
     if not declination and any(np.abs(station.dip).min() < VERTICAL for station in stations.values()):
         journal.add(
             "note",
             rows.file,
-            message("import.azimuths-taken-relative-grid", "The azimuths are taken as relative to grid north"),
+            message("io.azimuths-from-grid-north", "The azimuths are taken as relative to grid north"),
             message(
-                "import.state-declination-degrees-east",
+                "io.state-declination",
                 "State declination = ... (degrees, east positive) where they are magnetic.",
             ),
             column=rows.table.header[rows.columns["azimuth"]],
@@ -136,28 +136,26 @@ def read_stations(
                 i,
                 "depth",
                 message(
-                    "import.hole-no-station-depth",
+                    "io.hole-without-first-station",
                     "Hole {hole} has no station at depth 0; it is taken as straight down to its first station",
                     hole=hole,
                 ),
-                message("import.add-attitude-collar", "Add the attitude at the collar."),
+                message("io.add-attitude-collar", "Add the attitude at the collar."),
             )
         if len(stations[hole].depth) == 1:
             rows.warn(
                 i,
                 "depth",
-                message("import.hole-station-straight", "Hole {hole} has one station only; it is straight", hole=hole),
-                message("import.add-stations-some", "Add stations where there are some."),
+                message("io.hole-of-one-station", "Hole {hole} has one station only; it is straight", hole=hole),
+                message("io.add-known-stations", "Add stations where there are some."),
             )
     for hole in holes:
         if hole not in stations:
             journal.add(
                 "warning",
                 rows.file,
-                message(
-                    "import.hole-no-survey-vertical", "Hole {hole} has no survey; it is taken as vertical", hole=hole
-                ),
-                message("import.add-stations-inclined", "Add its stations where it is inclined."),
+                message("io.hole-taken-as-vertical", "Hole {hole} has no survey; it is taken as vertical", hole=hole),
+                message("io.add-stations-of-inclined", "Add its stations where it is inclined."),
                 value=hole,
             )
     rows.close()
@@ -171,12 +169,12 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
     if sign is None and negative == positive > 0:
         raise InputError(
             message(
-                "import.dips-positive-negative-sign",
+                "io.dip-sign-unclear",
                 "{positive} dips are positive and {negative} negative: the sign that points down is not clear",
                 positive=positive,
                 negative=negative,
             ),
-            message("import.state-dip-down-positive", 'State dip = "down-positive" or dip = "down-negative".'),
+            message("io.state-dip-sign", 'State dip = "down-positive" or dip = "down-negative".'),
             file=rows.file,
             column=rows.table.header[rows.columns["dip"]],
         )
@@ -186,22 +184,22 @@ def _downwards(rows: Rows, dip: Floats, sign: Literal["down-positive", "down-neg
             "warning",
             rows.file,
             message(
-                "import.sign-dips-not-stated",
+                "io.dip-sign-taken",
                 "The sign of the dips is not stated: {negative} are negative, {positive} positive; taken as {down} by "
                 "majority",
                 negative=negative,
                 positive=positive,
                 down=down,
             ),
-            message("import.state-dip-down-positive", 'State dip = "down-positive" or dip = "down-negative".'),
+            message("io.state-dip-sign", 'State dip = "down-positive" or dip = "down-negative".'),
             column=rows.table.header[rows.columns["dip"]],
         )
         for i in np.flatnonzero(used & ((dip > 0) if down == "down-negative" else (dip < 0))).tolist():
             rows.warn(
                 i,
                 "dip",
-                message("import.majority-sign-hole-points", "By the majority's sign the hole points upwards here"),
-                message("import.check-sign", "Check the sign."),
+                message("io.hole-points-up", "By the majority's sign the hole points upwards here"),
+                message("io.check-sign", "Check the sign."),
             )
     return -dip if down == "down-negative" else dip
 
@@ -215,11 +213,11 @@ def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats,
                 i,
                 "depth",
                 message(
-                    "import.station-repeats-depth-row",
+                    "io.station-depth-repeated",
                     "The station repeats the depth of row {row}",
                     row=rows.line[kept[-1]],
                 ),
-                message("import.keep-rows", "Keep one of the rows."),
+                message("io.keep-rows", "Keep one of the rows."),
             )
             continue
         if kept:
@@ -231,12 +229,12 @@ def _sound(rows: Rows, group: NDArray[np.int64], depth: Floats, azimuth: Floats,
                     i,
                     "dip",
                     message(
-                        "import.hole-turns-degrees-since",
+                        "io.hole-turns-sharply",
                         "The hole turns by {turn:.0f} degrees since row {row}",
                         turn=turn,
                         row=rows.line[kept[-1]],
                     ),
-                    message("import.check-sign-dip-azimuth", "Check the sign of the dip and the azimuth."),
+                    message("io.check-dip-and-azimuth", "Check the sign of the dip and the azimuth."),
                 )
                 continue
         kept.append(i)

@@ -16,7 +16,7 @@ from geofit.io.journal import Journal
 from geofit.io.sniff import decode, find_decimal, find_separator, is_header, is_units_row, quoted_cells, split_line
 from geofit.io.source import Source
 
-__all__ = ["MOST_COLUMNS", "Table", "parse_numbers", "read_table", "require_width", "shown", "unique_names"]
+__all__ = ["MOST_COLUMNS", "Table", "first_names", "parse_numbers", "read_table", "require_width", "unique_names"]
 
 Floats = NDArray[np.float64]
 
@@ -72,8 +72,8 @@ def read_table(source: Source, journal: Journal) -> Table:
     sample = [line for line in lines[start : start + 4 * _SAMPLE] if line.strip()][:_SAMPLE]
     if not sample:
         raise InputError(
-            message("import.file-empty", "The file is empty"),
-            message("import.header-least-row-needed", "A header and at least one row are needed."),
+            message("io.file-empty", "The file is empty"),
+            message("io.give-header-and-row", "A header and at least one row are needed."),
             file=source.name,
         )
     sep = source.sep or find_separator(sample)
@@ -97,31 +97,31 @@ def read_table(source: Source, journal: Journal) -> Table:
         journal.add(
             "note",
             source.name,
-            message("import.row-holds-units", "This row contains the units"),
+            message("io.row-of-units", "This row contains the units"),
             row=body,
             value=below[0],
         )
     columns, numbers, malformed = _columns(lines, body, width, sep, source.name, journal)
     if not len(numbers) and not malformed:
         raise InputError(
-            message("import.file-header-no-rows", "The file has a header ({names}) but no rows", names=shown(header)),
-            message("import.export-table-again-rows", "Export the table again with its rows."),
+            message("io.file-without-rows", "The file has a header ({names}) but no rows", names=first_names(header)),
+            message("io.export-table-with-rows", "Export the table again with its rows."),
             file=source.name,
         )
     journal.add(
         "note",
         source.name,
         message(
-            "import.read-cells-separated-decimal",
+            "io.read-as-table",
             "Read as {encoding}, cells separated by {separator}, decimal mark '{decimal}', {header}",
             encoding=encoding,
             separator=_SEPARATOR_NAMES.get(sep, repr(sep)),
             decimal=decimal,
-            header=message("import.with-header", "with a header")
+            header=message("io.with-header", "with a header")
             if named
-            else message("import.without-header", "without a header"),
+            else message("io.without-header", "without a header"),
         ),
-        message("import.state-encoding-sep-decimal", "State encoding, sep or decimal where this is wrong."),
+        message("io.state-table-format", "State encoding, sep or decimal where this is wrong."),
     )
     return Table(
         name=source.name,
@@ -155,9 +155,7 @@ def _skip_comments(lines: Sequence[str], name: str, journal: Journal) -> int:
         journal.add(
             "note",
             name,
-            message(
-                "import.comment-lines-head-not", "Comment lines at the head that are not read: {count}", count=skipped
-            ),
+            message("io.comment-lines", "Comment lines at the head that are not read: {count}", count=skipped),
             row=1,
             value=lines[0],
         )
@@ -176,7 +174,7 @@ def _skip_titles(lines: Sequence[str], start: int, sep: str, name: str, journal:
         journal.add(
             "note",
             name,
-            message("import.title-above-header-not", "A title above the header is not read"),
+            message("io.title-line", "A title above the header is not read"),
             row=filled[k] + 1,
             value=lines[filled[k]],
         )
@@ -227,7 +225,7 @@ def _columns(
             "note",
             name,
             message(
-                "import.lines-without-cell-filled",
+                "io.empty-lines",
                 "Lines without a filled cell, which are not rows: {count}",
                 count=blank,
             ),
@@ -248,11 +246,9 @@ def _list_malformed(name: str, number: int, line: str, count: int, width: int, j
     journal.add(
         "error",
         name,
+        message("io.row-cells-differ", "Cells of the row: {count}, of the header: {width}", count=count, width=width),
         message(
-            "import.cells-row-header", "Cells of the row: {count}, of the header: {width}", count=count, width=width
-        ),
-        message(
-            "import.quote-cells-hold-separator",
+            "io.quote-cells",
             "Quote cells that contain the separator, or use another separator than the decimal mark.",
         ),
         row=number,
@@ -290,24 +286,24 @@ def require_width(width: int, file: str) -> None:
     if width > MOST_COLUMNS:
         raise InputError(
             message(
-                "import.table-columns-read",
+                "io.too-many-columns",
                 "The table has {count} columns; at most {most} are read",
                 count=width,
                 most=MOST_COLUMNS,
             ),
             message(
-                "import.separator-cells-export",
+                "io.state-separator-or-export-less",
                 "State the separator of the cells, or export the columns that are needed.",
             ),
             file=file,
         )
 
 
-def shown(names: Sequence[str]) -> Message | str:
+def first_names(names: Sequence[str]) -> Message | str:
     """Return the first names of columns with commas, and how many there are more."""
     text = ", ".join(folded(name, 60) for name in names[:_SHOWN])
     return (
-        message("import.names-and-more", "{names}, and {count} more", names=text, count=len(names) - _SHOWN)
+        message("io.names-and-more", "{names}, and {count} more", names=text, count=len(names) - _SHOWN)
         if len(names) > _SHOWN
         else text
     )

@@ -37,7 +37,7 @@ def read_title_block(reader: Reader, top: Mapping[str, Any]) -> TitleBlock:
 def _revision(reader: Reader, row: Mapping[str, Any]) -> Revision:
     where = "[[report.revision]]"
     reader.keys(row, _REVISION, where)
-    reader.need(row, "mark", object, where, message("import.write-mark", 'Write mark = "A".'))
+    reader.need(row, "mark", object, where, message("io.write-mark", 'Write mark = "A".'))
     return Revision(**{key: _text(reader, row, key, where) for key in _REVISION if key in row})
 
 

@@ -35,15 +35,13 @@ def parse_toml(data: bytes, file: str, see: Message) -> dict[str, Any]:
         what, _ = parser_message(error)
         raise InputError(
             message("import.file-not-utf", "The file is not UTF-8: {error}", error=what),
-            message("import.save-utf", "Save it as UTF-8."),
+            message("io.save-toml-as-utf8", "Save it as UTF-8."),
             file=file,
         ) from None
     except RecursionError:
-        raise InputError(
-            message("import.file-nested-deeply", "The file is nested too deeply"), see, file=file
-        ) from None
+        raise InputError(message("io.nested-too-deeply", "The file is nested too deeply"), see, file=file) from None
     except ValueError as error:  # also a number of more than 4,300 digits
         what, line = parser_message(error)
         raise InputError(
-            message("import.file-no-toml", "The file is not valid TOML: {error}", error=what), see, file=file, row=line
+            message("io.toml-invalid", "The file is not valid TOML: {error}", error=what), see, file=file, row=line
         ) from None

@@ -19,8 +19,8 @@ from geofit.io.source import Source
 __all__ = ["load_traces"]
 
 OFF_GRID = (
-    message("import.point-lies-off-ground", "The point lies off the ground's grid"),
-    message("import.extend-grid-add-elevation", "Extend the grid or add its elevation."),
+    message("io.point-off-ground", "The point lies off the ground's grid"),
+    message("io.extend-ground", "Extend the grid or add its elevation."),
 )
 
 
@@ -67,13 +67,13 @@ def _from_dxf(
         if place != "inside":
             raise InputError(
                 message(
-                    "import.map-lies-far-outside",
+                    "io.map-axes-exchanged",
                     "The map lies far outside the study area; x and y appear to be exchanged",
                 )
                 if place == "exchanged"
-                else message("import.map-lies-far-outside-study", "The map lies far outside the study area"),
+                else message("io.map-far-outside", "The map lies far outside the study area"),
                 message(
-                    "import.save-drawing-site-coordinates",
+                    "io.save-in-site-coordinates",
                     "Save the drawing in the site's coordinates; a section is named by [[section]].",
                 ),
                 file=source.name,
@@ -86,7 +86,7 @@ def _from_dxf(
             "note",
             source.name,
             message(
-                "import.points-elevation-draped-ground",
+                "io.points-draped",
                 "Points at elevation 0 that are draped on the ground: {count}",
                 count=blank.size,
             ),
@@ -108,11 +108,11 @@ def _from_dxf(
 def _undraped(count: int, source: Source, row: int) -> InputError:
     return InputError(
         message(
-            "import.site-no-ground-drape",
+            "io.no-ground-to-drape",
             "The site has no ground on which to place the points without an elevation ({count})",
             count=count,
         ),
-        message("import.add-column-ground-table", "Add a column z, or a [ground] table to the site file."),
+        message("io.add-z-or-ground", "Add a column z, or a [ground] table to the site file."),
         file=source.name,
         row=row,
     )

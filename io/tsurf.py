@@ -63,8 +63,8 @@ def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:
                 _take(objects[-1], key, line, words)
             except (ValueError, IndexError, KeyError):
                 raise InputError(
-                    message("import.cannot-read", "This {key} cannot be read", key=key),
-                    message("import.export-tsurf-again", "Export the TSurf again."),
+                    message("io.tsurf-key-unreadable", "This {key} cannot be read", key=key),
+                    message("io.export-tsurf-again", "Export the TSurf again."),
                     file=source.name,
                     row=row,
                     value=line[:80],
@@ -79,8 +79,8 @@ def read_tsurf(path: str | Path) -> dict[str, MeshSurface]:
         found[name] = one.surface(name)
     if not found:
         raise InputError(
-            message("import.file-holds-no-triangle", "The file contains no triangle of a TSurf"),
-            message("import.export-gocad-tsurf", "Export a GOCAD TSurf."),
+            message("io.tsurf-without-triangle", "The file contains no triangle of a TSurf"),
+            message("io.export-gocad-tsurf", "Export a GOCAD TSurf."),
             file=source.name,
         )
     return found

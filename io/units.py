@@ -37,8 +37,8 @@ def metres_of(unit: str, file: str | None = None) -> float:
     known = _UNITS.get(unit.strip().casefold())
     if known is None:
         raise InputError(
-            message("import.unit-unknown", "The unit '{unit}' is unknown", unit=unit),
-            message("import.known-units", "The units are {names}.", names=", ".join(METRES)),
+            message("io.unit-unknown", "The unit '{unit}' is unknown", unit=unit),
+            message("io.known-units", "The units are {names}.", names=", ".join(METRES)),
             file=file,
             value=unit,
         )
@@ -68,14 +68,14 @@ def length_factors(table: Table, columns: Mapping[str, int], source: Source, jou
             "warning",
             table.name,
             message(
-                "import.marked-converted-metres",
+                "io.unit-converted",
                 "The {role} is marked as {mark}; it is converted to metres (1 {unit} = {metres:.10g} m)",
                 role=role,
                 mark=name,
                 unit=unit,
                 metres=METRES[unit],
             ),
-            message("import.state-unit-metres-already", 'State unit = "m" where it is metres already.'),
+            message("io.state-unit-metres", 'State unit = "m" where it is metres already.'),
             column=table.header[j],
         )
     return {role: factor for role, factor in factors.items() if factor != 1.0}

@@ -27,7 +27,7 @@ _BEGINNINGS = (b"\x00\x00\x27\x0a", b"SQLite format 3\x00", b"{")
 def layer_names(source: Source) -> tuple[str, ...]:
     """Return the layers of a file that have a geometry."""
     data = source.read()
-    pyogrio = need("pyogrio", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
+    pyogrio = need("pyogrio", "gis", message("io.reading-map", "Reading the map {file}", file=source.name))
     _recognise(source, data)
     try:
         layers = pyogrio.list_layers(source.path)
@@ -47,7 +47,7 @@ def read_features(source: Source, journal: Journal) -> Table:
         If the file cannot be read, or the places are longitude and latitude and no target system is named.
     """
     data = journal.read(source)
-    pyogrio = need("pyogrio", "gis", message("import.reading-map", "Reading the map {file}", file=source.name))
+    pyogrio = need("pyogrio", "gis", message("io.reading-map", "Reading the map {file}", file=source.name))
     _recognise(source, data)
     import shapely
 
@@ -65,7 +65,7 @@ def read_features(source: Source, journal: Journal) -> Table:
         journal.add(
             "note",
             source.name,
-            message("import.coordinate-system-layer", "The coordinate system of the layer is {crs}", crs=crs[:120]),
+            message("io.crs-of-layer", "The coordinate system of the layer is {crs}", crs=crs[:120]),
         )
     if crs and not source.crs and not source.target:
         refuse_degrees(crs, source.name)
@@ -81,8 +81,8 @@ def read_features(source: Source, journal: Journal) -> Table:
             journal.add(
                 "error",
                 source.name,
-                message("import.feature-no-place", "The feature has no location"),
-                message("import.draw-again", "Draw it again."),
+                message("io.feature-without-location", "The feature has no location"),
+                message("io.draw-again", "Draw it again."),
                 row=i + 1,
             )
         for line in lines:
@@ -100,8 +100,8 @@ def _recognise(source: Source, data: bytes) -> None:
     """Refuse other contents: GDAL goes by them, not by the ending, and some formats name files elsewhere."""
     if not data.removeprefix(b"\xef\xbb\xbf").lstrip().startswith(_BEGINNINGS):
         raise InputError(
-            message("import.map-other-contents", "The file is not a shapefile, GeoPackage or GeoJSON"),
-            message("import.open-gis-save-geopackage", "Open it in a GIS and save it as GeoPackage."),
+            message("io.map-format-unknown", "The file is not a shapefile, GeoPackage or GeoJSON"),
+            message("io.save-as-geopackage", "Open it in a GIS and save it as GeoPackage."),
             file=source.name,
         )
 
@@ -131,7 +131,7 @@ def _text(value: Any) -> str:
 
 def _damaged(source: Source, error: Exception) -> InputError:
     return InputError(
-        message("import.map-cannot-read", "The map cannot be read: {error}", error=error),
-        message("import.open-gis-save-geopackage", "Open it in a GIS and save it as GeoPackage."),
+        message("io.map-unreadable", "The map cannot be read: {error}", error=error),
+        message("io.save-as-geopackage", "Open it in a GIS and save it as GeoPackage."),
         file=source.name,
     )

@@ -41,7 +41,7 @@ def shape_and_type(
         If there is no shape, or it does not fit the size.
     """
     remedy = message(
-        "import.shape-slowest-axis",
+        "io.state-shape-and-type",
         "State the shape, slowest axis first, and the type: shape=(n0, n1, n2), dtype='uint8'.",
     )
     found: tuple[int, ...] | None = None if shape is None else tuple(int(n) for n in shape)
@@ -57,13 +57,13 @@ def shape_and_type(
             found = (edge,) * 3
         else:
             raise InputError(
-                message("import.raw-file-bytes", "a raw file of {size} bytes does not state its shape", size=size),
+                message("io.raw-without-shape", "a raw file of {size} bytes does not state its shape", size=size),
                 remedy,
                 file=str(path),
             )
     if len(found) != 3 or min(found) < 1:
         raise InputError(
-            message("import.shape-not-volume", "the shape {shape} is not that of a volume", shape=found),
+            message("io.shape-not-volume", "the shape {shape} is not that of a volume", shape=found),
             remedy,
             file=str(path),
         )
@@ -72,7 +72,7 @@ def shape_and_type(
     if count * stored.itemsize != size:
         raise InputError(
             message(
-                "import.file-bytes-voxels",
+                "io.raw-size-differs",
                 "the file has {size} bytes, but {shape} voxels of {bytes} bytes each need {need}",
                 size=size,
                 shape=" x ".join(map(str, found)),
@@ -107,8 +107,8 @@ def map_meta_image(path: Path) -> tuple[NDArray[Any], tuple[float, float, float]
         header, end, stored, sizes = _meta_header(stream.read(_HEADER), path)
     if header.get("CompressedData", "").lower() == "true":
         raise InputError(
-            message("import.compressed-slices", "its voxels are compressed and cannot be read slice by slice"),
-            message("import.save-uncompressed", "Save the image without compression."),
+            message("io.volume-compressed", "its voxels are compressed and cannot be read slice by slice"),
+            message("io.save-uncompressed", "Save the image without compression."),
             file=str(path),
         )
     local = header["ElementDataFile"]
@@ -132,8 +132,8 @@ def _meta_header(content: bytes, path: Path) -> tuple[dict[str, str], int, np.dt
         key, equals, value = content[end : stop if stop >= 0 else len(content)].decode("latin-1").partition("=")
         if (stop < 0 and not equals) or len(header) > 100:
             raise InputError(
-                message("import.header-line-elementdatafile", "its header has no line ElementDataFile"),
-                message("import.export-volume-again", "Export the volume again."),
+                message("io.volume-header-without-file", "its header has no line ElementDataFile"),
+                message("io.export-volume-again", "Export the volume again."),
                 file=str(path),
             )
         header[key.strip()] = value.strip()
@@ -146,10 +146,10 @@ def _meta_header(content: bytes, path: Path) -> tuple[dict[str, str], int, np.dt
     if kind is None or len(sizes) != 3:
         raise InputError(
             message(
-                "import.header-usable-elementtype",
+                "io.volume-header-incomplete",
                 "its header states no usable ElementType and DimSize of three numbers",
             ),
-            message("import.export-volume-scalar", "Export the volume as a scalar image with three axes."),
+            message("io.export-volume-scalar", "Export the volume as a scalar image with three axes."),
             file=str(path),
         )
     return header, end, np.dtype(order + kind), sizes
@@ -160,8 +160,10 @@ def _beside(path: Path, name: str) -> Path:
     place = path.parent / name
     if re.search(r"[/\\:\0]", name) or not is_file(place):
         raise InputError(
-            message("import.header-names-file", "its header names the file '{name}'", name=Untranslated(name)),
-            message("import.raw-file-beside", "Put the raw file into the header's folder, and name it without a path."),
+            message("io.volume-header-names-file", "its header names the file '{name}'", name=Untranslated(name)),
+            message(
+                "io.put-raw-file-by-header", "Put the raw file into the header's folder, and name it without a path."
+            ),
             file=str(path),
         )
     return place

@@ -44,11 +44,11 @@ class _TiffPages:
             if slice_.shape != self.shape[1:]:
                 raise InputError(
                     message(
-                        "import.size-differs-first",
+                        "io.slice-size-differs",
                         "its size differs from that of the first slice, {first}",
                         first=self._files[0].name,
                     ),
-                    message("import.export-slices-same", "Export all slices with the same size."),
+                    message("io.export-slices-alike", "Export all slices with the same size."),
                     file=str(file),
                 )
         return np.stack(found)
@@ -109,8 +109,8 @@ def open_volume(
     path = Path(path)
     if not path.exists():
         raise InputError(
-            message("import.file-folder", "there is no such file or folder"),
-            message("import.check-path", "Check the path."),
+            message("io.no-such-file", "there is no such file or folder"),
+            message("data.check-path", "Check the path."),
             file=str(path),
         )
     try:
@@ -118,8 +118,8 @@ def open_volume(
         return SlicedVolume(values, pore=pore, voxel=stated if voxel is None else voxel)
     except OSError as error:
         raise InputError(
-            message("import.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
-            message("import.copy-export-again", "Copy or export it again."),
+            message("io.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
+            message("io.copy-export-again", "Copy or export it again."),
             file=str(path),
         ) from None
 
@@ -141,10 +141,10 @@ def _voxels(
         return np.memmap(path, stored, "r", shape=found), None
     raise InputError(
         message(
-            "import.not-slice-by-slice",
+            "io.not-slice-by-slice",
             "files ending in '{ending}' cannot be read slice by slice",
             ending=kind,
         ),
-        message("import.unpack-volume", "Unpack the file, or convert it to raw, npy, tif or zarr."),
+        message("io.unpack-volume", "Unpack the file, or convert it to raw, npy, tif or zarr."),
         file=str(path),
     )

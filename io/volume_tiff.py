@@ -36,11 +36,11 @@ def read_tiff(source: Any, name: str) -> NDArray[Any]:
             if count == 1 and stated is not None and int(stated[1]) > 1:
                 raise InputError(
                     message(
-                        "import.slices-lists-first",
+                        "io.stack-lists-one-slice",
                         "it states {count} slices, but lists only the first one",
                         count=int(stated[1]),
                     ),
-                    message("import.save-stack-tiff", "Save the stack as a TIFF with one page a slice, or as raw."),
+                    message("io.save-stack-by-page", "Save the stack as a TIFF with one page a slice, or as raw."),
                     file=name,
                 )
             return _pages(image, name, range(count), first)
@@ -68,13 +68,13 @@ def _pages(image: Any, name: str, pages: range, first: NDArray[Any]) -> NDArray[
         if slice_.shape != first.shape:
             raise InputError(
                 message(
-                    "import.page-pixels-first",
+                    "io.page-size-differs",
                     "page {page} has {size} pixels, the first has {first}",
                     page=page + 1,
                     size=" x ".join(map(str, slice_.shape)),
                     first=" x ".join(map(str, first.shape)),
                 ),
-                message("import.export-slices-same", "Export all slices with the same size."),
+                message("io.export-slices-alike", "Export all slices with the same size."),
                 file=name,
             )
         out[row] = slice_
@@ -85,8 +85,8 @@ def _page(image: Any, name: str) -> NDArray[Any]:
     values = np.asarray(image)
     if values.ndim != 2:
         raise InputError(
-            message("import.colour-image", "it is a colour image"),
-            message("import.export-labels-grey", "Export the labels or grey values as one channel."),
+            message("io.colour-image", "it is a colour image"),
+            message("io.export-labels-grey", "Export the labels or grey values as one channel."),
             file=name,
         )
     return values
@@ -97,8 +97,8 @@ def slice_files(path: Path) -> list[Path]:
     files = [file for file in path.iterdir() if file.suffix.lower() in (".tif", ".tiff") and is_file(file)]
     if not files:
         raise InputError(
-            message("import.folder-tiff-slice", "the folder has no TIFF slice"),
-            message("import.folder-tif-files", "Name a folder of .tif files, or a file."),
+            message("io.folder-without-slice", "the folder has no TIFF slice"),
+            message("io.name-slice-folder", "Name a folder of .tif files, or a file."),
             file=str(path),
         )
     files.sort(key=lambda file: [int(part) if part.isdigit() else part for part in re.split(r"(\d+)", file.name)])
@@ -113,11 +113,11 @@ def read_tiff_folder(path: Path) -> NDArray[Any]:
     if odd is not None:
         raise InputError(
             message(
-                "import.size-differs-first",
+                "io.slice-size-differs",
                 "its size differs from that of the first slice, {first}",
                 first=files[0].name,
             ),
-            message("import.export-slices-same", "Export all slices with the same size."),
+            message("io.export-slices-alike", "Export all slices with the same size."),
             file=str(odd),
         )
     return np.concatenate(slices)

@@ -14,9 +14,7 @@ __all__ = ["open_zarr"]
 
 def open_zarr(path: Path, name: str | None) -> Any:
     """Return, unread, an array of a zarr store; ``name`` is its place in a group, such as "0" in OME-Zarr."""
-    zarr = need(
-        "zarr", "volumes", message("import.reading-zarr-store", "Reading the zarr store {file}", file=path.name)
-    )
+    zarr = need("zarr", "volumes", message("io.reading-zarr-store", "Reading the zarr store {file}", file=path.name))
     node = zarr.open(str(path), mode="r")
     if name is not None:
         node = node[name]
@@ -25,12 +23,12 @@ def open_zarr(path: Path, name: str | None) -> Any:
         if len(names) != 1:
             raise InputError(
                 message(
-                    "import.several-arrays",
+                    "io.several-arrays",
                     "it has {count} arrays: {names}",
                     count=len(names),
                     names=", ".join(names[:8]),
                 ),
-                message("import.state-which-one", "State which one: name='...'."),
+                message("io.name-array", "State which one: name='...'."),
                 file=str(path),
             )
         node = node[names[0]]

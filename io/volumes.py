@@ -89,7 +89,7 @@ def read_volume(
         return RockVolume(values, pore=pore, voxel=stated if voxel is None else voxel)
     except VolumeError as error:
         raise VolumeError(
-            message("import.file-reason", "{file}: {reason}", file=Path(path).name, reason=error.message)
+            message("io.file-and-reason", "{file}: {reason}", file=Path(path).name, reason=error.message)
         ) from None
 
 
@@ -104,27 +104,27 @@ def read_voxels(
     path = Path(path)
     if not path.exists():
         raise InputError(
-            message("import.file-folder", "there is no such file or folder"),
-            message("import.check-path", "Check the path."),
+            message("io.no-such-file", "there is no such file or folder"),
+            message("data.check-path", "Check the path."),
             file=str(path),
         )
     if not path.is_dir() and not is_file(path):
         raise InputError(
-            message("import.pipe-device-not", "It is a pipe or a device, not a file"),
-            message("import.name-a-file", "Name a file."),
+            message("io.not-a-file", "It is a pipe or a device, not a file"),
+            message("io.name-a-file", "Name a file."),
             file=str(path),
         )
     try:
         if path.is_dir():
             return _read_folder(path, name), None
-        check_memory(path.stat().st_size, message("import.reading", "Reading {file}", file=path.name))
+        check_memory(path.stat().st_size, message("io.reading-file", "Reading {file}", file=path.name))
         return _read_bytes(path, path.name, None, shape, dtype, name)
     except GeofitError:
         raise
     except Exception as error:  # each library that unpacks has errors of its own
         raise InputError(
-            message("import.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
-            message("import.copy-export-again", "Copy or export it again."),
+            message("io.file-damaged-incomplete", "the file is damaged or incomplete ({error})", error=error),
+            message("io.copy-export-again", "Copy or export it again."),
             file=str(path),
         ) from None
 
@@ -171,10 +171,8 @@ def _read_bytes(
         found, stored = shape_and_type(file, raw.size, shape, dtype, path)
         return raw.view(stored).reshape(found), None
     raise InputError(
-        message(
-            "import.files-ending-cannot", "files ending in '{ending}' cannot be read as a rock volume", ending=kind
-        ),
-        message("import.export-volume", "Export the volume as one of: {kinds}.", kinds=KINDS),
+        message("io.volume-ending-unknown", "files ending in '{ending}' cannot be read as a rock volume", ending=kind),
+        message("io.export-volume", "Export the volume as one of: {kinds}.", kinds=KINDS),
         file=str(path),
     )
 
@@ -184,7 +182,7 @@ def _unpacked(stream: gzip.GzipFile, path: Path) -> bytes:
     parts, size = [], 0
     while part := stream.read(_PART):
         size += len(part)
-        check_memory(2 * size, message("import.reading", "Reading {file}", file=path.name))
+        check_memory(2 * size, message("io.reading-file", "Reading {file}", file=path.name))
         parts.append(part)
     return b"".join(parts)
 
@@ -196,7 +194,7 @@ def _read_zip(
         known = (*TIFF, *RAW, ".npy", ".npz", ".gz", ".mha")
         files = [entry for entry in archive.namelist() if Path(entry).suffix.lower() in known]
         chosen = _one_of(files, name, path)
-        check_memory(archive.getinfo(chosen).file_size, message("import.reading", "Reading {file}", file=path.name))
+        check_memory(archive.getinfo(chosen).file_size, message("io.reading-file", "Reading {file}", file=path.name))
         return _read_bytes(path, chosen, archive.read(chosen), shape, dtype, name)
 
 
@@ -208,17 +206,17 @@ def _one_of(names: list[str], wanted: str | None, path: Path) -> str:
         return names[0]
     if not names:
         raise InputError(
-            message("import.volume-read", "its volume cannot be read"),
-            message("import.known-kinds-2", "Known kinds: {kinds}.", kinds=KINDS),
+            message("io.volume-unreadable", "its volume cannot be read"),
+            message("io.known-volume-kinds", "Known kinds: {kinds}.", kinds=KINDS),
             file=str(path),
         )
     raise InputError(
         message(
-            "import.several-volumes",
+            "io.several-volumes",
             "it has {count} volumes: {names}",
             count=len(names),
             names=", ".join(sorted(names)[:8]),
         ),
-        message("import.state-which-one-name", "State which one: name='{example}'.", example=sorted(names)[0]),
+        message("io.name-volume", "State which one: name='{example}'.", example=sorted(names)[0]),
         file=str(path),
     )

@@ -47,12 +47,12 @@ def read_sheet(source: Source, journal: Journal) -> Table:
     if not rows:
         raise InputError(
             message(
-                "import.workbook-no-sheet-rows",
+                "io.sheet-missing",
                 "The workbook has no sheet '{name}' with rows; its sheets are {names}",
                 name=name,
                 names=", ".join(sheets),
             ),
-            message("import.name-one", "Name one of them."),
+            message("data.name-one", "Name one of them."),
             file=source.name,
         )
     while len(rows) > 1 and sum(map(bool, rows[0][1])) == 1 and sum(map(bool, rows[1][1])) > 1:
@@ -60,7 +60,7 @@ def read_sheet(source: Source, journal: Journal) -> Table:
         journal.add(
             "note",
             source.name,
-            message("import.title-above-header-not", "A title above the header is not read"),
+            message("io.title-line", "A title above the header is not read"),
             row=line,
             value=" ".join(cells).strip(),
         )
@@ -73,17 +73,17 @@ def read_sheet(source: Source, journal: Journal) -> Table:
     if named and body and is_units_row(body[0][1]):
         line, units = body[0]
         body = body[1:]
-        journal.add("note", source.name, message("import.row-holds-units", "This row contains the units"), row=line)
+        journal.add("note", source.name, message("io.row-of-units", "This row contains the units"), row=line)
     journal.add(
         "note",
         source.name,
         message(
-            "import.read-sheet",
+            "io.read-sheet",
             "Read from sheet '{sheet}', {header}",
             sheet=name,
-            header=message("import.with-header", "with a header")
+            header=message("io.with-header", "with a header")
             if named
-            else message("import.without-header", "without a header"),
+            else message("io.without-header", "without a header"),
         ),
     )
     return table_of(source, journal, header, body, units=units, named=named)
@@ -91,9 +91,7 @@ def read_sheet(source: Source, journal: Journal) -> Table:
 
 def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]:
     """Return the filled rows of each sheet: line and cells."""
-    openpyxl = need(
-        "openpyxl", "xlsx", message("import.reading-workbook", "Reading the workbook {file}", file=source.name)
-    )
+    openpyxl = need("openpyxl", "xlsx", message("io.reading-workbook", "Reading the workbook {file}", file=source.name))
     failures = (
         openpyxl.utils.exceptions.InvalidFileException,
         zipfile.BadZipFile,
@@ -123,12 +121,12 @@ def _open(source: Source, data: bytes) -> dict[str, list[tuple[int, list[str]]]]
     except failures as error:
         raise InputError(
             message(
-                "import.workbook-cannot-read",
+                "io.workbook-unreadable",
                 "The workbook cannot be read: {error}",
                 error=str(error) or type(error).__name__,
             ),
             message(
-                "import.open-spreadsheet-program-save",
+                "io.save-workbook-again",
                 "Open it in a spreadsheet program and save it as .xlsx, or the sheet as CSV UTF-8.",
             ),
             file=source.name,
@@ -142,12 +140,12 @@ def _require_size(data: bytes, file: str) -> None:
     if unpacked > MOST_BYTES:
         raise InputError(
             message(
-                "import.workbook-unpacks-read",
+                "io.workbook-too-large",
                 "The workbook unpacks to {size:.0f} MB; at most {most:.0f} are read",
                 size=unpacked / 1e6,
                 most=MOST_BYTES / 1e6,
             ),
-            message("import.save-sheet-csv-utf", "Save the sheet as CSV UTF-8."),
+            message("io.save-sheet-as-csv", "Save the sheet as CSV UTF-8."),
             file=file,
         )
 
@@ -164,7 +162,7 @@ def _filled_rows(values: Iterable[Sequence[Any]], file: str) -> list[tuple[int, 
         if line > MOST_ROWS or cells_read > MOST_CELLS:
             raise InputError(
                 message(
-                    "import.sheet-rows-cells",
+                    "io.sheet-too-large",
                     "The sheet has more rows ({rows}) or cells ({cells}) than can be read; at most {most_rows} and "
                     "{most_cells}",
                     rows=line,
@@ -173,7 +171,7 @@ def _filled_rows(values: Iterable[Sequence[Any]], file: str) -> list[tuple[int, 
                     most_cells=MOST_CELLS,
                 ),
                 message(
-                    "import.remove-rows-columns",
+                    "io.remove-cells-beyond-table",
                     "Remove the rows and columns beyond the table, or save the sheet as CSV UTF-8.",
                 ),
                 file=file,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from geofit.geometry.trim_loops import inside
+from geofit.geometry.trim_loops import inside_loops
 from geofit.splines.patch import Patch
 
 __all__ = ["converged_distances", "ring"]
@@ -26,7 +26,7 @@ def _within(patch: Patch, loops: tuple[np.ndarray, ...], xyz: np.ndarray) -> np.
     """Return the distances to feet inside the loops, by Newton's method from many places of a dense lattice."""
     u0, u1, v0, v1 = patch.domain
     u, v = (a.ravel() for a in np.meshgrid(np.linspace(u0, u1, LATTICE), np.linspace(v0, v1, LATTICE)))
-    held = inside(patch, loops, u, v)
+    held = inside_loops(patch, loops, u, v)
     u, v = u[held], v[held]
     starts = cKDTree(patch.evaluate(u, v)).query(xyz, k=STARTS)[1].ravel()
     u, v, target = u[starts], v[starts], np.repeat(xyz, STARTS, axis=0)
@@ -35,7 +35,7 @@ def _within(patch: Patch, loops: tuple[np.ndarray, ...], xyz: np.ndarray) -> np.
         s, su, sv = (patch.evaluate(u, v, *order) for order in ((0, 0), (1, 0), (0, 1)))
         suu, suv, svv = (patch.evaluate(u, v, *order) for order in ((2, 0), (1, 1), (0, 2)))
         away = s - target
-        best = np.minimum(best, np.where(inside(patch, loops, u, v), np.linalg.norm(away, axis=1), np.inf))
+        best = np.minimum(best, np.where(inside_loops(patch, loops, u, v), np.linalg.norm(away, axis=1), np.inf))
 
         def dot(a: np.ndarray, b: np.ndarray) -> np.ndarray:
             return np.einsum("nk,nk->n", a, b)

@@ -87,7 +87,7 @@ def horizon(name: str = "T3/T2", epsilon: float = 0.5, chinese: bool = False) ->
                 0.0,
                 "places",
                 message(
-                    "check.places-folded-degenerate",
+                    "checks.places-folded-count",
                     "{count} of {total} places folded or degenerate",
                     count=0,
                     total=90,
@@ -175,7 +175,7 @@ def examined(result: HorizonResult) -> HorizonResult:
         (Outlier(150, 0.91, 0.2, 4.5),),
         (
             message(
-                "prediction.without-sections-no-surface",
+                "prediction.sections-indispensable",
                 "without {failed} of the sections no surface can be fitted",
                 failed=2,
             ),

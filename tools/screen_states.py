@@ -206,8 +206,8 @@ class _Set:
 
     def small(self) -> None:
         error = InputError(
-            message("import.separator-not-character", "The separator {sep!r} is not one character", sep=";;"),
-            message("import.give-character-tab-space", "Give one character, 'tab' or 'space'."),
+            message("io.separator-not-character", "The separator {sep!r} is not one character", sep=";;"),
+            message("io.give-separator", "Give one character, 'tab' or 'space'."),
             file="lithology.csv",
         )
         self.dialog("16_error", ErrorDialog(self.window.files.tr("Open {name}").format(name="site.toml"), error,

@@ -15,7 +15,7 @@ from geofit.prediction.examine import examine
 __all__ = ["LAYOUTS", "fit_one", "messy"]
 
 #: Code of the message that takes the place of an examination that failed.
-UNFORESEEN = "error.unforeseen"
+UNFORESEEN = "data.unforeseen-error"
 #: Layouts of points in plan, as people bring them.
 LAYOUTS = (
     "three", "two places", "square", "one place", "vertical hole", "line", "sections", "core", "cloud", "lattice",

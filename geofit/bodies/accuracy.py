@@ -15,18 +15,18 @@ from geofit.data.messages import Message, message
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["BodyAccuracy", "crossed_pairs", "examine"]
+__all__ = ["BodyAccuracy", "crossed_pairs", "examine_body"]
 
 Floats = NDArray[np.float64]
 WORST = 20
 #: Sides of the box, and how a sentence calls them.
 SIDE_WORDS = {
-    "west": message("side.west", "west"),
-    "east": message("side.east", "east"),
-    "south": message("side.south", "south"),
-    "north": message("side.north", "north"),
-    "bottom": message("side.bottom", "bottom"),
-    "top": message("side.top", "top"),
+    "west": message("bodies.side-west", "west"),
+    "east": message("bodies.side-east", "east"),
+    "south": message("bodies.side-south", "south"),
+    "north": message("bodies.side-north", "north"),
+    "bottom": message("bodies.side-bottom", "bottom"),
+    "top": message("bodies.side-top", "top"),
 }
 
 
@@ -53,7 +53,7 @@ class BodyAccuracy(Accuracy):
     open_sides: tuple[str, ...] = ()
 
 
-def examine(body: BodyFit) -> BodyAccuracy:
+def examine_body(body: BodyFit) -> BodyAccuracy:
     """Return the accuracy of a body."""
     data, settings = body.data, body.settings
     residuals = body.distance(data.contacts)
@@ -93,7 +93,7 @@ def examine(body: BodyFit) -> BodyAccuracy:
             0.0,
             "m",
             message(
-                "bodies.logged-inside-outside",
+                "bodies.logs-violated-by-length",
                 "{missed:.2f} m are logged inside but lie outside the body, {excess:.2f} m the reverse, of "
                 "{logged:.1f} m",
                 missed=missed,
@@ -108,7 +108,7 @@ def examine(body: BodyFit) -> BodyAccuracy:
             0.0,
             "1",
             message(
-                "bodies.places-where-hole",
+                "bodies.crossings-between-samples",
                 "{count} places where a hole crosses the surface between two samples of one side",
                 count=extra_in + extra_out,
             ),
@@ -120,7 +120,7 @@ def examine(body: BodyFit) -> BodyAccuracy:
             0.0,
             "1",
             message(
-                "bodies.parts-body-hold",
+                "bodies.parts-without-data",
                 "{count} parts of the body contain no contact and no inside sample",
                 count=unsupported,
             ),
@@ -146,7 +146,7 @@ def examine(body: BodyFit) -> BodyAccuracy:
             1.0,
             "1",
             message(
-                "bodies.surface-farther-data",
+                "bodies.surface-far-from-data",
                 "{share:.1%} of the surface is farther than {distance:.1f} m from all data",
                 share=far_share,
                 distance=far,
@@ -240,7 +240,7 @@ def _notes(body: BodyFit) -> tuple[Message, ...]:
     samples = len(fitted.prepared.inside) + len(fitted.prepared.outside)
     notes: list[Message] = [
         message(
-            "bodies.samples-active-field",
+            "bodies.samples-active",
             "{active} of {samples} samples are active; the field satisfies {conditions} conditions",
             active=fitted.active,
             samples=samples + len(region.closing),
@@ -250,7 +250,7 @@ def _notes(body: BodyFit) -> tuple[Message, ...]:
     if len(region.closing):
         notes.append(
             message(
-                "bodies.ground-farther-contacts",
+                "bodies.ground-beyond-reach",
                 "Ground farther than {reach:.1f} m from contacts and inside samples counts as outside ({count} places)",
                 reach=region.reach,
                 count=len(region.closing),

@@ -20,7 +20,7 @@ from geofit.bodies.rbf import NONE, Rbf, Saddle
 from geofit.data.errors import FitError
 from geofit.data.messages import message
 
-__all__ = ["ActiveFit", "Samples", "complementarity", "fit_active", "fixes_trend", "spread"]
+__all__ = ["ActiveFit", "SidedSamples", "complementarity", "farthest_apart", "fit_active", "fixes_trend"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,7 +39,7 @@ SURVEY = 20_000
 
 
 @dataclass(frozen=True, eq=False)
-class Samples:
+class SidedSamples:
     """Places with a known side: ``side`` (n,) is -1 inside and +1 outside, ``side * value >= bound`` is wanted.
 
     ``slack`` (n,) is how much of the bound may be missed.
@@ -51,15 +51,15 @@ class Samples:
     slack: Floats
 
     @classmethod
-    def of(cls, xyz: Floats, side: Floats, bound: Floats) -> Samples:
+    def of(cls, xyz: Floats, side: Floats, bound: Floats) -> SidedSamples:
         """Return samples with positive bounds (n,), of which a millionth may be missed."""
         return cls(xyz, side, bound, 1e-6 * bound)
 
     def __len__(self) -> int:
         return len(self.xyz)
 
-    def __getitem__(self, index: NDArray[np.bool_] | Ints) -> Samples:
-        return Samples(self.xyz[index], self.side[index], self.bound[index], self.slack[index])
+    def __getitem__(self, index: NDArray[np.bool_] | Ints) -> SidedSamples:
+        return SidedSamples(self.xyz[index], self.side[index], self.bound[index], self.slack[index])
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +77,7 @@ def fit_active(
     values: Floats,
     oriented: Floats,
     normals: Floats,
-    samples: Samples,
+    samples: SidedSamples,
     reach: float = 0.0,
     most: int = ROUNDS,
     partial: bool = False,
@@ -135,7 +135,7 @@ def fit_active(
 
 
 def _grown(
-    base: Saddle, columns: Floats, matrix: Floats, samples: Samples, candidates: Ints, count: int
+    base: Saddle, columns: Floats, matrix: Floats, samples: SidedSamples, candidates: Ints, count: int
 ) -> tuple[Floats, Floats]:
     """Return the solved columns and the covariance of all candidates, the last ``count`` of which are new."""
     xyz = samples.xyz[candidates]
@@ -205,7 +205,7 @@ def fixes_trend(points: Floats, oriented: Floats) -> bool:
 def _unsatisfied(count: int, rounds: int) -> FitError:
     return FitError(
         message(
-            "bodies.samples-still-wrong",
+            "bodies.active-set-not-converged",
             "{count} samples are still on the wrong side after {rounds} rounds. Look for intervals that contradict "
             "the contacts, or give the contacts a larger coincidence_distance.",
             count=count,
@@ -214,7 +214,7 @@ def _unsatisfied(count: int, rounds: int) -> FitError:
     )
 
 
-def _exchange(points: Floats, values: Floats, oriented: Floats, normals: Floats, samples: Samples) -> ActiveFit:
+def _exchange(points: Floats, values: Floats, oriented: Floats, normals: Floats, samples: SidedSamples) -> ActiveFit:
     """Fit where contacts alone leave the trend free: samples hold it from the start, and are released one by one."""
     active = _start(samples)
     for rounds in range(1, ROUNDS + 1):
@@ -234,17 +234,17 @@ def _exchange(points: Floats, values: Floats, oriented: Floats, normals: Floats,
     raise _unsatisfied(len(enter), ROUNDS)
 
 
-def _start(samples: Samples) -> Ints:
+def _start(samples: SidedSamples) -> Ints:
     """Return samples, far from each other and of both sides, that fix the trend with the contacts."""
     start: list[Ints] = []
     for side in (-1.0, 1.0):
         own = np.flatnonzero(samples.side == side)
         if len(own):
-            start.append(own[spread(samples.xyz[own], min(8, len(own)))])
+            start.append(own[farthest_apart(samples.xyz[own], min(8, len(own)))])
     return np.unique(np.concatenate(start)) if start else np.zeros(0, np.int64)
 
 
-def spread(xyz: Floats, count: int) -> Ints:
+def farthest_apart(xyz: Floats, count: int) -> Ints:
     """Return the indices of ``count`` places far from each other: each the farthest from those before it."""
     chosen = [int(np.argmin(xyz @ np.array([1.0, 1e-3, 1e-6])))]
     gap = ((xyz - xyz[chosen[0]]) ** 2).sum(axis=1)
@@ -257,7 +257,7 @@ def spread(xyz: Floats, count: int) -> Ints:
     return np.array(chosen, dtype=np.int64)
 
 
-def _worst(value: Callable[[Floats], Floats], samples: Samples, active: Ints, count: int, rounds: int) -> Ints:
+def _worst(value: Callable[[Floats], Floats], samples: SidedSamples, active: Ints, count: int, rounds: int) -> Ints:
     """Return the most violated samples that are not active, for a fit of ``count`` points.
 
     No two of them are close to each other in the first rounds: neighbours along a hole would be satisfied together.

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.active import Samples, fit_active, spread
+from geofit.bodies.active import SidedSamples, farthest_apart, fit_active
 from geofit.bodies.kernels import blend
 from geofit.bodies.rbf import Rbf
 
-__all__ = ["Blend", "BlendFit", "Part", "fit_blend"]
+__all__ = ["Blend", "BlendFit", "BlendPart", "fit_blend"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -38,7 +38,7 @@ OVERLAP = 0.12
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class BlendPart:
     """A box with its correction: ``centre`` and ``half`` (3,) of the grown box."""
 
     centre: Floats
@@ -55,7 +55,7 @@ class Blend:
     """The coarse field plus the blended corrections; its parts cover the box of the body."""
 
     coarse: Rbf
-    parts: tuple[Part, ...]
+    parts: tuple[BlendPart, ...]
 
     def value(self, x: Floats) -> Floats:
         """Return the values (n,) at (n, 3) places."""
@@ -100,7 +100,7 @@ class BlendFit:
 
 
 def fit_blend(
-    points: Floats, oriented: NDArray[np.bool_], normals: Floats, samples: Samples, corners: Floats
+    points: Floats, oriented: NDArray[np.bool_], normals: Floats, samples: SidedSamples, corners: Floats
 ) -> BlendFit:
     """Fit a field that is zero at the contacts and keeps every sample on its side, in parts.
 
@@ -118,7 +118,7 @@ def fit_blend(
         Places whose box the parts must cover.
     """
     rows = np.where(oriented, 4, 1)
-    chosen = np.sort(spread(points, max(50, int(COARSE / rows.mean()))))
+    chosen = np.sort(farthest_apart(points, max(50, int(COARSE / rows.mean()))))
     gradient = np.full_like(points, np.nan)
     gradient[oriented] = normals
     some = np.arange(0, len(samples), -(-len(samples) // COARSE_SAMPLES)) if len(samples) else np.zeros(0, np.int64)
@@ -138,20 +138,22 @@ def fit_blend(
     gradient[oriented] = bend
     lower = np.minimum(corners.min(axis=0), points.min(axis=0)) - 1e-9
     upper = np.maximum(corners.max(axis=0), points.max(axis=0)) + 1e-9
-    left = Samples(samples.xyz, samples.side, samples.bound - samples.side * coarse.value(samples.xyz), samples.slack)
+    left = SidedSamples(
+        samples.xyz, samples.side, samples.bound - samples.side * coarse.value(samples.xyz), samples.slack
+    )
     parts, active, rounds = [], len(first.active), first.rounds
     lacking = left.xyz[left.bound > left.slack]
     load = np.concatenate([rows, np.full(len(lacking), LACKING)])
     for low, high in _boxes(np.concatenate([points, lacking]), load, lower, upper):
         centre, half = (low + high) / 2, (high - low) * (0.5 + OVERLAP)
-        part = Part(centre, half, None)
+        part = BlendPart(centre, half, None)
         at = np.flatnonzero(part.holds(points))
         near = left[part.holds(samples.xyz)]
         if len(at) or (near.bound > near.slack).any():
             turned = at[oriented[at]]
             reach = 2.0 * float(np.linalg.norm(half))
             fit = fit_active(points[at], rest[at], points[turned], gradient[turned], near, reach)
-            part = Part(centre, half, fit.rbf)
+            part = BlendPart(centre, half, fit.rbf)
             active, rounds = active + len(fit.active), max(rounds, fit.rounds)
         parts.append(part)
     return BlendFit(Blend(coarse, tuple(parts)), active, int(rows.sum()) + active, rounds)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.posterior import Posterior
+from geofit.bodies.posterior import BodyPosterior
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.implicit.lattice import Lattice
@@ -55,7 +55,7 @@ def block_lattice(body: BodyFit, spacing: float | None = None) -> Lattice:
         least = float(np.prod(upper - lower) / MOST) ** (1 / 3)
         raise SettingsError(
             message(
-                "bodies.blocks-cannot-used-body",
+                "bodies.block-size-unusable",
                 "Blocks of {spacing} m cannot be used for a body {size:.1f} m long: at most {most} blocks are made, "
                 "so give {least:.3g} m or more.",
                 spacing=spacing,
@@ -88,5 +88,5 @@ def block_model(body: BodyFit, spacing: float | None = None) -> BlockModel:
     local = lattice.nodes()
     centres = local + body.origin
     return BlockModel(
-        centres, lattice.spacing, lattice.shape, body.field.value(local), Posterior(body).probability(centres)
+        centres, lattice.spacing, lattice.shape, body.field.value(local), BodyPosterior(body).probability(centres)
     )

@@ -98,7 +98,7 @@ def _delaunay(vertices: Floats, loops: Sequence[list[int]], name: str) -> Ints:
     if not all(ring.is_valid for ring in rings) or len(number) < sum(map(len, loops)):
         raise FitError(
             message(
-                "bodies.cut-along-crosses",
+                "bodies.cut-crosses-itself",
                 "The cut along '{name}' crosses itself: the body's triangles are too coarse for it. Give cut() a "
                 "smaller spacing.",
                 name=name,

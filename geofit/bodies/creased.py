@@ -65,7 +65,7 @@ def creased_solid(body: ImplicitBody) -> Any:
 
 def _combined(part: Field, epsilon: float, size: float) -> tuple[Any, bool]:
     """Return the solid of a field, and whether the field is what lies outside it."""
-    from geofit.cad.boolean import common, cut, fused, half_space
+    from geofit.cad.boolean import common, fused, half_space, subtract_solid
     from geofit.cad.solid import patch_solid
 
     found = sharp_union(part)
@@ -80,13 +80,13 @@ def _combined(part: Field, epsilon: float, size: float) -> tuple[Any, bool]:
         return fused(inner), found[1]
     # What lies outside some solids, or in others, is what lies outside of the first without the others.
     shape = common(outer)
-    return (cut(shape, fused(inner)) if inner else shape), not found[1]
+    return (subtract_solid(shape, fused(inner)) if inner else shape), not found[1]
 
 
 def _endless() -> FitError:
     return FitError(
         message(
-            "bodies.part-endless", "A part of the body is unbounded: a solid must be closed. Write triangles instead."
+            "bodies.part-unbounded", "A part of the body is unbounded: a solid must be closed. Write triangles instead."
         )
     )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.active import spread
+from geofit.bodies.active import farthest_apart
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_field
 from geofit.data.errors import FitError
@@ -128,7 +128,7 @@ def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
     if len(set(names.tolist()) - {""}) < 3:
         raise FitError(
             message(
-                "bodies.leaving-hole-time-needs",
+                "bodies.folds-need-three-holes",
                 "Leaving out one hole at a time needs three holes or more with samples, and their names in "
                 "inside_hole and outside_hole.",
             )
@@ -137,7 +137,7 @@ def _chosen(body: BodyFit, most: int) -> tuple[str, ...]:
     near = cKDTree(own).query(xyz - body.origin)[0] <= body.region.reach
     found = sorted(set(names[near].tolist()) - {""})
     middles = np.array([xyz[(names == name) & near].mean(axis=0) for name in found])
-    return tuple(found[k] for k in np.sort(spread(middles - body.origin, min(most, len(found)))).tolist())
+    return tuple(found[k] for k in np.sort(farthest_apart(middles - body.origin, min(most, len(found)))).tolist())
 
 
 @dataclass(frozen=True, eq=False)

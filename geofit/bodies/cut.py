@@ -112,7 +112,7 @@ def _named(surfaces: Any) -> list[tuple[str, CuttingSurface]]:
         if names.count(name) > 1 or not hasattr(surface, "elevation"):
             raise SettingsError(
                 message(
-                    "bodies.surface-cannot-cut",
+                    "bodies.cutting-surface-unusable",
                     "Surface '{name}' cannot cut the body: each needs a name of its own and elevation(x, y).",
                     name=name,
                 )
@@ -122,9 +122,9 @@ def _named(surfaces: Any) -> list[tuple[str, CuttingSurface]]:
 
 def _label(body: str, sides: Mapping[str, Side]) -> str:
     words = [
-        message("bodies.above", "above {surface}", surface=k)
+        message("bodies.part-above-surface", "above {surface}", surface=k)
         if v == "above"
-        else message("bodies.below", "below {surface}", surface=k)
+        else message("bodies.part-below-surface", "below {surface}", surface=k)
         for k, v in sides.items()
     ]
     return f"{body}: {', '.join(map(str, words))}" if words else body
@@ -152,7 +152,7 @@ def split_mesh(mesh: TriangleMesh, height: Height, name: str = "") -> tuple[Tria
     if not np.isfinite(level).all():
         raise FitError(
             message(
-                "bodies.surface-not-reach",
+                "bodies.cutting-surface-too-small",
                 "Surface '{name}' does not reach {share:.1%} of the body. Enlarge the surface, or leave it out.",
                 name=name,
                 share=float((~np.isfinite(level)).mean()),

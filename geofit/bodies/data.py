@@ -97,7 +97,7 @@ class BodyData:
         if known.shape != (n, 3):
             raise PointsError(
                 message(
-                    "bodies.normals-shape-contacts",
+                    "bodies.normals-wrong-shape",
                     "normals has shape {shape}; {n} contacts need shape ({n}, 3), NaN where no normal is known.",
                     shape=known.shape,
                     n=n,
@@ -143,7 +143,7 @@ def _finite_places(name: str, given: ArrayLike) -> Floats:
     if bad.size:
         raise PointsError(
             message(
-                "bodies.not-first-index",
+                "bodies.values-not-finite",
                 "{count} of {total} {name} are not finite, the first at index {index}. Remove or complete them.",
                 count=bad.size,
                 total=len(xyz),
@@ -194,7 +194,7 @@ def prepare(data: BodyData, coincidence_distance: float) -> Prepared:
     count = np.bincount(member, minlength=len(contacts))
     for k in np.flatnonzero(count > 1).tolist():
         text = message(
-            "bodies.contacts-coincide-within",
+            "bodies.contacts-coincident",
             "{count} contacts coincide within {distance:g} m: they count as one",
             count=int(count[k]),
             distance=coincidence_distance,
@@ -210,7 +210,7 @@ def prepare(data: BodyData, coincidence_distance: float) -> Prepared:
     ):
         if given > kept:
             text = message(
-                "bodies.samples-repeat-once",
+                "bodies.samples-repeated",
                 "{count} {side} samples repeat another one: they count once",
                 count=given - kept,
                 side=name,
@@ -246,7 +246,7 @@ def _normals(data: BodyData, contacts: Floats, member: Ints, issues: list[BodyIs
         issues.append(
             BodyIssue(
                 "normal",
-                message("bodies.normal-contact-zero", "The normal of contact {index} is zero: it is not used", index=i),
+                message("bodies.normal-zero", "The normal of contact {index} is zero: it is not used", index=i),
                 _place(data.contacts[i]),
                 used=False,
             )
@@ -262,7 +262,7 @@ def _normals(data: BodyData, contacts: Floats, member: Ints, issues: list[BodyIs
     opposite = (count > 1) & (size < 0.5 * count)
     for k in np.flatnonzero(opposite).tolist():
         text = message(
-            "bodies.coincident-contacts-opposite",
+            "bodies.coincident-normals-opposite",
             "{count} coincident contacts have opposite normals: none of these normals is used",
             count=int(count[k]),
         )
@@ -287,7 +287,7 @@ def _sides(
             mask = np.asarray(cKDTree(contacts - origin).query(samples - origin)[0]) > distance
         for i in np.flatnonzero(~mask).tolist():
             text = message(
-                "bodies.sample-contact-side",
+                "bodies.sample-on-contact",
                 "{side} sample {index} lies on a contact: its side is not used",
                 side=name,
                 index=i,
@@ -299,7 +299,7 @@ def _sides(
         for i in np.flatnonzero(far <= distance).tolist():
             holes = data.inside_hole[i], data.outside_hole[near[i]]
             text = message(
-                "bodies.inside-sample-hole",
+                "bodies.samples-contradict",
                 "Inside sample {inside} (hole '{first}') and outside sample {outside} (hole "
                 "'{second}') coincide: the intervals contradict each other, and neither side is used",
                 inside=i,
@@ -320,7 +320,7 @@ def _require_body(data: BodyData, found: Prepared) -> None:
     if not len(found.inside) and not oriented:
         raise FitError(
             message(
-                "bodies.nothing-inside-body",
+                "bodies.no-data-inside",
                 "Nothing lies inside the body ({contacts} contacts, {inside} inside and {outside} outside samples, no "
                 "normals). Give intervals in the body, inside samples, or contacts with normals.",
                 **given,
@@ -329,7 +329,7 @@ def _require_body(data: BodyData, found: Prepared) -> None:
     if not len(found.contacts) and not len(found.outside):
         raise FitError(
             message(
-                "bodies.nothing-bounds-body",
+                "bodies.no-data-outside",
                 "Nothing bounds the body: all {inside} samples are inside. Give contacts, or intervals outside it.",
                 **given,
             )
@@ -337,7 +337,7 @@ def _require_body(data: BodyData, found: Prepared) -> None:
     if not len(found.contacts):
         raise FitError(
             message(
-                "bodies.contact-samples-inside",
+                "bodies.no-contact",
                 "The data have {inside} samples inside and {outside} outside, but no contact. Give places on the "
                 "surface, such as the ends of the intervals in the body.",
                 **given,
@@ -346,7 +346,7 @@ def _require_body(data: BodyData, found: Prepared) -> None:
     if len(data.holes) == 1 and (data.hole == data.holes[0]).all():
         raise FitError(
             message(
-                "bodies.contacts-come-hole",
+                "bodies.contacts-of-one-hole",
                 "All contacts come from one hole, '{hole}': they do not show how wide the body is. Give at least two "
                 "holes, or outlines or points elsewhere.",
                 hole=data.holes[0],
@@ -357,7 +357,7 @@ def _require_body(data: BodyData, found: Prepared) -> None:
     if len(everything) < 2 or extent[1] < 1e-3 * extent[0]:
         raise FitError(
             message(
-                "bodies.data-line-hole",
+                "bodies.data-on-one-line",
                 "All {count} data lie on one line, like those of one hole: they do not show how wide the body is. "
                 "Give at least two holes.",
                 count=len(everything),

@@ -11,14 +11,14 @@ from geofit.implicit.field import Field
 from geofit.implicit.foot import foot_points
 from geofit.implicit.mesh import TriangleMesh
 
-__all__ = ["signed_distance"]
+__all__ = ["body_distance"]
 
 Floats = NDArray[np.float64]
 #: Of the last step, relative; blended fields are exact to some nanometres only.
 TOLERANCE = 1e-8
 
 
-def signed_distance(field: Field, xyz: Floats, size: float, surface: Callable[[], TriangleMesh]) -> Floats:
+def body_distance(field: Field, xyz: Floats, size: float, surface: Callable[[], TriangleMesh]) -> Floats:
     """Return the distances (n,) of (n, 3) places to the surface on which a field is zero, positive outside.
 
     The iteration for the foot point starts at the place itself where that is near the surface, else at the nearest

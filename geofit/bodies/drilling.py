@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.planned import PlannedHole, direction_of, predict_hole
+from geofit.bodies.planned import PlannedHole, hole_direction, predict_hole
 from geofit.bodies.simulate import draws
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
@@ -16,7 +16,7 @@ from geofit.data.messages import message
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["SuggestedHole", "suggest_holes"]
+__all__ = ["SuggestedHole", "suggest_body_holes"]
 
 Floats = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class SuggestedHole:
     sd_after: float
 
 
-def suggest_holes(
+def suggest_body_holes(
     body: BodyFit, count: int = 3, *, azimuth: float = 0.0, dip: float = 90.0
 ) -> tuple[SuggestedHole, ...]:
     """Choose the parallel holes that are expected to narrow the volume of a body most, one after the other.
@@ -71,7 +71,7 @@ def suggest_holes(
     if count < 1 or not np.isfinite([azimuth, dip]).all():
         raise SettingsError(
             message(
-                "bodies.holes-azimuth-cannot-suggested",
+                "bodies.suggestion-unusable",
                 "{count} holes of azimuth {azimuth} and dip {dip} cannot be suggested: give a count of 1 or more and "
                 "finite angles.",
                 count=count,
@@ -82,7 +82,7 @@ def suggest_holes(
     drawn = draws(body)
     if not len(drawn.places):
         return ()
-    axes = _axes(direction_of(azimuth, dip))
+    axes = _axes(hole_direction(azimuth, dip))
     lower, upper = body.extent
     corners = np.stack(np.meshgrid(*zip(lower, upper, strict=True)), axis=-1).reshape(-1, 3) @ axes.T
     low, high = corners.min(axis=0), corners.max(axis=0)

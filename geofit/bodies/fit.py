@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.active import Samples, fit_active
+from geofit.bodies.active import SidedSamples, fit_active
 from geofit.bodies.data import BodyData, Prepared, prepare
 from geofit.bodies.field import BodyField
-from geofit.bodies.fitted import Fitted, Survey
+from geofit.bodies.fitted import BodyRaster, Fitted
 from geofit.bodies.frame import BodyFrame
 from geofit.bodies.rbf import Saddle
 from geofit.bodies.region import Region, hole_spacing, region_of
@@ -81,7 +81,7 @@ def fit_body(
     >>> bool(ball.value([[1, 2, 3]])[0] < 0), ball.accuracy.verdict
     (True, 'PASS')
     """
-    from geofit.bodies.accuracy import examine
+    from geofit.bodies.accuracy import examine_body
     from geofit.bodies.body import BodyFit
     from geofit.bodies.intervals import as_body_data
 
@@ -91,7 +91,7 @@ def fit_body(
     if not name:
         name = "body" if codes is None else codes if isinstance(codes, str) else "+".join(codes)
     body = BodyFit(name, given, settings, fitted)
-    return body.with_accuracy(examine(body))
+    return body.with_accuracy(examine_body(body))
 
 
 def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
@@ -104,7 +104,7 @@ def fit_field(data: BodyData, settings: BodySettings) -> Fitted:
         if not ((own >= region.lower) & (own <= region.upper)).all(axis=1).any():
             raise FitError(
                 message(
-                    "bodies.contact-inside-sample",
+                    "bodies.box-without-data",
                     "No contact and no inside sample lies in the box {lower} to {upper}. Give a box around the body.",
                     lower=region.lower.tolist(),
                     upper=region.upper.tolist(),
@@ -142,7 +142,7 @@ def _solve(
     side = np.concatenate([-np.ones(len(prepared.inside)), np.ones(len(outside))])
     near = cKDTree(contacts).query(xyz)[0] * frame.size if len(xyz) else np.zeros(0)
     # Quadratic near a contact: thin intervals would otherwise make a field of tents, with every sample active.
-    samples = Samples.of(xyz, side, np.minimum(near, region.bound) ** 2 / region.bound)
+    samples = SidedSamples.of(xyz, side, np.minimum(near, region.bound) ** 2 / region.bound)
     if len(contacts) + 3 * int(oriented.sum()) > settings.dense:
         from geofit.bodies.blend import fit_blend
 
@@ -154,7 +154,7 @@ def _solve(
     return fit.rbf, fit.system, len(fit.active), conditions, fit.rounds
 
 
-def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[Survey, Floats]:
+def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[BodyRaster, Floats]:
     """Look at the body on a raster; also return the deepest place (map coordinates) of each part without data."""
     from scipy.ndimage import label, minimum_position
 
@@ -168,7 +168,7 @@ def _survey(field: BodyField, prepared: Prepared, origin: Floats) -> tuple[Surve
         changes = np.argwhere(np.diff(inside, axis=axis))
         places.append(lattice.origin + lattice.spacing * (changes + step / 2))
     low, high = (own.min(axis=0) - 2, own.max(axis=0) + 2) if len(own) else (np.zeros(3), np.array(lattice.shape) - 1)
-    survey = Survey(
+    survey = BodyRaster(
         lattice.spacing,
         np.concatenate(places),
         np.maximum(lattice.origin + lattice.spacing * low, field.lower),

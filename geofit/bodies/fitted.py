@@ -12,13 +12,13 @@ from geofit.bodies.field import BodyField
 from geofit.bodies.rbf import Saddle
 from geofit.bodies.region import Region
 
-__all__ = ["Fitted", "Survey"]
+__all__ = ["BodyRaster", "Fitted"]
 
 Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Survey:
+class BodyRaster:
     """A look at the body on a raster about the local origin: its node distance, (k, 3) places on the surface, extent.
 
     ``places`` are the middles of the raster's edges that cross the surface; ``lower`` and ``upper`` (3,) are corners of
@@ -42,7 +42,7 @@ class Fitted:
     field: BodyField
     region: Region
     prepared: Prepared
-    survey: Survey
+    survey: BodyRaster
     system: Saddle | None
     active: int
     conditions: int

@@ -99,9 +99,9 @@ class ImplicitBody:
 
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed orthogonal distance (n,) of (n, 3) places to the surface, metres, positive outside."""
-        from geofit.bodies.distance import signed_distance
+        from geofit.bodies.distance import body_distance
 
-        return signed_distance(self.field, self._local(xyz), self.spacing, lambda: self.overview)
+        return body_distance(self.field, self._local(xyz), self.spacing, lambda: self.overview)
 
     def triangulate(self, spacing: float | None = None) -> TriangleMesh:
         """Return the surface as a closed triangle mesh in map coordinates.
@@ -126,7 +126,7 @@ class ImplicitBody:
         if not is_finite(spacing) or spacing <= 0 or longest / spacing > self.most_cells:
             raise SettingsError(
                 message(
-                    "bodies.spacing-cannot-used",
+                    "bodies.spacing-unusable",
                     "A spacing of {spacing} m cannot be used for a body {size:.1f} m long: give {least:.3g} m or more.",
                     spacing=spacing,
                     size=longest,

@@ -79,7 +79,7 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
         if codes is not None:
             raise SettingsError(
                 message(
-                    "bodies.codes-choose-logged",
+                    "bodies.codes-without-logs",
                     "codes choose logged intervals; arrays have none. Leave codes away, or give boreholes with logs.",
                 )
             )
@@ -89,16 +89,14 @@ def as_body_data(source: BodyData | Any, codes: str | Sequence[str] | None, sett
     if not any(getattr(campaign, "logs", ()) for campaign in campaigns):
         raise SettingsError(
             message(
-                "bodies.holds-logged-intervals",
+                "bodies.no-logged-intervals",
                 "A {kind} contains no logged intervals. Give BodyData, or the boreholes with their interval tables.",
                 kind=type(source).__name__,
             )
         )
     if codes is None:
         raise SettingsError(
-            message(
-                "bodies.codes-missing-codes", "codes is missing: name the codes of the intervals that lie in the body."
-            )
+            message("bodies.codes-missing", "codes is missing: name the codes of the intervals that lie in the body.")
         )
     return from_intervals(campaigns, codes, settings.step)
 
@@ -137,7 +135,7 @@ def from_intervals(
         frequent = ", ".join(f"{code} ({count})" for code, count in counts.most_common(12))
         raise SettingsError(
             message(
-                "bodies.code-not-occur",
+                "bodies.code-not-logged",
                 "Code {codes} does not occur in the logs. The most frequent codes are: {frequent}.",
                 codes=", ".join(missing) or "''",
                 frequent=frequent,
@@ -192,7 +190,7 @@ def stretches(intervals: Sequence[tuple[float, float, bool]], hole: str, issues:
         elif base - top > TOLERANCE:
             if sides:
                 text = message(
-                    "bodies.hole-intervals-inside",
+                    "bodies.intervals-contradict",
                     "Hole '{hole}', {top:.2f} to {base:.2f} m: intervals inside and outside the body contradict each "
                     "other; the stretch counts as unknown",
                     hole=hole,
@@ -204,7 +202,7 @@ def stretches(intervals: Sequence[tuple[float, float, bool]], hole: str, issues:
                 unlogged += base - top
     if unlogged:
         text = message(
-            "bodies.hole-logged-intervals",
+            "bodies.hole-not-logged-throughout",
             "Hole '{hole}': {length:.2f} m between logged intervals are not logged; they count as unknown",
             hole=hole,
             length=unlogged,

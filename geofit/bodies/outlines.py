@@ -53,7 +53,7 @@ class Outline:
         if corners.ndim != 2 or corners.shape[1:] != (3,) or len(corners) < 3 or not np.isfinite(corners).all():
             raise PointsError(
                 message(
-                    "bodies.outline-section-shape-give",
+                    "bodies.outline-wrong-shape",
                     "An outline of section '{section}' has shape {shape}: give three or more different, finite "
                     "corners, (k, 3), in metres.",
                     section=section,
@@ -115,7 +115,7 @@ def section_planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
         if off > FLAT * sizes[0] / np.sqrt(len(corners)):
             raise PointsError(
                 message(
-                    "bodies.outlines-section-plane-give",
+                    "bodies.outlines-off-plane",
                     "The outlines of section '{section}' lie up to {off:.2f} m off one plane. Give each plane a name "
                     "of its own.",
                     section=name,
@@ -126,7 +126,7 @@ def section_planes(outlines: Sequence[Outline]) -> tuple[SectionPlane, ...]:
         if any(abs(_area(ring)) < 1e-9 * sizes[0] ** 2 for ring in flat):
             raise PointsError(
                 message(
-                    "bodies.outline-section-bounds-area",
+                    "bodies.outline-without-area",
                     "An outline of section '{section}' bounds no area: its corners lie on one line.",
                     section=name,
                 )
@@ -166,7 +166,7 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
     if not outlines:
         raise SettingsError(
             message(
-                "bodies.there-outline-give-closed",
+                "bodies.no-outline",
                 "There is no outline. Give the closed outlines of two or more sections.",
             )
         )
@@ -174,7 +174,7 @@ def from_outlines(outlines: Sequence[Outline], step: float | None = None, *, mar
         if length is not None and not (np.isfinite(length) and length > 0):
             raise SettingsError(
                 message(
-                    "bodies.finite-number-metres-above",
+                    "bodies.length-not-positive",
                     "{setting} is {value}; a finite number of metres above 0 is needed.",
                     setting=name,
                     value=repr(length),

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.bodies.active import spread
-from geofit.bodies.posterior import SPREAD, Posterior
+from geofit.bodies.active import farthest_apart
+from geofit.bodies.posterior import SPREAD, BodyPosterior
 from geofit.bodies.simulate import changes
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
@@ -19,7 +19,7 @@ from geofit.implicit.trace import Crossing, hole_crossings
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["Band", "PlannedHole", "direction_of", "predict_hole"]
+__all__ = ["PercentileBand", "PlannedHole", "hole_direction", "predict_hole"]
 
 Floats = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ STEEPER = 1.5
 
 
 @dataclass(frozen=True)
-class Band:
+class PercentileBand:
     """Percentiles over the realizations, metres."""
 
     p10: float
@@ -67,9 +67,9 @@ class PlannedHole:
     length: float
     crossings: tuple[Crossing, ...]
     probability: float
-    entry: Band | None
-    exit: Band | None
-    inside: Band
+    entry: PercentileBand | None
+    exit: PercentileBand | None
+    inside: PercentileBand
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,7 @@ def predict_hole(
     if start.shape != (3,) or not np.isfinite([*start, azimuth, dip, length]).all() or length <= 0:
         raise SettingsError(
             message(
-                "bodies.planned-hole-needs-collar",
+                "bodies.planned-hole-unusable",
                 "A planned hole needs a collar x, y, z, finite angles and a length above 0 m, not {collar}, "
                 "{azimuth}, {dip}, {length}.",
                 collar=start.tolist(),
@@ -130,7 +130,7 @@ def predict_hole(
                 length=length,
             )
         )
-    way = direction_of(azimuth, dip)
+    way = hole_direction(azimuth, dip)
     depth = np.linspace(0.0, length, NODES)
     xyz = start + depth[:, None] * way
     slope = float(np.linalg.norm(body.gradient(xyz), axis=1).max())
@@ -154,11 +154,11 @@ def predict_hole(
         len(entry) / drawn.shape[1],
         _band(entry),
         _band(leave),
-        Band(*np.quantile(inside, [0.1, 0.5, 0.9]).tolist()),
+        PercentileBand(*np.quantile(inside, [0.1, 0.5, 0.9]).tolist()),
     )
 
 
-def direction_of(azimuth: float, dip: float) -> Floats:
+def hole_direction(azimuth: float, dip: float) -> Floats:
     """Return the unit direction (3,) of a hole of this azimuth and dip, degrees."""
     turn, fall = np.radians([azimuth, dip])
     return np.array([np.sin(turn) * np.cos(fall), np.cos(turn) * np.cos(fall), -np.sin(fall)])
@@ -166,14 +166,14 @@ def direction_of(azimuth: float, dip: float) -> Floats:
 
 def _drawn(body: BodyFit, xyz: Floats) -> Floats:
     """Return what each realization adds to the field at (n, 3) places along a hole, (n, realizations)."""
-    posterior = Posterior(body)
+    posterior = BodyPosterior(body)
     value, deviation = body.value(xyz), SPREAD * posterior.deviation(xyz)
     # Off the box, and beyond the reach of the data of a closed body, ground is outside in every realization.
     near = np.flatnonzero((np.abs(value) < FAR * deviation) & posterior.open_ground(xyz))
     change = np.zeros((len(xyz), body.settings.realizations))
     if len(near):
         fitted = body.field.frame.to_fit(xyz[near])
-        knots = fitted[spread(fitted, min(KNOTS, len(near)))]
+        knots = fitted[farthest_apart(fitted, min(KNOTS, len(near)))]
         change[near] = changes(body, posterior, knots, fitted, np.random.default_rng(body.settings.seed))
     return change
 
@@ -187,5 +187,5 @@ def _passages(depth: Floats, value: Floats) -> tuple[Floats, Floats]:
     return ends[::2], ends[1::2]
 
 
-def _band(values: Sequence[float]) -> Band | None:
-    return Band(*np.quantile(values, [0.1, 0.5, 0.9]).tolist()) if values else None
+def _band(values: Sequence[float]) -> PercentileBand | None:
+    return PercentileBand(*np.quantile(values, [0.1, 0.5, 0.9]).tolist()) if values else None

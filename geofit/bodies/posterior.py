@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from geofit.bodies.active import spread
+from geofit.bodies.active import farthest_apart
 from geofit.bodies.rbf import Saddle
 
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["ON_SURFACE", "SPREAD", "Posterior"]
+__all__ = ["ON_SURFACE", "SPREAD", "BodyPosterior"]
 
 Floats = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ SPREAD = 1.0
 
 
 @dataclass(frozen=True, eq=False)
-class Posterior:
+class BodyPosterior:
     """What the data of a body leave open.
 
     Parameters
@@ -68,7 +68,9 @@ class Posterior:
         prepared, frame = self.body.fitted.prepared, self.body.field.frame
         contacts = frame.to_fit(prepared.contacts)
         samples = frame.to_fit(np.concatenate([prepared.inside, prepared.outside]))
-        parts = [x[np.sort(spread(x, count))] for x, count in ((contacts, CONTACTS), (samples, SAMPLES)) if len(x)]
+        parts = [
+            x[np.sort(farthest_apart(x, count))] for x, count in ((contacts, CONTACTS), (samples, SAMPLES)) if len(x)
+        ]
         return Saddle(np.concatenate(parts))
 
     @cached_property

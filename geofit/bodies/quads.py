@@ -88,7 +88,7 @@ def patched_surface(body: Patchable, tolerance: float | None = None) -> PatchedS
     if cut:
         raise FitError(
             message(
-                "bodies.body-cut-box",
+                "bodies.body-cut-at-box",
                 "The body is cut at its box ({sides}): it has sharp edges, which smooth patches cannot follow. "
                 "Enlarge the box, or write triangles.",
                 sides=", ".join(cut),
@@ -138,7 +138,7 @@ def _fitted(field: Field, component: TriangleMesh, others: TriangleMesh, toleran
         )
     raise FitError(
         message(
-            "bodies.patches-not-follow",
+            "bodies.patches-off-body",
             "{most} patches do not follow the body within {tolerance:.3g} m and {angle:g} degrees at the seams (best: "
             "{deviation:.3g} m, {turn:.3g} degrees). Allow a larger epsilon, or write triangles.",
             most=most,

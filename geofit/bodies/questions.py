@@ -79,7 +79,7 @@ def section_questions(outlines: Sequence[Outline], body: BodyFit | None = None) 
         elif path is not None and (least := min(path.counts[1:-1])) < counts[0]:
             share = float(path.shares[1 + int(np.argmin(path.counts[1:-1]))])
             text = message(
-                "bodies.sections-have-parts-each",
+                "bodies.parts-not-joined",
                 "Sections '{first}' and '{second}' have {parts} parts each; the body between them has only {least}. "
                 "Do the parts go on from one section to the other?",
                 first=first.name,
@@ -96,7 +96,7 @@ def _branching(first: SectionPlane, second: SectionPlane, counts: tuple[int, int
     share = None if path is None else path.change(counts[0])
     if path is None or share is None:
         text = message(
-            "bodies.section-parts-section-which",
+            "bodies.parts-differ",
             "Section '{first}' has {one} parts, section '{second}' {two}: which of them are joined?",
             first=first.name,
             one=counts[0],
@@ -105,7 +105,7 @@ def _branching(first: SectionPlane, second: SectionPlane, counts: tuple[int, int
         )
         return Question("branches", first.name, second.name, counts, None, None, text)
     text = message(
-        "bodies.section-parts-section-body",
+        "bodies.parts-differ-far-apart",
         "Section '{first}' has {one} parts, section '{second}' {two}: the body changes {distance:.1f} m from the "
         "first. Is that right?",
         first=first.name,

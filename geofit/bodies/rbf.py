@@ -93,7 +93,7 @@ class Saddle:
         if reach == 0.0 and np.linalg.matrix_rank(side[:, :4], tol=1e-9 * max(len(side), 4)) < 4:
             raise FitError(
                 message(
-                    "bodies.places-plane-fewer",
+                    "bodies.trend-undetermined",
                     "{count} places lie on one plane or fewer than four are given: they leave the trend of the field "
                     "free. Add contacts, or samples inside and outside, off that plane.",
                     count=len(points) + len(oriented),
@@ -115,7 +115,7 @@ class Saddle:
         if info:
             raise FitError(
                 message(
-                    "bodies.system-conditions-singular",
+                    "bodies.conditions-singular",
                     "The system of {count} conditions is singular: two of them coincide. Merge them.",
                     count=size,
                 )

@@ -85,7 +85,7 @@ class BodySettings:
             if not is_finite(value) or value <= 0:
                 raise SettingsError(
                     message(
-                        "bodies.is-a-finite",
+                        "bodies.length-not-positive",
                         "{setting} is {value}; a finite number of metres above 0 is needed.",
                         setting=_named(name),
                         value=shown(value),
@@ -95,7 +95,7 @@ class BodySettings:
             if not is_finite(getattr(self, name)):
                 raise SettingsError(
                     message(
-                        "bodies.angle-degrees",
+                        "bodies.angle-not-finite",
                         "{setting} is {value}; a finite angle in degrees is needed.",
                         setting=_named(name),
                         value=shown(getattr(self, name)),
@@ -108,7 +108,7 @@ class BodySettings:
             if not isinstance(value, int) or not is_finite(value) or value < text.least:
                 raise SettingsError(
                     message(
-                        "bodies.whole",
+                        "data.setting-not-whole-number",
                         "{setting} is {value}; a whole number of at least {least} is needed.",
                         setting=_named(name),
                         value=shown(value),
@@ -118,7 +118,7 @@ class BodySettings:
         if not isinstance(self.closed, bool):
             raise SettingsError(
                 message(
-                    "settings.true-false-needed",
+                    "data.setting-not-true-or-false",
                     "{setting} is {value}; true or false is needed.",
                     setting=_named("closed"),
                     value=shown(self.closed),
@@ -128,7 +128,7 @@ class BodySettings:
         if ranges.shape != (3,) or not (np.isfinite(ranges).all() and (ranges > 0).all()):
             raise SettingsError(
                 message(
-                    "bodies.ranges-three",
+                    "bodies.ranges-not-three",
                     "{setting} is {value}; three finite numbers above 0 are needed.",
                     setting=_named("ranges"),
                     value=shown(self.ranges),
@@ -140,7 +140,7 @@ class BodySettings:
             if box.shape != (2, 3) or not np.isfinite(box).all() or not (box[0] < box[1]).all():
                 raise SettingsError(
                     message(
-                        "bodies.box-lower-upper",
+                        "bodies.box-unusable",
                         "{setting} is {value}; a lower and an upper corner in map coordinates are needed.",
                         setting=_named("box"),
                         value=shown(self.box),
@@ -152,7 +152,7 @@ class BodySettings:
 def _named(name: str) -> Message:
     """Return what a setting is called, with its keyword."""
     label = BODY_SETTINGS[name].label
-    return message("settings.label-keyword", "{label} ({name})", label=label, name=Untranslated(name))
+    return message("data.setting-label-keyword", "{label} ({name})", label=label, name=Untranslated(name))
 
 
 def _numbers(value: Any) -> NDArray[np.float64]:

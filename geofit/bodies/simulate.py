@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.bodies.active import spread
-from geofit.bodies.posterior import SPREAD, Posterior
+from geofit.bodies.active import farthest_apart
+from geofit.bodies.posterior import SPREAD, BodyPosterior
 from geofit.bodies.rbf import Saddle
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def simulate(body: BodyFit) -> BodyVolumes:
 
 def draws(body: BodyFit) -> Draws:
     """Return ``settings.realizations`` conditional simulations of a body."""
-    posterior = Posterior(body)
+    posterior = BodyPosterior(body)
     rng = np.random.default_rng(body.settings.seed)
     nodes, spacing = _nodes(body)
     value = body.field.value(nodes - body.origin)
@@ -120,10 +120,10 @@ def _nodes(body: BodyFit) -> tuple[Floats, float]:
 def _first_knots(fitted: Floats, value: Floats, deviation: Floats) -> NDArray[np.int64]:
     """Return the nodes at which the field is drawn: spread over those whose side is open."""
     doubt = np.flatnonzero(np.abs(value) < 2.5 * deviation)
-    return np.asarray(doubt[spread(fitted[doubt], min(KNOTS, len(doubt)))] if len(doubt) else doubt)
+    return np.asarray(doubt[farthest_apart(fitted[doubt], min(KNOTS, len(doubt)))] if len(doubt) else doubt)
 
 
-def changes(body: BodyFit, posterior: Posterior, knots: Floats, places: Floats, rng: np.random.Generator) -> Floats:
+def changes(body: BodyFit, posterior: BodyPosterior, knots: Floats, places: Floats, rng: np.random.Generator) -> Floats:
     """Return what each realization adds to the field, (n, realizations), at (n, 3) fitted places."""
     if not len(knots):
         return np.zeros((len(places), body.settings.realizations))
@@ -146,7 +146,7 @@ def changes(body: BodyFit, posterior: Posterior, knots: Floats, places: Floats, 
     return np.concatenate([whole.rows(block) @ weights for block in blocks])
 
 
-def _guards(body: BodyFit, posterior: Posterior) -> tuple[Floats, Floats, Floats]:
+def _guards(body: BodyFit, posterior: BodyPosterior) -> tuple[Floats, Floats, Floats]:
     """Return the samples most likely to change side in a draw: fitted places, sides, and the field's values there."""
     prepared, region = body.fitted.prepared, body.region
     xyz = np.concatenate([prepared.inside, prepared.outside, region.closing])
@@ -161,7 +161,7 @@ def _guards(body: BodyFit, posterior: Posterior) -> tuple[Floats, Floats, Floats
     deviation = posterior.deviation(xyz)
     doubt = np.flatnonzero((np.abs(value) < FAR * deviation) & (deviation > 1e-9))
     fitted = body.field.frame.to_fit(xyz[doubt])
-    chosen = doubt[spread(fitted, min(GUARDS, len(doubt)))] if len(doubt) else doubt
+    chosen = doubt[farthest_apart(fitted, min(GUARDS, len(doubt)))] if len(doubt) else doubt
     return body.field.frame.to_fit(xyz[chosen]), side[chosen], value[chosen]
 
 

@@ -65,9 +65,7 @@ def strata_table(
         If a horizon does not reach all over the body.
     """
     if not horizons:
-        raise SettingsError(
-            message("bodies.table-strata-needs-horizon", "A table of strata needs one horizon or more.")
-        )
+        raise SettingsError(message("bodies.strata-without-horizon", "A table of strata needs one horizon or more."))
     pieces = cut_body(body, horizons, spacing)
     x, y = (body.overview.vertices + body.origin)[:, :2].T
     height = {name: float(np.mean(surface.elevation(x, y))) for name, surface in horizons.items()}
@@ -96,9 +94,9 @@ def strata_table(
 
 def _label(upper: str, lower: str) -> Message:
     if upper and lower:
-        return message("bodies.between", "{upper} to {lower}", upper=upper, lower=lower)
+        return message("bodies.part-between-surfaces", "{upper} to {lower}", upper=upper, lower=lower)
     return (
-        message("bodies.below", "below {surface}", surface=upper)
+        message("bodies.part-below-surface", "below {surface}", surface=upper)
         if upper
-        else message("bodies.above", "above {surface}", surface=lower)
+        else message("bodies.part-above-surface", "above {surface}", surface=lower)
     )

@@ -43,7 +43,7 @@ def violations(body: BodyFit) -> tuple[Violation, ...]:
     residuals = body.distance(data.contacts) if body.accuracy is None else body.accuracy.residuals
     for i in np.flatnonzero(np.abs(residuals) > epsilon).tolist():
         text = message(
-            "bodies.contact-beyond", "contact farther from the surface than ε = {epsilon:g} m", epsilon=epsilon
+            "bodies.contact-beyond-epsilon", "contact farther from the surface than ε = {epsilon:g} m", epsilon=epsilon
         )
         found.append(
             Violation("contact", str(data.hole[i]), _place(data.contacts[i]), float(residuals[i]), np.nan, text)
@@ -57,9 +57,9 @@ def violations(body: BodyFit) -> tuple[Violation, ...]:
         wrong = np.flatnonzero(value >= 0 if inside else value <= 0)
         distances = body.distance(xyz[wrong])
         text = (
-            message("bodies.logged-in-lies-out", "logged inside, lies outside")
+            message("bodies.logged-inside-lies-outside", "logged inside, lies outside")
             if inside
-            else message("bodies.logged-out-lies-in", "logged outside, lies inside")
+            else message("bodies.logged-outside-lies-inside", "logged outside, lies inside")
         )
         for i, distance in zip(wrong.tolist(), distances.tolist(), strict=True):
             found.append(Violation("sample", str(hole[i]), _place(xyz[i]), distance, float(length[i]), text))

@@ -15,7 +15,7 @@ from geofit.cad.faces import free_edges
 from geofit.data.errors import StitchError
 from geofit.data.messages import message
 
-__all__ = ["common", "cut", "fused", "half_space"]
+__all__ = ["common", "fused", "half_space", "subtract_solid"]
 
 Floats = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def common(shapes: Sequence[Any]) -> Any:
     return _folded(BRepAlgoAPI_Common, shapes)
 
 
-def cut(shape: Any, other: Any) -> Any:
+def subtract_solid(shape: Any, other: Any) -> Any:
     """Return what is in the first solid and not in the other."""
     from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 

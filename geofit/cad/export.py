@@ -48,8 +48,8 @@ def write_brep(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> No
     with replacing(path) as part:
         if not BRepTools.Write_s(compound, str(part)):
             raise InputError(
-                message("export.opencascade-cannot-write-file", "OpenCASCADE cannot write the file"),
-                message("export.check-folder-disk", "Check the folder and the disk."),
+                message("cad.file-not-written-by-opencascade", "OpenCASCADE cannot write the file"),
+                message("cad.check-folder-and-disk", "Check the folder and the disk."),
                 file=str(path),
             )
 
@@ -96,8 +96,8 @@ def write_iges(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> No
         text = BytesIO()
         if not writer.Print(text):
             raise InputError(
-                message("export.opencascade-cannot-write-iges", "OpenCASCADE cannot write IGES"),
-                message("export.write-step-instead", "Write STEP instead."),
+                message("cad.iges-not-written", "OpenCASCADE cannot write IGES"),
+                message("cad.write-step-instead", "Write STEP instead."),
                 file=str(path),
             )
     with replacing(path) as part:
@@ -144,8 +144,8 @@ def _label(model: Any, name: str, first: int) -> None:
 def _given(surfaces: Mapping[str, Surface], path: str | PathLike[str]) -> Mapping[str, Surface]:
     if not surfaces:
         raise InputError(
-            message("export.no-surface-write", "No surface to write"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("data.no-surface", "No surface to write"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(path),
         )
     return surfaces

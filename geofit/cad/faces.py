@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from geofit.splines.patch import Patch
 
 __all__ = [
-    "along",
+    "edge_places",
     "edges_with_faces",
     "explore",
     "faces_of",
@@ -155,7 +155,7 @@ def free_loops(shape: Any) -> int:
     return int(connected_components(graph, directed=False)[0])
 
 
-def along(edge: Any, count: int) -> Floats:
+def edge_places(edge: Any, count: int) -> Floats:
     """Return places (count, 3) along an edge, evenly in its parameter."""
     from OCP.BRepAdaptor import BRepAdaptor_Curve
 

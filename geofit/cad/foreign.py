@@ -90,15 +90,13 @@ def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
         if ended == _TOO_LONG:
             raise _refused(
                 source,
-                message(
-                    "cad.reading-file-takes", "Reading the file takes longer than {seconds:.0f} s", seconds=seconds
-                ),
+                message("cad.reading-too-long", "Reading the file takes longer than {seconds:.0f} s", seconds=seconds),
             )
         if ended != 0 or not result.is_file():
             raise _refused(
                 source,
                 message(
-                    "cad.file-damaged-reading",
+                    "cad.reading-crashed",
                     "The file is damaged: reading it ends OpenCASCADE (exit code {code})",
                     code=ended,
                 ),
@@ -109,7 +107,7 @@ def read_in_child(path: str | PathLike[str], reader: str) -> dict[str, Any]:
 def _refused(source: Path, reason: Message) -> InputError:
     return InputError(
         reason,
-        message("cad.open-cad-program", "Open it in a CAD program and export the surface as STEP again."),
+        message("cad.export-step-from-cad", "Open it in a CAD program and export the surface as STEP again."),
         file=str(source),
     )
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from geofit.cad.faces import faces_of
 from geofit.cad.foreign import read_in_child
-from geofit.cad.imported import FileShape, document, existing, no_faces, products, quiet, surface_of, unique_name
+from geofit.cad.imported import FileShape, empty_document, existing, no_faces, products, quiet, surface_of, unique_name
 from geofit.data.messages import message
 from geofit.surfaces.patch_surface import PatchSurface
 
@@ -45,7 +45,7 @@ def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     from OCP.IGESCAFControl import IGESCAFControl_Reader
 
     source = existing(path)
-    found = document()
+    found = empty_document()
     with _unit_of_metres(), quiet():
         reader = IGESCAFControl_Reader()
         reader.SetNameMode(True)
@@ -55,8 +55,8 @@ def iges_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
         raise no_faces(
             source,
             done,
-            message("import.not-iges", "The file cannot be read as IGES"),
-            message("import.export-surface-iges-step", "Export the surface as IGES 5.3 or as STEP again."),
+            message("cad.not-iges", "The file cannot be read as IGES"),
+            message("cad.export-iges-or-step", "Export the surface as IGES 5.3 or as STEP again."),
         )
     return {shape.name: surface_of(_sewn(shape)) for shape in _joined(shapes, source.stem)}
 
@@ -91,8 +91,8 @@ def brep_surfaces(path: str | PathLike[str]) -> dict[str, PatchSurface]:
         raise no_faces(
             source,
             done,
-            message("import.not-brep", "The file cannot be read as BREP"),
-            message("import.export-surface-brep-step", "Export the surface as BREP or as STEP again."),
+            message("cad.not-brep", "The file cannot be read as BREP"),
+            message("cad.export-brep-or-step", "Export the surface as BREP or as STEP again."),
         )
     parts = []
     if whole.ShapeType() == TopAbs_COMPOUND:

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.cad.faces import along, edges_with_faces, explore, faces_of, from_geom
+from geofit.cad.faces import edge_places, edges_with_faces, explore, faces_of, from_geom
 from geofit.cad.step_attributes import attributes_at
 from geofit.cad.trimming import is_height_field, needed
 from geofit.data.errors import InputError
@@ -25,7 +25,7 @@ from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.trimmed import TrimmedSurface
 
-__all__ = ["FileShape", "document", "existing", "no_faces", "products", "quiet", "surface_of", "unique_name"]
+__all__ = ["FileShape", "empty_document", "existing", "no_faces", "products", "quiet", "surface_of", "unique_name"]
 
 Floats = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ def quiet() -> Iterator[None]:
             printer.SetTraceLevel(level)
 
 
-def document() -> Any:
+def empty_document() -> Any:
     """Return an empty XCAF document in metres."""
     from OCP.TCollection import TCollection_ExtendedString
     from OCP.TDocStd import TDocStd_Document
@@ -270,7 +270,7 @@ def _outline(shape: FileShape) -> Floats | None:
     lines = []
     for edge, faces in edges_with_faces(shape.shape):
         if len(faces) == 1:
-            line = along(edge, ALONG)[:, :2]
+            line = edge_places(edge, ALONG)[:, :2]
             chord = line[-1] - line[0]
             off = np.abs(chord[0] * (line - line[0])[:, 1] - chord[1] * (line - line[0])[:, 0])
             straight = off.max() <= 1e-7 * np.linalg.norm(chord)
@@ -298,8 +298,8 @@ def existing(path: str | PathLike[str]) -> Path:
     source = Path(path)
     if not is_file(source):
         raise InputError(
-            message("import.file-missing", "There is no such file"),
-            message("import.check-path", "Check the path."),
+            message("data.file-missing", "There is no such file"),
+            message("data.check-path", "Check the path."),
             file=str(source),
         )
     return source
@@ -307,5 +307,5 @@ def existing(path: str | PathLike[str]) -> Path:
 
 def no_faces(file: Path, read: bool, unreadable: Message, remedy: Message) -> InputError:
     """Return the error of a file that OpenCASCADE could not read, or in which it found no face."""
-    reason = message("import.file-without-faces", "The file contains no face") if read else unreadable
+    reason = message("cad.no-face", "The file contains no face") if read else unreadable
     return InputError(reason, remedy, file=str(file))

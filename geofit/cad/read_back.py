@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.cad.faces import along, edges_with_faces, faces_of, free_edges, free_loops
+from geofit.cad.faces import edge_places, edges_with_faces, faces_of, free_edges, free_loops
 from geofit.cad.step_attributes import attributes_of
 from geofit.data.accuracy import Check, ReadBack, Seam
 from geofit.data.messages import Message, message
@@ -79,7 +79,7 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             CORE,
             "m",
             message(
-                "export.largest-distance-core-points",
+                "cad.core-points-distance",
                 "largest distance of {count} core points from the surface in the file ({how})",
                 count=core.size,
                 how=how,
@@ -100,7 +100,7 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             float(not valid),
             0.0,
             "",
-            message("export.opencascade-brepcheck-shape-read", "OpenCASCADE's BRepCheck of the shape read"),
+            message("cad.shape-checked", "OpenCASCADE's BRepCheck of the shape read"),
         ),
         Check(
             "read-back free edges",
@@ -109,7 +109,7 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             float(expected),
             "edges",
             message(
-                "export.free-edges-edges-outline",
+                "cad.free-edges-differ",
                 "free edges: {free}, edges of the outline: {expected}, closed loops: {loops}",
                 free=len(free),
                 expected=expected,
@@ -124,7 +124,7 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             EDGE,
             "m",
             message(
-                "export.largest-tolerance-edge-faces",
+                "cad.edge-tolerance",
                 "largest tolerance of an edge between faces: a larger one could hide a gap",
             ),
         ),
@@ -135,7 +135,7 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             rim,
             "m",
             message(
-                "export.largest-tolerance-free-edge",
+                "cad.free-edge-tolerance",
                 "largest tolerance of a free edge: how far the outline's curve may leave the surface",
             ),
         ),
@@ -146,12 +146,12 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             0.0,
             "",
             message(
-                "export.opencascade-boolean-argument-analyser",
+                "cad.shell-crosses-itself",
                 "OpenCASCADE's boolean argument analyser finds the shell crossing itself",
             )
             if crossing
             else message(
-                "export.opencascade-boolean-argument-analyser-silent",
+                "cad.shell-does-not-cross-itself",
                 "OpenCASCADE's boolean argument analyser is silent",
             ),
         ),
@@ -193,10 +193,10 @@ def self_intersects(shape: Any) -> bool:
 
 def _words(seams: tuple[Seam, ...], field: str, unit: str) -> Message:
     if not seams:
-        return message("export.face-no-seam", "one face, no seam")
+        return message("cad.face-no-seam", "one face, no seam")
     worst = max(seams, key=lambda seam: float(getattr(seam, field)))
     return message(
-        "export.places-seam-largest",
+        "cad.seam-gap-measured",
         "{places} places on each seam ({count}); largest between {first} and {second}: {value:.2g} {unit}",
         places=SAMPLES,
         count=len(seams),
@@ -211,11 +211,11 @@ def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tupl
     """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
     xyz = surface.points.xyz
     if not len(xyz):
-        return np.empty(0), message("check.no-points", "no points")
+        return np.empty(0), message("cad.no-points", "no points")
     ours = project(found.patches, xyz - found.origin)
     distance = ours.distance.copy()
     chosen = np.arange(len(xyz))
-    how = message("export.opencascade-projection", "OpenCASCADE's projection")
+    how = message("cad.projection-of-opencascade", "OpenCASCADE's projection")
     if len(xyz) > MEASURED:
         core = np.flatnonzero(surface.core) if len(surface.core) == len(xyz) else chosen[:0]
         spread = np.unique(np.linspace(0, len(xyz) - 1, MEASURED // 4).astype(int))
@@ -224,7 +224,7 @@ def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tupl
     if len(chosen) < len(xyz):
         apart = np.abs(length - np.abs(ours.distance[chosen])).max()
         how = message(
-            "export.opencascade-projection-ours-others",
+            "cad.projection-of-both",
             "OpenCASCADE's projection of {count}; ours of the others, at most {apart:.1e} m from it",
             count=len(chosen),
             apart=float(apart),
@@ -338,16 +338,16 @@ def _outline_check(surface: FittedSurface, shape: FileShape, free: list[Any]) ->
             0.0,
             limit,
             "m",
-            message("export.not-trimmed-free-edges", "not trimmed: the free edges are the patches' own"),
+            message("cad.free-edges-of-patches", "not trimmed: the free edges are the patches' own"),
         )
     import shapely
 
     ring = shapely.LinearRing(surface.outline - surface.origin[:2])
-    points = np.concatenate([along(edge, 24)[:, :2] for edge in free])
+    points = np.concatenate([edge_places(edge, 24)[:, :2] for edge in free])
     off = float(shapely.distance(ring, shapely.points(points)).max())
     follows, short = (
-        message("export.free-edges-follow-outline", "the free edges follow the outline"),
-        message("export.surface-not-reach-whole", "the surface does not reach its whole outline"),
+        message("cad.free-edges-follow-outline", "the free edges follow the outline"),
+        message("cad.outline-not-reached", "the surface does not reach its whole outline"),
     )
     reach = follows if off <= limit else short
     return Check(name, True if off <= limit else None, off, limit, "m", reach)
@@ -379,10 +379,8 @@ def _normal_check(found: Surface, seams: tuple[Seam, ...]) -> Check:
     flips = any(seam.angle > 90 for seam in seams)
     passed = True if least > 0 and not flips else (False if flips else None)
     text = {
-        True: message("export.normals-lie-side", "all normals lie on one side"),
-        False: message("export.normals-neighbouring-faces-flip", "the normals of neighbouring faces flip"),
-        None: message(
-            "export.surface-folds-no-single", "the surface folds over: no single side, neighbours do not flip"
-        ),
+        True: message("cad.normals-agree", "all normals lie on one side"),
+        False: message("cad.normals-flip", "the normals of neighbouring faces flip"),
+        None: message("cad.surface-folded", "the surface folds over: no single side, neighbours do not flip"),
     }[passed]
     return Check("read-back normals", passed, least, 0.0, "cosine", text)

@@ -59,9 +59,7 @@ def shell(surface: Surface) -> Any:
 
     if not surface.patches:
         raise StitchError(
-            message(
-                "fit.no-patch-surface-needs", "'{name}' has no patch; a surface needs at least one.", name=surface.name
-            )
+            message("cad.no-patch", "'{name}' has no patch; a surface needs at least one.", name=surface.name)
         )
     sewing = BRepBuilderAPI_Sewing(SEWING)
     outline = trimming.needed(surface, TRIM)
@@ -76,11 +74,11 @@ def shell(surface: Surface) -> Any:
     sewing.Perform()
     sewn = sewing.SewedShape()
     if outline is not None and not exact:
-        sewn = trimming.cut(sewn, outline)
+        sewn = trimming.cut_along(sewn, outline)
     if sewn.IsNull():
         raise StitchError(
             message(
-                "fit.not-reach-outline-give",
+                "cad.outline-not-reached-at-all",
                 "'{name}' does not reach into its outline; give an outline that it covers.",
                 name=surface.name,
             )
@@ -96,7 +94,7 @@ def shell(surface: Surface) -> Any:
     if (loops := free_loops(result)) != 1:
         raise StitchError(
             message(
-                "fit.free-edges-sewn-shell",
+                "cad.shell-has-holes",
                 "'{name}': the free edges of the sewn shell make {loops} loops; the outer boundary alone makes "
                 "one. {reason}",
                 name=surface.name,
@@ -107,7 +105,7 @@ def shell(surface: Surface) -> Any:
     if not BRepCheck_Analyzer(result).IsValid():
         raise StitchError(
             message(
-                "fit.opencascade-finds-sewn-shell",
+                "cad.shell-invalid",
                 "OpenCASCADE finds the sewn shell of '{name}' invalid (BRepCheck). Look for collapsed edges or "
                 "patches folded onto themselves; fit again with fewer control points or another frame.",
                 name=surface.name,
@@ -131,7 +129,7 @@ def _why_open(surface: Surface, shells: int) -> Message:
     if open_seams:
         places = tuple(
             message(
-                "fit.seam-gap",
+                "cad.seam-gap",
                 "{first} and {second} have a gap of {gap:.3g} m",
                 first=s.first,
                 second=s.second,
@@ -140,7 +138,7 @@ def _why_open(surface: Surface, shells: int) -> Message:
             for s in open_seams
         )
         return message(
-            "fit.patches-not-share-edges",
+            "cad.edges-not-shared",
             "Patches of '{name}' do not share their edges: {places}. At most {limit:g} m is needed: give neighbours "
             "the same edge row of control points.",
             name=surface.name,
@@ -148,7 +146,7 @@ def _why_open(surface: Surface, shells: int) -> Message:
             limit=SEWING,
         )
     return message(
-        "fit.patches-separate-pieces-connected",
+        "cad.patches-not-connected",
         "The patches of '{name}' ({names}) make {shells} separate pieces; one connected surface is needed. Check the "
         "outline, and that neighbours run along whole edges.",
         name=surface.name,
@@ -180,13 +178,13 @@ def one_surface(surface: Surface) -> Patch:
     if len(grid) != len(ranges_u) * len(ranges_v) or len(grid) != len(patches) or len({p.degree for p in patches}) > 1:
         names = tuple(
             message(
-                "fit.patch-domain", "{name} {domain} degree {degree}", name=p.name, domain=p.domain, degree=p.degree
+                "cad.patch-domain", "{name} {domain} degree {degree}", name=p.name, domain=p.domain, degree=p.degree
             )
             for p in patches
         )
         raise StitchError(
             message(
-                "fit.patches-no-full-grid",
+                "cad.patches-not-a-grid",
                 "The patches of '{name}' do not form a full grid of parameter ranges with one degree: "
                 "{names}. Use the sewn shell instead.",
                 name=surface.name,
@@ -224,7 +222,7 @@ def _join(strip: list[tuple[Floats, Floats, Floats]], degree: int) -> tuple[Floa
         if knots[-1] != further[0] or not np.array_equal(across, other):
             raise StitchError(
                 message(
-                    "fit.neighbouring-patches-differ-knots",
+                    "cad.knots-differ",
                     "Neighbouring patches differ in their knots (one ends at {end:g}, the next starts at {start:g}). "
                     "Only restrictions of one tensor-product surface can be merged.",
                     end=knots[-1],
@@ -234,7 +232,7 @@ def _join(strip: list[tuple[Floats, Floats, Floats]], degree: int) -> tuple[Floa
         if (apart := np.abs(control[-1] - following[0]).max()) > SEWING:
             raise StitchError(
                 message(
-                    "fit.neighbouring-patches-gape-merged",
+                    "cad.patches-too-far-to-merge",
                     "Neighbouring patches have a gap of {apart:.3g} m; at most {limit:g} m can be merged.",
                     apart=apart,
                     limit=SEWING,

@@ -102,7 +102,7 @@ def write_body(
     if not len(body.overview.triangles):
         raise InputError(
             message("cad.body-empty", "The body '{name}' is empty", name=body.name),
-            message("bodies.look-at-data", "Check its data."),
+            message("cad.check-data", "Check its data."),
             file=str(target),
         )
     trimmed = shape is not None
@@ -117,7 +117,7 @@ def write_body(
     if not reason:
         return found
     text = message(
-        "cad.triangles-written-place", "Triangles are written in place of NURBS patches: {reason}", reason=reason
+        "cad.triangles-instead-of-patches", "Triangles are written in place of NURBS patches: {reason}", reason=reason
     )
     return replace(found, checks=(*found.checks, Check("grade", None, 0.0, 0.0, "1", text)))
 
@@ -147,7 +147,7 @@ def patch_solid(components: Sequence[Sequence[Patch]]) -> Any:
         if len(found) != 1 or free_edges(found[0]):
             raise StitchError(
                 message(
-                    "cad.patches-body-not",
+                    "cad.patches-open",
                     "{count} patches of a body do not make one closed shell. Write triangles instead.",
                     count=len(patches),
                 )
@@ -172,7 +172,7 @@ def triangle_solid(mesh: TriangleMesh) -> Any:
     if not mesh.is_closed:
         raise StitchError(
             message(
-                "cad.triangles-not-close",
+                "cad.triangles-open",
                 "The triangles do not close: {count} edges are free.",
                 count=len(mesh.boundary_edges),
             )
@@ -218,7 +218,7 @@ def _solids(shells: Sequence[Any]) -> Any:
         if not around:
             raise StitchError(
                 message(
-                    "cad.cavity-body-none", "A cavity of the body lies in none of its solids. Write triangles instead."
+                    "cad.cavity-outside", "A cavity of the body lies in none of its solids. Write triangles instead."
                 )
             )
         makers[min(around, key=lambda k: float((boxes[k][1] - boxes[k][0]).prod()))].Add(shell)
@@ -233,7 +233,7 @@ def _solids(shells: Sequence[Any]) -> Any:
     if not BRepCheck_Analyzer(result).IsValid():
         raise StitchError(
             message(
-                "cad.opencascade-finds-solid",
+                "cad.solid-invalid",
                 "OpenCASCADE finds the solid of the body invalid (BRepCheck). Write triangles instead.",
             )
         )
@@ -290,23 +290,21 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
     from geofit import __version__
-    from geofit.cad.imported import document, quiet
+    from geofit.cad.imported import empty_document, quiet
     from geofit.cad.step_text import canonical
 
     try:
         handle, temporary = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=".step")
     except OSError as error:
         raise InputError(
-            message(
-                "export.file-cannot-written", "The file cannot be written: {error}", error=error.strerror or str(error)
-            ),
-            message("project.folder-name", "Make the folder, or name another."),
+            message("data.file-not-written", "The file cannot be written: {error}", error=error.strerror or str(error)),
+            message("data.make-or-name-folder", "Make the folder, or name another."),
             file=str(target),
         ) from None
     os.close(handle)
     try:
         with _parameters(nurbs=nurbs), quiet():
-            filled = document()
+            filled = empty_document()
             tool = XCAFDoc_DocumentTool.ShapeTool_s(filled.Main())
             assembly, product = tool.NewShape(), tool.AddShape(shape, False)
             for label, text in (
@@ -327,8 +325,8 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
             header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
             if writer.Write(temporary) != IFSelect_RetDone:
                 raise InputError(
-                    message("export.opencascade-cannot-write-file", "OpenCASCADE cannot write the file"),
-                    message("export.check-disk", "Check the disk."),
+                    message("cad.file-not-written-by-opencascade", "OpenCASCADE cannot write the file"),
+                    message("cad.check-disk", "Check the disk."),
                     file=str(target),
                 )
         Path(temporary).write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
@@ -393,7 +391,7 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) 
             float(len(solids)),
             1.0,
             "1",
-            message("cad.solids-file", "{count} solids in the file", count=len(solids)),
+            message("cad.solids-count", "{count} solids in the file", count=len(solids)),
         ),
         # A tessellated face has no surface, which the check of a B-rep would miss.
         Check(
@@ -402,9 +400,9 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) 
             float(valid),
             1.0,
             "1",
-            message("cad.opencascade-finds-solids", "OpenCASCADE finds the solids valid")
+            message("cad.solids-valid", "OpenCASCADE finds the solids valid")
             if valid
-            else message("cad.opencascade-finds-solids-invalid", "OpenCASCADE finds the solids invalid"),
+            else message("cad.solids-invalid", "OpenCASCADE finds the solids invalid"),
         ),
         Check(
             "closed",
@@ -412,7 +410,7 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) 
             float(free),
             0.0,
             "1",
-            message("cad.free-edges-file", "{count} free edges in the file", count=free),
+            message("cad.free-edges-count", "{count} free edges in the file", count=free),
         ),
         Check(
             "deviation",
@@ -421,7 +419,7 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) 
             epsilon,
             "m",
             message(
-                "cad.faces-file-within",
+                "cad.faces-deviation",
                 "The faces of the file lie within {deviation:.3g} m of the body",
                 deviation=deviation,
             ),
@@ -433,7 +431,7 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) 
             epsilon,
             "m",
             message(
-                "cad.contacts-faces-file",
+                "cad.contacts-sigma",
                 "The contacts lie on the faces of the file with sigma {sigma:.3g} m",
                 sigma=sigma,
             ),
@@ -445,7 +443,7 @@ def _read_back(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) 
             best,
             "m3",
             message(
-                "cad.file-solids-body",
+                "cad.volume-differs",
                 "The file's solids have {volume:.6g} m3, the body {best:.6g} m3",
                 volume=volume,
                 best=best,
@@ -484,7 +482,7 @@ def _triangles_of(face: Any) -> TriangleMesh:
     location = TopLoc_Location()
     found = BRep_Tool.Triangulation_s(face, location)
     if found is None:
-        raise StitchError(message("cad.face-file-triangles", "A face of the file has no triangles."))
+        raise StitchError(message("cad.face-without-triangles", "A face of the file has no triangles."))
     move = location.Transformation()
     nodes = [found.Node(k).Transformed(move) for k in range(1, found.NbNodes() + 1)]
     corners = [found.Triangle(k).Get() for k in range(1, found.NbTriangles() + 1)]

@@ -21,7 +21,7 @@ import numpy as np
 from geofit import __version__
 from geofit.cad.faces import faces_of, placement
 from geofit.cad.foreign import read_in_child
-from geofit.cad.imported import FileShape, document, existing, no_faces, products, quiet, surface_of
+from geofit.cad.imported import FileShape, empty_document, existing, no_faces, products, quiet, surface_of
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
 from geofit.cad.step_attributes import attributes_of, with_attributes
@@ -116,14 +116,14 @@ def store_step(
     target = Path(path)
     if not surfaces:
         raise InputError(
-            message("export.no-surface-write", "No surface to write"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("data.no-surface", "No surface to write"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(target),
         )
     if unit not in UNITS:
         raise InputError(
-            message("export.step-file-unknown", "A STEP file in '{unit}' is unknown", unit=unit),
-            message("export.known-names", "Choose {names}.", names=" or ".join(UNITS)),
+            message("cad.unit-unknown", "A STEP file in '{unit}' is unknown", unit=unit),
+            message("cad.known-names", "Choose {names}.", names=" or ".join(UNITS)),
             file=str(target),
         )
     for name, surface in surfaces.items():
@@ -131,18 +131,18 @@ def store_step(
         if not reach <= LARGEST:
             raise InputError(
                 message(
-                    "cad.control-point-written",
+                    "cad.control-point-too-far",
                     "A control point of '{name}' is {reach:.3g} m from 0; at most {most:.0e} m are written",
                     name=name,
                     reach=reach,
                     most=LARGEST,
                 ),
-                message("cad.fit-surface-points", "Fit the surface to points in the metres of the site's grid."),
+                message("cad.fit-in-grid-metres", "Fit the surface to points in the metres of the site's grid."),
                 file=str(target),
             )
     shells = {name: shell(surface) for name, surface in surfaces.items()}
     with _parameters(unit):
-        filled = document()
+        filled = empty_document()
         _fill(filled, surfaces, shells)
         names = [_patch_names(shells[name], s.patches) for name, s in surfaces.items()]
         attributes = [attributes_of(surface) for surface in surfaces.values()]
@@ -189,7 +189,7 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
 
     source = existing(path)
     with _parameters(), quiet():
-        found = document()
+        found = empty_document()
         reader = STEPCAFControl_Reader()
         reader.SetNameMode(True)
         reader.SetMetaMode(True)
@@ -200,8 +200,8 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
         raise no_faces(
             source,
             done,
-            message("import.not-step", "The file cannot be read as STEP"),
-            message("export.export-surface-step-ap203", "Export the surface as STEP (AP203, AP214 or AP242) again."),
+            message("cad.not-step", "The file cannot be read as STEP"),
+            message("cad.export-step", "Export the surface as STEP (AP203, AP214 or AP242) again."),
         )
     return shapes
 
@@ -303,10 +303,8 @@ def _save(
         handle, temporary = tempfile.mkstemp(dir=target.parent if beside else None, prefix=prefix, suffix=".step")
     except OSError as error:
         raise InputError(
-            message(
-                "export.file-cannot-written", "The file cannot be written: {error}", error=error.strerror or str(error)
-            ),
-            message("project.folder-name", "Make the folder, or name another."),
+            message("data.file-not-written", "The file cannot be written: {error}", error=error.strerror or str(error)),
+            message("data.make-or-name-folder", "Make the folder, or name another."),
             file=str(target),
         ) from None
     os.close(handle)
@@ -325,8 +323,8 @@ def _save(
             done = writer.Write(temporary) == IFSelect_RetDone
         if not done:
             raise InputError(
-                message("export.disk-full", "The file cannot be written: the disk may be full"),
-                message("export.make-room", "Make room, or name another folder."),
+                message("cad.disk-full", "The file cannot be written: the disk may be full"),
+                message("cad.make-room", "Make room, or name another folder."),
                 file=str(target),
             )
         with replacing(target) as part:
@@ -334,8 +332,8 @@ def _save(
             part.write_text(text, "ascii", newline="\n")
     except (OSError, ValueError):  # ValueError: a text that was cut off in the middle
         raise InputError(
-            message("export.disk-full", "The file cannot be written: the disk may be full"),
-            message("export.make-room", "Make room, or name another folder."),
+            message("cad.disk-full", "The file cannot be written: the disk may be full"),
+            message("cad.make-room", "Make room, or name another folder."),
             file=str(target),
         ) from None
     finally:

@@ -20,7 +20,7 @@ from geofit.surfaces.protocol import Surface
 if TYPE_CHECKING:
     from shapely import Polygon
 
-__all__ = ["cut", "faces", "is_height_field", "needed"]
+__all__ = ["cut_along", "faces", "is_height_field", "needed"]
 
 Floats = NDArray[np.float64]
 
@@ -135,7 +135,7 @@ def _wire(surface: Any, ring: Floats, outer: bool) -> Any:
     return wire.Wire()
 
 
-def cut(shape: Any, outline: Polygon) -> Any:
+def cut_along(shape: Any, outline: Polygon) -> Any:
     """Return the part of a shape inside the vertical prism over an outline."""
     import shapely
     from OCP.Bnd import Bnd_Box

@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import Any
 
 # These functions must hide the modules of their names, so they cannot wait.
-from geofit.caves.adjust import adjust
+from geofit.caves.adjust import adjust_survey
 from geofit.caves.clearance import clearance
 from geofit.caves.strata import strata
 
@@ -25,7 +25,7 @@ _LAZY = {
     "volume_estimate": "uncertainty",
 }
 
-__all__ = ["adjust", "clearance", "strata", *_LAZY]
+__all__ = ["adjust_survey", "clearance", "strata", *_LAZY]
 
 
 def __getattr__(name: str) -> Any:

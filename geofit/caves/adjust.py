@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.caves.survey import Survey, SurveyError, named
+from geofit.caves.survey import Survey, SurveyError, first_stations
 from geofit.data.errors import SettingsError
 from geofit.data.messages import Untranslated, message
 
-__all__ = ["AdjustedSurvey", "Loop", "adjust"]
+__all__ = ["AdjustedSurvey", "Loop", "adjust_survey"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -109,7 +109,7 @@ class AdjustedSurvey:
         return sigma
 
 
-def adjust(survey: Survey, *, length_error: float = 0.05, angle_error: float = 1.0) -> AdjustedSurvey:
+def adjust_survey(survey: Survey, *, length_error: float = 0.05, angle_error: float = 1.0) -> AdjustedSurvey:
     """Return the coordinates of the stations, misclosures spread by least squares.
 
     Parameters
@@ -132,7 +132,7 @@ def adjust(survey: Survey, *, length_error: float = 0.05, angle_error: float = 1
     if not (length_error > 0 and angle_error > 0):
         raise SettingsError(
             message(
-                "caves.errors-degrees-values",
+                "caves.errors-not-positive",
                 "The errors are {length} m and {angle} degrees; give values above 0.",
                 length=length_error,
                 angle=angle_error,
@@ -186,7 +186,7 @@ def _require_connected(survey: Survey, known: list[int]) -> None:
                 count=len(lost),
                 survey=Untranslated(survey.name),
                 anchor=Untranslated(survey.stations[known[0]]),
-                names=named([survey.stations[i] for i in lost.tolist()]),
+                names=first_stations([survey.stations[i] for i in lost.tolist()]),
                 parts=parts,
             )
         )

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.bodies.implicit_body import OwnField
-from geofit.caves.adjust import AdjustedSurvey, adjust
+from geofit.caves.adjust import AdjustedSurvey, adjust_survey
 from geofit.caves.sections import Sections, sections
 from geofit.caves.survey import Survey
 from geofit.data.errors import SettingsError
@@ -239,13 +239,13 @@ def centreline_body(
     """
     if ends not in ("round", "flat"):
         raise SettingsError(
-            message("caves.ends-unknown-round", "The ends '{ends}' are unknown; give 'round' or 'flat'.", ends=ends)
+            message("caves.ends-unknown", "The ends '{ends}' are unknown; give 'round' or 'flat'.", ends=ends)
         )
     if (blend is not None and not blend >= 0) or (radius is not None and not radius > 0):
         raise SettingsError(
-            message("caves.blend-radius", "The blend must be 0 or more, the radius above 0, in metres.")
+            message("caves.blend-or-radius-unusable", "The blend must be 0 or more, the radius above 0, in metres.")
         )
-    adjusted = adjust(survey) if isinstance(survey, Survey) else survey
+    adjusted = adjust_survey(survey) if isinstance(survey, Survey) else survey
     found = sections(adjusted, radius)
     sweeps = _sweeps(adjusted, found, ends)
     return PassageBody(adjusted, found, sweeps, float(np.median(sweeps.walls)) / 2 if blend is None else float(blend))
@@ -307,5 +307,7 @@ def _points(xyz: ArrayLike) -> Floats:
 
 def _spacing(spacing: float) -> float:
     if not (np.isfinite(spacing) and spacing > 0):
-        raise SettingsError(message("caves.spacing", "The spacing is {spacing}; give metres above 0.", spacing=spacing))
+        raise SettingsError(
+            message("caves.spacing-not-positive", "The spacing is {spacing}; give metres above 0.", spacing=spacing)
+        )
     return float(spacing)

@@ -91,14 +91,14 @@ def clearance(
     if corners.ndim != 2 or corners.shape[1:] != (3,) or not len(corners) or not np.isfinite(corners).all():
         raise SettingsError(
             message(
-                "caves.excavation-shape-points",
+                "caves.excavation-wrong-shape",
                 "The excavation has shape {shape}; give finite points (n, 3) in metres.",
                 shape=corners.shape,
             )
         )
     if not (radius >= 0 and step > 0):
         raise SettingsError(
-            message("caves.radius-step", "The radius must be 0 or more and the step above 0, in metres.")
+            message("caves.radius-or-step-unusable", "The radius must be 0 or more and the step above 0, in metres.")
         )
     from scipy.spatial import cKDTree
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.caves.sweep_loops import paint
+from geofit.caves.sweep_loops import paint_sweeps
 
 if TYPE_CHECKING:
     from geofit.caves.body import PassageBody
@@ -70,7 +70,7 @@ def columns(body: PassageBody, spacing: float) -> Columns:
         for side in range(1, ny - 1, wide):
             start = origin + spacing * np.array([first - 1.0, side - 1.0, 0.0])
             shape = (min(thick, nx - 1 - first) + 2, min(wide, ny - 1 - side) + 2, nz)
-            share = _shares()(paint(body.sweeps, body.blend, body.boxes, start, spacing, shape), spacing)
+            share = _shares()(paint_sweeps(body.sweeps, body.blend, body.boxes, start, spacing, shape), spacing)
             found.append(_intervals(share, start, spacing))
     x, y, bottom, top, part = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return Columns(x, y, bottom, top, part, spacing)

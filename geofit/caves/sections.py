@@ -89,7 +89,7 @@ def sections(adjusted: AdjustedSurvey, radius: float | None = None) -> Sections:
     if not len(shot):
         raise SurveyError(
             message(
-                "caves.survey-shot-along",
+                "caves.survey-without-passage",
                 "The survey {name} has no shot along a passage that could form a body.",
                 name=Untranslated(survey.name),
             )
@@ -107,7 +107,7 @@ def sections(adjusted: AdjustedSurvey, radius: float | None = None) -> Sections:
     if means[0] is None and means[1] is None:
         raise SurveyError(
             message(
-                "caves.survey-wall-any",
+                "caves.survey-without-walls",
                 "The survey {name} has no wall distance at any station, so its passages have no size. "
                 "Measure walls, or give radius = ... in metres.",
                 name=Untranslated(survey.name),

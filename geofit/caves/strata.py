@@ -77,7 +77,7 @@ def strata(body: PassageBody, horizons: Mapping[str, Horizon], *, spacing: float
     """
     if not horizons:
         raise SettingsError(
-            message("caves.horizon-cut-top", "There is no horizon to cut with; give at least one, from the top down.")
+            message("caves.no-horizon", "There is no horizon to cut with; give at least one, from the top down.")
         )
     found = body.columns(spacing)
     heights = _heights(horizons, found.x, found.y)

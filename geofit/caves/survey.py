@@ -101,7 +101,7 @@ class Survey:
         if not len(self.start):
             raise SurveyError(
                 message(
-                    "caves.survey-shot-used",
+                    "caves.survey-without-shot",
                     "The survey {name} has no usable shot. See its listed rows.",
                     name=Untranslated(self.name),
                 )
@@ -110,9 +110,9 @@ class Survey:
         if unknown:
             raise SurveyError(
                 message(
-                    "caves.fixed-stations-not",
+                    "caves.fixed-stations-unknown",
                     "The fixed stations {names} are not in the survey {survey}. Correct their names.",
-                    names=named(unknown),
+                    names=first_stations(unknown),
                     survey=Untranslated(self.name),
                 )
             )
@@ -148,7 +148,7 @@ class Survey:
         if station not in self.stations:
             raise SurveyError(
                 message(
-                    "caves.survey-station",
+                    "caves.station-unknown",
                     "The survey {survey} has no station {station}. Give one of its names.",
                     survey=Untranslated(self.name),
                     station=Untranslated(station),
@@ -177,7 +177,7 @@ class Survey:
         )
 
 
-def named(stations: list[str]) -> tuple[Untranslated, ...]:
+def first_stations(stations: list[str]) -> tuple[Untranslated, ...]:
     """Return station names for a message, the first few where there are many."""
     shown = [Untranslated(name) for name in stations[:_SHOWN]]
     if len(stations) > _SHOWN:

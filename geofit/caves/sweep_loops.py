@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 if TYPE_CHECKING:
     from geofit.caves.body import Sweeps
 
-__all__ = ["SweepCells", "paint", "ranges"]
+__all__ = ["SweepCells", "paint_sweeps", "ranges"]
 
 Floats = NDArray[np.float64]
 
@@ -69,7 +69,7 @@ def ranges(sweeps: Sweeps, blend: float, lower: Floats, upper: Floats) -> tuple[
     return low, high
 
 
-def paint(
+def paint_sweeps(
     sweeps: Sweeps, blend: float, boxes: tuple[Floats, Floats], origin: Floats, spacing: float, shape: tuple[int, ...]
 ) -> Floats:
     """Return the field at the nodes of a lattice, shape ``shape``; infinite outside the boxes of all sweeps."""

@@ -88,7 +88,7 @@ def volume_estimate(
     if wall_error < 0 or missing_error < 0 or not 0 <= correlation <= 1:
         raise SettingsError(
             message(
-                "caves.errors-shares-walls",
+                "caves.errors-unusable",
                 "Give errors of 0 or more as shares of the walls, and a correlation between 0 and 1.",
             )
         )

@@ -102,7 +102,7 @@ def check(
                 examine,
                 (),
                 lambda reason: missing.append(
-                    message("checks.not-made", "a check was not made: {reason}", reason=reason)
+                    message("checks.check-not-made", "a check was not made: {reason}", reason=reason)
                 ),
             )
     return Accuracy(
@@ -142,7 +142,7 @@ def judged_by(surface: FittedSurface, accuracy: Accuracy, epsilon: float) -> Acc
     checks = tuple(_trend_by(surface, accuracy, one) if one.name == TREND else one for one in accuracy.checks)
     passed = accuracy.sigma < epsilon and not _runs_away(surface, checks)
     beyond = Exceedance(epsilon, int((np.abs(accuracy.residuals) > epsilon).sum()))
-    notes = tuple(note for note in accuracy.notes if not (passed and note.code == "fit.sigma-stays-above-epsilon"))
+    notes = tuple(note for note in accuracy.notes if not (passed and note.code == "fitting.sigma-above-epsilon"))
     return replace(
         accuracy, epsilon=epsilon, passed=passed, over={**accuracy.over, "epsilon": beyond}, checks=checks, notes=notes
     )
@@ -186,7 +186,7 @@ def _lost_core(surface: FittedSurface) -> list[Check]:
     if surface.partition is None or not surface.partition.lost:
         return []
     text = message(
-        "checks.dense-core-interpolated",
+        "checks.core-not-interpolated",
         "the dense core is not interpolated: {reason}",
         reason=surface.partition.reason,
     )
@@ -198,20 +198,20 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
     checks, tolerance = [], surface.settings.interior_tolerance
     if exact.any():
         worst = float(np.abs(d[exact]).max())
-        text = message("check.core-points-surface", "core points on the surface: {count}", count=int(exact.sum()))
+        text = message("checks.core-points-on-surface", "core points on the surface: {count}", count=int(exact.sum()))
         checks.append(Check("core", worst <= CORE_LIMIT, worst, CORE_LIMIT, "m", text))
     loose = ~exact
     if loose.any():
         worst = float(np.abs(d[loose]).max())
         figures = {"count": int((np.abs(d[loose]) > tolerance).sum()), "total": int(loose.sum())}
         text = message(
-            "check.points-beyond-interior-tolerance",
+            "checks.points-beyond-tolerance",
             "{count} of {total} points beyond the interior tolerance",
             **figures,
         )
         if surface.partition is not None:
             text = message(
-                "check.approximated-points-beyond-interior",
+                "checks.approximated-beyond-tolerance",
                 "{count} of {total} approximated points beyond the interior tolerance",
                 **figures,
             )
@@ -219,7 +219,7 @@ def _tolerance_checks(surface: FittedSurface, d: Floats, exact: NDArray[np.bool_
         if explained:
             noise = float(surface.diagnostics["noise"])
             text = message(
-                "checks.approximated-points-beyond-interior",
+                "checks.approximated-beyond-tolerance-as-noise",
                 "{count} of {total} approximated points beyond the interior tolerance, as noise of {noise:.3g} m "
                 "predicts",
                 noise=noise,
@@ -235,11 +235,11 @@ def _seam_checks(surface: FittedSurface, found: tuple[Seam, ...]) -> list[Check]
     gap, angle = max(seam.gap for seam in found), max(seam.angle for seam in found)
     limit = min(GAP_LIMIT, surface.settings.boundary_tolerance)
     tangent = surface.settings.seam == "tangent"
-    gaps = message("check.largest-gap-seams", "largest gap of the seams ({count})", count=len(found))
+    gaps = message("checks.largest-seam-gap", "largest gap of the seams ({count})", count=len(found))
     angles = (
-        message("check.largest-angle-seam", "largest angle at a seam")
+        message("checks.largest-seam-angle", "largest angle at a seam")
         if tangent
-        else message("check.largest-angle-seam-breaks", "largest angle at a seam (breaks are allowed)")
+        else message("checks.largest-seam-angle-breaks-allowed", "largest angle at a seam (breaks are allowed)")
     )
     return [
         Check("seam gap", gap <= limit, gap, limit, "m", gaps),

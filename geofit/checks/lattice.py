@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.geometry.clip import inside
-from geofit.geometry.trim_loops import inside as inside_loops
+from geofit.geometry.trim_loops import inside_loops as inside_loops
 from geofit.splines.bspline import collocation
 from geofit.splines.patch import Patch
 from geofit.surfaces.protocol import FittedSurface
 
-__all__ = ["Lattice", "lattices", "places"]
+__all__ = ["PatchLattice", "lattice_places", "lattices"]
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +23,7 @@ LOOPED = 24
 
 
 @dataclass(frozen=True, eq=False)
-class Lattice:
+class PatchLattice:
     """One patch: ``points`` (a, b, 3) about the origin, ``normal`` (a, b, 3), ``within`` (a, b) outline and loops.
 
     A normal is as long as the sine of the angle between S_u and S_v: 0 where the patch is degenerate. Places with
@@ -35,23 +35,23 @@ class Lattice:
     within: NDArray[np.bool_]
 
     @property
-    def middles(self) -> Lattice:
+    def middles(self) -> PatchLattice:
         """The middles of the spans alone."""
-        return Lattice(self.points[1::2, 1::2], self.normal[1::2, 1::2], self.within[1::2, 1::2])
+        return PatchLattice(self.points[1::2, 1::2], self.normal[1::2, 1::2], self.within[1::2, 1::2])
 
 
-def lattices(surface: FittedSurface) -> tuple[Lattice, ...]:
+def lattices(surface: FittedSurface) -> tuple[PatchLattice, ...]:
     """Lay a lattice over each patch, fine enough that no wiggle of one control point falls between its places."""
     each = zip(surface.patches, surface.loops, strict=True)
     return tuple(_lattice(surface, patch, loops) for patch, loops in each)
 
 
-def places(parts: Sequence[Lattice]) -> tuple[Floats, Floats]:
+def lattice_places(parts: Sequence[PatchLattice]) -> tuple[Floats, Floats]:
     """Return points (n, 3) and normals (n, 3) of all places within the outline and the loops."""
     return np.concatenate([p.points[p.within] for p in parts]), np.concatenate([p.normal[p.within] for p in parts])
 
 
-def _lattice(surface: FittedSurface, patch: Patch, loops: tuple[Floats, ...]) -> Lattice:
+def _lattice(surface: FittedSurface, patch: Patch, loops: tuple[Floats, ...]) -> PatchLattice:
     u, v = (_ends_and_middles(knots, LOOPED if loops else 1) for knots in (patch.knots_u, patch.knots_v))
     points, su, sv = _grid(patch, u, v)
     lengths = np.linalg.norm(su, axis=-1) * np.linalg.norm(sv, axis=-1)
@@ -62,7 +62,7 @@ def _lattice(surface: FittedSurface, patch: Patch, loops: tuple[Floats, ...]) ->
         within = inside(outline, points[..., :2].reshape(-1, 2)).reshape(within.shape)
     if loops:
         within &= inside_loops(patch, loops, *np.meshgrid(u, v, indexing="ij"))
-    return Lattice(points, normal, within)
+    return PatchLattice(points, normal, within)
 
 
 def _grid(patch: Patch, u: Floats, v: Floats) -> tuple[Floats, Floats, Floats]:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from geofit.checks.lattice import Lattice
+from geofit.checks.lattice import PatchLattice
 from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
@@ -48,7 +48,7 @@ NAMED = 20
 
 
 def oscillation(
-    surface: FittedSurface, parts: Sequence[Lattice], projection: Projection, active: Bools
+    surface: FittedSurface, parts: Sequence[PatchLattice], projection: Projection, active: Bools
 ) -> Check | None:
     """Compare the surface between its points with what the points support.
 
@@ -95,14 +95,14 @@ def oscillation(
     beyond = worst[off[worst] > allowed[worst]]
     if not len(beyond):
         text = message(
-            "check.points-surface-keeps-support",
+            "checks.surface-follows-support",
             "between the points the surface follows what they support; it departs by {value:.1f} m "
             "where {limit:.1f} m are allowed, at {x:.0f}, {y:.0f}",
             **figures,
         )
         return Check("oscillation", True, value, limit, "m", partly(text, len(chosen), given))
     text = message(
-        "check.surface-swings-points-around",
+        "checks.surface-oscillates",
         "the surface oscillates between the points: at {x:.0f}, {y:.0f} by {value:.1f} m from "
         "what those around support ({limit:.1f} m allowed), and so at {count} of {n} places; a "
         "point there may be wrong, or the tolerance finer than the data",
@@ -129,7 +129,7 @@ def _unit(vectors: Floats) -> Floats:
     return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300))
 
 
-def _places(parts: Sequence[Lattice]) -> tuple[Floats, Floats, Bools]:
+def _places(parts: Sequence[PatchLattice]) -> tuple[Floats, Floats, Bools]:
     """Choose middles of spans that show the gaps, and mark those that are asked: places, normals, asked."""
     points, normals, bends = [], [], []
     for part in (one.middles for one in parts):

@@ -66,7 +66,7 @@ def partly(text: Message, part: int, n: int) -> Message:
     return (
         text
         if part == n
-        else message("check.sample-of-points", "{text}; {part} of {n} points examined", text=text, part=part, n=n)
+        else message("checks.sample-examined", "{text}; {part} of {n} points examined", text=text, part=part, n=n)
     )
 
 
@@ -88,7 +88,7 @@ def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
     """Whether a patch lies to one side of its points: Student's t and the sign test, held against the tolerance."""
     rows = {name: part for name, part in by_label(d, patch).items() if len(part) >= FEW}
     if not rows:
-        text = message("check.not-judged-no-patch", "not judged: no patch has {few} approximated points", few=FEW)
+        text = message("checks.no-patch-to-judge", "not judged: no patch has {few} approximated points", few=FEW)
         return Check("bias", None, 0.0, SHARE * tolerance, "m", text)
     limits = {name: _bias_limit(part, tolerance) for name, part in rows.items()}
     name = max(rows, key=lambda one: abs(rows[one].mean()) / limits[one])
@@ -97,14 +97,14 @@ def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
     side = float(np.mean(np.sign(rows[name]) == np.sign(mean)))
     if passed:
         text = message(
-            "check.no-patch-lies-side",
+            "checks.no-bias",
             "no patch lies to one side of its points; largest mean {mean:+.3f} m, {patch}",
             mean=round(mean, 3) + 0.0,  # no -0.000
             patch=name,
         )
     elif mean > 0:
         text = message(
-            "check.bias-surface-runs-too-low",
+            "checks.bias-low",
             "a bias: the surface runs too low in patch {patch}, {share:.0%} of {n} approximated points lie above it, "
             "on average by {mean:.3f} m",
             patch=name,
@@ -114,7 +114,7 @@ def _bias(d: Floats, patch: Labels, tolerance: float) -> Check:
         )
     else:
         text = message(
-            "check.bias-surface-runs-too-high",
+            "checks.bias-high",
             "a bias: the surface runs too high in patch {patch}, {share:.0%} of {n} approximated points lie below it, "
             "on average by {mean:.3f} m",
             patch=name,
@@ -148,13 +148,13 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
     spread = float(d.std()) if n else 0.0
     if n < FEWEST or spread == 0:
         text = message(
-            "check.not-judged-too-few",
+            "checks.too-few-residuals",
             "not judged: too few approximated points, {n} where {few} are needed",
             n=n,
             few=FEWEST,
         )
         if n >= FEWEST:
-            text = message("check.not-judged-residuals-equal", "not judged: all residuals are equal")
+            text = message("checks.residuals-equal", "not judged: all residuals are equal")
         return Check(name, None, 0.0, SHARE * tolerance, "m", text)
     z = (d - d.mean()) / spread
     near = np.asarray(cKDTree(xyz).query(xyz, k=NEIGHBOURS + 1)[1])
@@ -170,13 +170,13 @@ def _clustering(xyz: Floats, d: Floats, tolerance: float) -> Check:
     figures = {"moran": moran, "z": (moran - expected) / error}
     if value <= limit:
         text = message(
-            "check.residuals-neighbours-not-hang",
+            "checks.residuals-independent",
             "residuals of neighbours do not hang together (Moran's I {moran:.2f}, z {z:.1f})",
             **figures,
         )
     else:
         text = message(
-            "check.residuals-neighbours-agree-pattern",
+            "checks.residuals-correlated",
             "residuals of neighbours agree: a pattern of about {value:.2f} m that the surface does not follow "
             "(Moran's I {moran:.2f}, z {z:.1f}); more control points, or a source that is off as a whole",
             value=value,
@@ -204,7 +204,7 @@ def _normality(d: Floats, tolerance: float) -> Check:
     n, name = len(d), "normality"
     if n < FEWEST:
         text = message(
-            "check.not-judged-too-few",
+            "checks.too-few-residuals",
             "not judged: too few approximated points, {n} where {few} are needed",
             n=n,
             few=FEWEST,
@@ -214,7 +214,7 @@ def _normality(d: Floats, tolerance: float) -> Check:
     if worst <= tolerance:
         # The fit bends the surface until its points are within the tolerance, which cuts the tails off.
         text = message(
-            "check.not-judged-no-residual",
+            "checks.residuals-within-tolerance",
             "not judged: no residual is beyond the interior tolerance, where the fit stops",
         )
         return Check(name, None, 0.0, CROOKED, "", text)
@@ -227,14 +227,14 @@ def _normality(d: Floats, tolerance: float) -> Check:
     limit = max(CROOKED, float(np.exp(mean + BEYOND * spread)))
     if off <= limit:
         text = message(
-            "check.normal-plot-residuals-straight",
+            "checks.residuals-normal",
             "the normal plot of the residuals is straight but for {off:.1%}",
             off=off,
         )
     elif np.mean(ordered**4) < 3.0 * np.mean(ordered**2) ** 2:
         # Shorter tails than a normal law has: what the tolerance cuts off, and nobody's blunder.
         text = message(
-            "check.not-judged-residuals-lie",
+            "checks.residuals-at-tolerance",
             "not judged: most residuals lie at the interior tolerance, where the fit stops; the normal plot leaves its "
             "line by {off:.0%} for that",
             off=off,
@@ -244,7 +244,7 @@ def _normality(d: Floats, tolerance: float) -> Check:
         squares = np.sort(d**2)[::-1]
         few = max(n // 50, 1)
         text = message(
-            "check.residuals-not-noise-normal",
+            "checks.residuals-not-normal",
             "the residuals are not noise: the normal plot departs from its line by {off:.0%}, with "
             "{share:.0%} of the sum of squares from {few} of {n} points; check the worst points first",
             off=off,

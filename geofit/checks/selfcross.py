@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from geofit.checks.lattice import Lattice
+from geofit.checks.lattice import PatchLattice
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
@@ -27,7 +27,7 @@ TOUCH = 1e-6
 NAMED = 20
 
 
-def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
+def self_crossing(surface: FittedSurface, parts: Sequence[PatchLattice]) -> Check:
     """Look for places where the surface passes through itself.
 
     A height field over the map or over its best plane cannot: over each place of its frame it stands once. Any
@@ -37,13 +37,13 @@ def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     frame = surface.frame
     if all(plan_map(patch) is not None for patch in surface.patches):
         text = message(
-            "check.height-field-map-stands",
+            "checks.height-field-over-map",
             "a height field over the map has one value at each location: it cannot cross itself",
         )
         return Check("self-intersection", True, 0, 0, "places", text)
     if frame == "best-plane":
         text = message(
-            "check.height-field-best-plane",
+            "checks.height-field-over-plane",
             "a height field over its best plane has one value at each location: it cannot cross itself",
         )
         return Check("self-intersection", True, 0, 0, "places", text)
@@ -51,14 +51,14 @@ def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     crossed, where = _crossings(triangles) if len(triangles) else (0, triangles)
     if not crossed:
         text = message(
-            "check.no-two-triangles-ends",
+            "checks.surface-does-not-cross-itself",
             "no two of {n} triangles between the ends and middles of its spans cross",
             n=len(triangles),
         )
         return Check("self-intersection", True, 0, 0, "places", text)
     place = where[0] + surface.origin
     text = message(
-        "check.surface-passes-through-crossing",
+        "checks.surface-crosses-itself",
         "the surface passes through itself: crossing pairs of triangles: {crossed} (triangles: {n}), one at "
         "{x:.1f}, {y:.1f}, {z:.1f}",
         crossed=crossed,
@@ -71,7 +71,7 @@ def self_crossing(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     return Check("self-intersection", False, crossed, 0, "places", text, named)
 
 
-def _triangles(parts: Sequence[Lattice]) -> Floats:
+def _triangles(parts: Sequence[PatchLattice]) -> Floats:
     """Corners (m, 3, 3) of two triangles a cell of the lattices that the outline and the loops leave."""
     step = 1
     while sum(2 * (p.points.shape[0] // step) * (p.points.shape[1] // step) for p in parts) > MOST:

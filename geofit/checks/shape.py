@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.checks.lattice import Lattice, places
+from geofit.checks.lattice import PatchLattice, lattice_places
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
 from geofit.geometry.elevation import plan_map
-from geofit.geometry.trim_loops import inside
+from geofit.geometry.trim_loops import inside_loops
 from geofit.splines.bspline import greville
 from geofit.splines.patch import Patch
 from geofit.surfaces.protocol import FittedSurface
@@ -37,7 +37,7 @@ NAMED = 20
 PIECES = 100
 
 
-def shape_checks(surface: FittedSurface, parts: Sequence[Lattice]) -> list[Check]:
+def shape_checks(surface: FittedSurface, parts: Sequence[PatchLattice]) -> list[Check]:
     """Look at the patches on their lattices: "normals", "patches", "elevation range", "area" where they apply."""
     checks = [_normals(surface, parts), _patches(surface)]
     if len(surface.points) and np.ptp(surface.points.xyz[:, 2]) > 0:
@@ -47,9 +47,9 @@ def shape_checks(surface: FittedSurface, parts: Sequence[Lattice]) -> list[Check
     return checks
 
 
-def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
+def _normals(surface: FittedSurface, parts: Sequence[PatchLattice]) -> Check:
     """Folds and flipped normals: a fold that is meant turns its normals; any other surface's look to one side."""
-    points, normal = places(parts)
+    points, normal = lattice_places(parts)
     if not len(points):
         points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
         normal = np.concatenate([p.normal.reshape(-1, 3) for p in parts])
@@ -61,7 +61,7 @@ def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
     count = int(turned.sum())
     if count:
         text = message(
-            "check.places-folded-degenerate-surface",
+            "checks.places-folded",
             "{count} of {total} places folded or degenerate: the surface turns over there, or its "
             "normals point to the other side",
             count=count,
@@ -69,7 +69,7 @@ def _normals(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
         )
     else:
         text = message(
-            "check.places-folded-degenerate",
+            "checks.places-folded-count",
             "{count} of {total} places folded or degenerate",
             count=0,
             total=len(normal),
@@ -96,14 +96,14 @@ def _patches(surface: FittedSurface) -> Check:
     count = len(faults)
     if not count:
         text = message(
-            "check.no-edge-corner-control",
+            "checks.patches-not-degenerate",
             "no edge, corner or control point of the patches ({n}) has collapsed",
             n=len(surface.patches),
         )
         return Check("patches", True, 0, 0, "places", text)
     names = tuple(dict.fromkeys(name for name, _ in faults))
     text = message(
-        "check.places-patches-degenerate-edge",
+        "checks.patches-degenerate",
         "places where patches are degenerate (an edge without length, a corner without an angle, control points "
         "that run back): {count}, in {names}; other programs may refuse such a face",
         count=count,
@@ -134,7 +134,7 @@ def _collapsed(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
 def _held(patch: Patch, loops: tuple[Floats, ...]) -> NDArray[np.bool_]:
     """Which control points (nu, nv) stand inside the loops, by their Greville abscissae."""
     u, v = greville(patch.knots_u, patch.degree[0]), greville(patch.knots_v, patch.degree[1])
-    return inside(patch, loops, *np.meshgrid(u, v, indexing="ij"))
+    return inside_loops(patch, loops, *np.meshgrid(u, v, indexing="ij"))
 
 
 def _out_of_order(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
@@ -147,17 +147,15 @@ def _out_of_order(patch: Patch, loops: tuple[Floats, ...]) -> list[Floats]:
     return list(np.concatenate(found))
 
 
-def _elevation_range(surface: FittedSurface, parts: Sequence[Lattice]) -> Check:
-    points, _ = places(parts)
+def _elevation_range(surface: FittedSurface, parts: Sequence[PatchLattice]) -> Check:
+    points, _ = lattice_places(parts)
     if not len(points):
         points = np.concatenate([p.points.reshape(-1, 3) for p in parts])
     z = surface.points.xyz[:, 2] - surface.origin[2]
     beyond = np.maximum(z.min() - points[:, 2], points[:, 2] - z.max())
     worst = int(np.argmax(beyond))
     value, limit = max(float(beyond[worst]), 0.0), RANGE_SHARE * float(np.ptp(z))
-    text = message(
-        "check.elevations-reach-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=value
-    )
+    text = message("data.elevations-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=value)
     where = _named(points[[worst]] + surface.origin) if value > limit else ()
     return Check("elevation range", value <= limit, value, limit, "m", text, where)
 
@@ -172,20 +170,20 @@ def _area(surface: FittedSurface) -> Check:
     figures = {"covered": covered, "wanted": wanted, "off": off}
     if off <= UNCOVERED:
         text = message(
-            "check.area-covered",
+            "checks.area-covered",
             "the surface covers {covered:.0f} of the study area's {wanted:.0f} square metres",
             **figures,
         )
     elif covered < wanted:
         text = message(
-            "check.area-not-covered",
+            "checks.area-not-covered",
             "the surface covers only {covered:.0f} of the study area's {wanted:.0f} square metres: {off:.1f} % of it "
             "have no surface",
             **figures,
         )
     else:
         text = message(
-            "check.patches-cover-square-metres",
+            "checks.patches-overlap",
             "the patches cover {covered:.0f} square metres of a study area of {wanted:.0f}: they overlap",
             **figures,
         )

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from geofit.checks.lattice import Lattice, places
+from geofit.checks.lattice import PatchLattice, lattice_places
 from geofit.checks.residual_tests import partly
 from geofit.data.accuracy import Check
 from geofit.data.messages import message
@@ -36,7 +36,7 @@ HUBER = 1.5
 NAMED = 20
 
 
-def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Check | None:
+def trend(surface: FittedSurface, parts: Sequence[PatchLattice], active: Bools) -> Check | None:
     """Hold the surface where no point is near against the robust plane of the points.
 
     Parameters
@@ -58,7 +58,7 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
     points = surface.points.xyz[active] - surface.origin
     if len(points) < FEWEST or surface.frame == "sections":
         return None
-    where, normal = places(parts)
+    where, normal = lattice_places(parts)
     if not len(where):
         return None
     axes = np.eye(3) if surface.frame == "map" else _plane_axes(points, normal)
@@ -84,14 +84,14 @@ def trend(surface: FittedSurface, parts: Sequence[Lattice], active: Bools) -> Ch
     figures = {"value": value, "shown": shown, "x": place[0, 0], "y": place[0, 1]}
     if value <= limit:
         text = message(
-            "check.away-points-surface-departs",
+            "checks.surface-near-trend",
             "away from the points the surface departs from their plane by {value:.1f} m, the points themselves by "
             "{shown:.1f} m",
             **figures,
         )
         return Check("trend", True, value, limit, "m", partly(text, len(local), len(every)))
     text = message(
-        "check.surface-runs-away-no",
+        "checks.surface-runs-away",
         "the surface runs away where no point constrains it: {value:.1f} m from the regional "
         "trend at {x:.0f}, {y:.0f}, where the points depart from it by {shown:.1f} m at most; "
         "do not use it there without further points",

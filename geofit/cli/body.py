@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
+from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
 from geofit.data.errors import InputError
 from geofit.data.messages import Message, message
@@ -23,7 +23,7 @@ __all__ = ["body", "print_body"]
 
 
 @app.command()
-@guarded
+@with_exit_code
 def body(
     source: Annotated[
         Path, typer.Argument(metavar="SITE_OR_COLLAR", help="site.toml with [boreholes], or a table of collars.")
@@ -73,15 +73,15 @@ def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes
 
         if not intervals:
             raise InputError(
-                message("cli.table-collars-alone-logged", "A table of collars alone has no logged intervals"),
-                message("cli.give-tables-intervals-with", "Give the tables of intervals with --intervals."),
+                message("cli.collars-without-intervals", "A table of collars alone has no logged intervals"),
+                message("cli.give-intervals", "Give the tables of intervals with --intervals."),
                 file=str(source),
             )
         return read_boreholes(source, survey, intervals)
     if survey is not None or intervals:
         raise InputError(
-            message("cli.survey-intervals-table-collars", "--survey and --intervals are for a table of collars"),
-            message("cli.site-file-names-tables", "A site file names its own tables in [boreholes]."),
+            message("cli.options-for-collars", "--survey and --intervals are for a table of collars"),
+            message("cli.site-file-has-tables", "A site file names its own tables in [boreholes]."),
             file=str(source),
         )
     from geofit.io.site_file import load_site

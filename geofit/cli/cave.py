@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
+from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Out
 
 if TYPE_CHECKING:
@@ -21,7 +21,7 @@ SHOWN = 10
 
 
 @app.command()
-@guarded
+@with_exit_code
 def cave(
     survey: Annotated[
         Path, typer.Argument(metavar="SURVEY", help="Compass .dat, Survex .svx, or a table of a centre line.")

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, print_counts, print_issues, print_json, print_results
+from geofit.cli.console import print_counts, print_issues, print_json, print_results, with_exit_code
 from geofit.cli.options import SURFACE_FILES, Crs, Decimal, Json, SectionColumn, Sep, SurfaceColumn, X, Y, Z
 from geofit.cli.sources import pick, read_source
 
@@ -16,7 +16,7 @@ __all__ = ["check"]
 
 
 @app.command()
-@guarded
+@with_exit_code
 def check(
     surface: Annotated[Path, typer.Argument(metavar="SURFACE", help=f"A surface: {SURFACE_FILES}.")],
     points: Annotated[Path, typer.Argument(metavar="POINTS.csv", help="Table of points, m.")],

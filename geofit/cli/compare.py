@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening, print_json, print_table, say
+from geofit.cli.console import listening, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, LanguageCode
 
 __all__ = ["compare"]
@@ -17,7 +17,7 @@ _STATE = "A project (*.geofit) or a site file (site.toml)"
 
 
 @app.command()
-@guarded
+@with_exit_code
 def compare(
     old: Annotated[Path, typer.Argument(metavar="OLD", help=f"The earlier state. {_STATE}.")],
     new: Annotated[Path, typer.Argument(metavar="NEW", help=f"The later state. {_STATE}.")],

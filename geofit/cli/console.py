@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from geofit.report.result import HorizonResult
 
 __all__ = [
-    "guarded",
     "listening",
     "print_counts",
     "print_issues",
@@ -34,6 +33,7 @@ __all__ = [
     "print_results",
     "print_table",
     "say",
+    "with_exit_code",
 ]
 
 P = ParamSpec("P")
@@ -65,7 +65,7 @@ PIPE_WIDTH = 160
 FIRST_ISSUES = 5
 
 
-def guarded(command: Callable[P, int]) -> Callable[P, None]:
+def with_exit_code(command: Callable[P, int]) -> Callable[P, None]:
     """Turn a command's number into the exit code, and known errors into one clear line."""
 
     @wraps(command)

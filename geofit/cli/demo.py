@@ -9,7 +9,7 @@ import typer
 
 from geofit.cli.app import app
 from geofit.cli.body import print_body
-from geofit.cli.console import guarded, listening, say
+from geofit.cli.console import listening, say, with_exit_code
 from geofit.cli.options import Json, Out
 from geofit.cli.running import run_site
 
@@ -20,7 +20,7 @@ BODY = "ORE"
 
 
 @app.command()
-@guarded
+@with_exit_code
 def demo(
     out: Out = Path("demo_out"),
     robust: Annotated[

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, print_issues, print_json, print_table, say
+from geofit.cli.console import print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import FORMATS, SURFACE_FILES, Json, Tolerance
 from geofit.cli.sources import read_source
 
@@ -16,7 +16,7 @@ __all__ = ["export"]
 
 
 @app.command()
-@guarded
+@with_exit_code
 def export(
     surfaces: Annotated[list[Path], typer.Argument(metavar="SURFACE...", help=f"Files: {SURFACE_FILES}.")],
     to: Annotated[str, typer.Option(help=f"Format: {FORMATS}.")],

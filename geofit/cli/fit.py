@@ -8,18 +8,18 @@ from typing import Annotated, Any
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening
+from geofit.cli.console import listening, with_exit_code
 from geofit.cli.options import (
     FROM_SITE,
     Across,
     Crs,
     Decimal,
     Dips,
-    Frame,
+    FrameChoice,
     Json,
     Out,
     Scheduler,
-    Seam,
+    SeamChoice,
     SectionColumn,
     Sep,
     SurfaceColumn,
@@ -41,7 +41,7 @@ def _help(setting: str, default: str) -> str:
 
 
 @app.command()
-@guarded
+@with_exit_code
 def fit(
     source: Annotated[
         Path,
@@ -68,7 +68,7 @@ def fit(
         typer.Option(help=_help("across", "cubic")),
     ] = None,
     seam: Annotated[
-        Seam | None,
+        SeamChoice | None,
         typer.Option(help=_help("seam", "tangent")),
     ] = None,
     core: Annotated[
@@ -76,7 +76,7 @@ def fit(
         typer.Option(help=f"auto, all, none, or a file with a polygon. {_help('core', 'auto')}"),
     ] = None,
     frame: Annotated[
-        Frame | None,
+        FrameChoice | None,
         typer.Option(help=_help("frame", "auto")),
     ] = None,
     smoothing: Annotated[str | None, typer.Option(help=f"auto, or a number. {_help('smoothing', 'auto')}")] = None,

@@ -8,13 +8,13 @@ from typing import Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded
+from geofit.cli.console import with_exit_code
 
 __all__ = ["gui"]
 
 
 @app.command()
-@guarded
+@with_exit_code
 def gui(
     file: Annotated[Path | None, typer.Argument(metavar="[FILE]", help="site.toml or project.geofit to open.")] = None,
 ) -> int:

@@ -8,14 +8,14 @@ from typing import Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening, print_counts, print_issues, print_json, print_table, say
+from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json
 
 __all__ = ["import_"]
 
 
 @app.command(name="import")
-@guarded
+@with_exit_code
 def import_(
     files: Annotated[list[Path], typer.Argument(metavar="FILES...", help="Tables, drawings, maps, grids of one site.")],
     site: Annotated[Path, typer.Option(metavar="OUT.toml", help="The site file to write; mapping and issues beside.")],

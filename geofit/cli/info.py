@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, print_counts, print_issues, print_json, print_table
+from geofit.cli.console import print_counts, print_issues, print_json, print_table, with_exit_code
 from geofit.cli.options import Json
 from geofit.cli.sources import read_source
 
@@ -16,7 +16,7 @@ __all__ = ["info"]
 
 
 @app.command()
-@guarded
+@with_exit_code
 def info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="site.toml, table of points or a surface (STEP ...).")],
     as_json: Json = False,

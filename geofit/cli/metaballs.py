@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening, print_json, print_table, say
+from geofit.cli.console import listening, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Out
 from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
 
@@ -15,7 +15,7 @@ __all__ = ["metaballs"]
 
 
 @app.command()
-@guarded
+@with_exit_code
 def metaballs(
     source: VolumeFile,
     out: Out,

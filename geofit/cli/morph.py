@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening, print_json, print_table, say
+from geofit.cli.console import listening, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Out
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ class FilmWord(StrEnum):
 
 
 @app.command()
-@guarded
+@with_exit_code
 def morph(
     surveys: Annotated[
         list[Path], typer.Argument(metavar="A B...", help="Closed bodies in order: STL, OBJ, PLY, TSurf, STEP solids.")

@@ -23,7 +23,7 @@ class Across(StrEnum):
     LINEAR = "linear"
 
 
-class Seam(StrEnum):
+class SeamChoice(StrEnum):
     """How patches meet."""
 
     TANGENT = "tangent"
@@ -37,7 +37,7 @@ class Dips(StrEnum):
     FIT = "fit"
 
 
-class Frame(StrEnum):
+class FrameChoice(StrEnum):
     """In which frame a surface is a height field."""
 
     AUTO = "auto"

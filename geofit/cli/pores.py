@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening, print_json, print_table, say
+from geofit.cli.console import listening, print_json, print_table, say, with_exit_code
 from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
 from geofit.cli.volumes import PoreLabel, Shape, VolumeFile, VoxelEdge, read_options, stem_of
 
@@ -22,7 +22,7 @@ NETWORK_K = "network permeability along axis 0, 1, 2, mD"
 
 
 @app.command()
-@guarded
+@with_exit_code
 def pores(
     source: VolumeFile,
     out: Out,

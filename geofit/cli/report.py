@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, listening
+from geofit.cli.console import listening, with_exit_code
 from geofit.cli.options import Json, LanguageCode, Out
 from geofit.cli.running import run_site
 from geofit.cli.sources import read_source
@@ -20,7 +20,7 @@ _SITE = "Default: [report] of the site file."
 
 
 @app.command()
-@guarded
+@with_exit_code
 def report(
     site: Annotated[Path, typer.Argument(metavar="SITE", help="site.toml of a site.")],
     out: Out,

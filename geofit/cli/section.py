@@ -8,14 +8,14 @@ from typing import Annotated, Any
 import typer
 
 from geofit.cli.app import app
-from geofit.cli.console import guarded, print_json, print_table, say
+from geofit.cli.console import print_json, print_table, say, with_exit_code
 from geofit.cli.options import SURFACE_FILES, Json, Out, Tolerance
 
 __all__ = ["section"]
 
 
 @app.command()
-@guarded
+@with_exit_code
 def section(
     surfaces: Annotated[list[Path], typer.Argument(metavar="SURFACE...", help=f"Files: {SURFACE_FILES}.")],
     line: Annotated[str, typer.Option(help="x0,y0,x1,y1 (further corners may follow), or a table with x and y; m.")],

@@ -31,7 +31,7 @@ def read_source(source: Path, columns: dict[str, str | None], boundary: Path | N
         if given:
             raise InputError(
                 message("cli.option-for-tables", "{option} is for tables of points", option=given[0]),
-                message("cli.site-file-names-columns", "A site file names its own columns."),
+                message("cli.site-file-has-columns", "A site file names its own columns."),
                 file=str(source),
             )
         site = read_site(source)

@@ -53,7 +53,7 @@ def _numbers(text: str, option: str) -> list[float]:
     if len(numbers) not in (1, 3):
         raise SettingsError(
             message(
-                "cli.one-or-three-numbers",
+                "cli.not-one-or-three-numbers",
                 "{option} '{text}' is not a number, or three with commas between them.",
                 option=option,
                 text=text,

@@ -34,7 +34,7 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     except (TypeError, ValueError, OverflowError) as error:
         raise PointsError(
             message(
-                "points.places-not-numbers",
+                "data.coordinates-not-numbers",
                 "{name} must contain numbers: {error}. Give an (n, 3) array of metres.",
                 name=Untranslated(name),
                 error=error,
@@ -45,7 +45,7 @@ def places(name: str, given: ArrayLike) -> NDArray[np.float64]:
     if xyz.ndim != 2 or xyz.shape[1] != 3:
         raise PointsError(
             message(
-                "points.places-wrong-shape",
+                "data.coordinates-wrong-shape",
                 "{name} has shape {shape}; an (n, 3) array of easting, northing, elevation is needed.",
                 name=Untranslated(name),
                 shape=xyz.shape,
@@ -67,7 +67,7 @@ def finite_places(given: ArrayLike) -> NDArray[np.float64]:
         bad = np.flatnonzero(~np.isfinite(xyz).all(axis=1))
         raise PointsError(
             plural_message(
-                "points.points-not-finite-first",
+                "data.points-not-finite",
                 "{count} of {total} points is not finite, at index {index}: {place}. Remove or complete it.",
                 "{count} of {total} points are not finite, the first at index {index}: {place}. Remove or complete "
                 "them.",
@@ -108,7 +108,7 @@ def refuse_far(xyz: NDArray[np.float64]) -> None:
     if farthest > LARGEST:
         raise PointsError(
             message(
-                "points.coordinate-too-large",
+                "data.coordinate-too-large",
                 "A coordinate is {farthest:.3g} m; at most {largest:.0e} m are measured. Check the unit and the "
                 "columns.",
                 farthest=farthest,
@@ -132,7 +132,7 @@ def column(name: str, values: ArrayLike, n: int, dtype: type) -> NDArray[Any]:
     except (TypeError, ValueError, OverflowError) as error:
         raise PointsError(
             message(
-                "points.cannot-read",
+                "data.cannot-read",
                 "{name} cannot be read as {type}: {error}.",
                 name=name,
                 type=dtype.__name__,
@@ -154,7 +154,7 @@ def _fixed(array: NDArray[Any], dtype: type) -> bool:
 def wrong_shape(name: str, shape: tuple[int, ...], n: int) -> Message:
     """Return the message of a column that is neither n values nor one."""
     return message(
-        "points.wrong-shape",
+        "data.wrong-shape",
         "{name} has shape {shape}; {n} points need shape ({n},) or one value for all.",
         name=name,
         shape=shape,

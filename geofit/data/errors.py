@@ -108,14 +108,14 @@ class InputError(GeofitError):
         """Return a sentence with file, row, column and value in front, as far as they are known."""
         place: list[Message | str] = [Untranslated(self.file)] if self.file else []
         if self.row is not None:
-            place.append(message("place.row", "row {row}", row=self.row))
+            place.append(message("data.place-row", "row {row}", row=self.row))
         if self.column is not None:
-            place.append(message("place.column", "column '{column}'", column=Untranslated(self.column)))
+            place.append(message("data.place-column", "column '{column}'", column=Untranslated(self.column)))
         if self.value is not None:
-            place.append(message("place.value", "value '{value}'", value=Untranslated(folded(self.value))))
+            place.append(message("data.place-value", "value '{value}'", value=Untranslated(folded(self.value))))
         if not place:
             return sentence
-        return message("error.at-place", "{place}: {sentence}", place=tuple(place), sentence=sentence)
+        return message("data.sentence-at-place", "{place}: {sentence}", place=tuple(place), sentence=sentence)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Return what another process makes the same error from."""
@@ -127,11 +127,11 @@ def _sentence(reason: Message, remedy: Message) -> Message:
     """Return reason and remedy with one full stop between them, which some reasons bring with them."""
     if reason.is_sentence:
         return (
-            message("error.reason-and-remedy", "{reason} {remedy}", reason=reason, remedy=remedy) if remedy else reason
+            message("data.sentence-and-remedy", "{reason} {remedy}", reason=reason, remedy=remedy) if remedy else reason
         )
     if remedy:
-        return message("error.reason-remedy", "{reason}. {remedy}", reason=reason, remedy=remedy)
-    return message("error.reason", "{reason}.", reason=reason)
+        return message("data.reason-and-remedy", "{reason}. {remedy}", reason=reason, remedy=remedy)
+    return message("data.reason-sentence", "{reason}.", reason=reason)
 
 
 class PointsError(GeofitError, ValueError):

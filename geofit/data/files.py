@@ -59,18 +59,17 @@ def cannot_write(error: OSError, path: str | os.PathLike[str]) -> InputError:
     """Return an error of the system as one that names the file and what to do about it."""
     match error.errno:
         case errno.ENOSPC | errno.EDQUOT | errno.EFBIG:
-            remedy = message("files.make-room-disk", "Make room on the disk, or name another folder.")
+            remedy = message("data.make-room-on-disk", "Make room on the disk, or name another folder.")
         case errno.ENOENT | errno.ENOTDIR:
-            remedy = message("project.folder-name", "Make the folder, or name another.")
+            remedy = message("data.make-or-name-folder", "Make the folder, or name another.")
         case errno.ENAMETOOLONG | errno.EINVAL:
-            remedy = message("files.choose", "Choose another name.")
+            remedy = message("data.choose-another-name", "Choose another name.")
         case _:
             remedy = message(
-                "files.folder-you-may", "Name a folder that you may write to, and close the file in other programs."
+                "data.name-writable-folder",
+                "Name a folder that you may write to, and close the file in other programs.",
             )
-    reason = message(
-        "export.file-cannot-written", "The file cannot be written: {error}", error=error.strerror or str(error)
-    )
+    reason = message("data.file-not-written", "The file cannot be written: {error}", error=error.strerror or str(error))
     return InputError(reason, remedy, file=legible(str(path)))
 
 

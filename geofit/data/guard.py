@@ -54,7 +54,7 @@ def reason_of(error: Exception) -> Message:
     frame = traceback.extract_tb(error.__traceback__)[-1:]
     place = f"{Path(frame[0].filename).name}:{frame[0].lineno}" if frame else "?"
     return message(
-        "error.unforeseen",
+        "data.unforeseen-error",
         "unforeseen error {kind} ({text}; {place}); please report it",
         kind=type(error).__name__,
         text=" ".join(str(error).split())[:200],

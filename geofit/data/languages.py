@@ -67,7 +67,7 @@ def language(code: str) -> Language:
         if known.code == code:
             return known
     raise SettingsError(
-        message("report.language-choose-en-zh", "The language is '{code}'; choose en or zh.", code=Untranslated(code))
+        message("data.language-unknown", "The language is '{code}'; choose en or zh.", code=Untranslated(code))
     )
 
 

@@ -120,7 +120,7 @@ class PointSet:
         if wrong.size:
             raise PointsError(
                 message(
-                    "points.accuracy-standard-deviation-above",
+                    "data.accuracy-not-positive",
                     "accuracy[{index}] is {value:g} m; one standard deviation must be above 0. Use nan where the "
                     "source states none.",
                     index=wrong[0],
@@ -190,14 +190,14 @@ class PointSet:
         word = {label: self.labels[label].word(index) for label in _WORDS}
         name, kind = word["hole"] or word["section"], word["kind"]
         what = (
-            message("point.kind-name", "{kind} {name}", kind=kind, name=Untranslated(name))
+            message("data.point-kind-name", "{kind} {name}", kind=kind, name=Untranslated(name))
             if name
-            else message("point.kind", "{kind}", kind=kind)
+            else message("data.point-kind", "{kind}", kind=kind)
         )
         file, row = word["file"], int(self.row[index])
         if file:
-            return message("point.in-file", "{point}, {file} row {row}", point=what, file=file, row=row)
-        return message("point.in-row", "{point}, row {row}", point=what, row=row) if row else what
+            return message("data.point-in-file", "{point}, {file} row {row}", point=what, file=file, row=row)
+        return message("data.point-in-row", "{point}, row {row}", point=what, row=row) if row else what
 
 
 def _labels(name: str, values: ArrayLike | Labels, n: int) -> Labels:

@@ -27,7 +27,9 @@ def tell(progress: Progress | None, stage: str | Message, fraction: float) -> No
     """Report a stage and raise :class:`~geofit.data.errors.Cancelled` if the listener asks to stop."""
     if progress is not None and progress(stage, min(max(fraction, 0.0), 1.0)) is False:
         raise Cancelled(
-            message("run.cancelled", "Stopped by the caller during '{stage}'. Nothing was written.", stage=stage)
+            message(
+                "data.cancelled-in-stage", "Stopped by the caller during '{stage}'. Nothing was written.", stage=stage
+            )
         )
 
 

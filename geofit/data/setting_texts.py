@@ -47,26 +47,26 @@ class SettingText:
         """Return the name with the unit, as a table has it."""
         if not self.unit:
             return self.label
-        return message("settings.label-unit", "{label}, {unit}", label=self.label, unit=self.unit)
+        return message("data.setting-label-unit", "{label}, {unit}", label=self.label, unit=self.unit)
 
 
-_AUTO = message("settings.automatic", "Automatic")
+_AUTO = message("data.setting-automatic", "Automatic")
 
 #: Every field of :class:`~geofit.data.settings.FitSettings`, in the order of the fit panel.
 SETTINGS: Mapping[str, SettingText] = {
     "epsilon": SettingText(
-        message("settings.epsilon", "Control error ε"),
+        message("data.setting-epsilon", "Control error ε"),
         message(
-            "settings.epsilon-about",
+            "data.setting-epsilon-about",
             "The surface passes when σ, the standard deviation of all points from it, is below this.",
         ),
         "m",
         number="real",
     ),
     "interior_tolerance": SettingText(
-        message("settings.interior-tolerance", "Interior tolerance"),
+        message("data.setting-interior-tolerance", "Interior tolerance"),
         message(
-            "settings.interior-tolerance-about",
+            "data.setting-interior-tolerance-about",
             "How far a point outside the core may lie from the surface. The fit refines until the limit is met or "
             "refinement no longer helps.",
         ),
@@ -74,22 +74,22 @@ SETTINGS: Mapping[str, SettingText] = {
         number="real",
     ),
     "core": SettingText(
-        message("settings.core", "Exact core"),
+        message("data.setting-core", "Exact core"),
         message(
-            "settings.core-about",
+            "data.setting-core-about",
             "The region whose points the surface interpolates exactly. Automatic: where the points are dense. All: "
             "every point. None: all points are approximated. Drawn: the rectangle around a polygon.",
         ),
         choices={
             "auto": _AUTO,
-            "all": message("settings.core-all", "All points"),
-            "none": message("settings.core-none", "None"),
+            "all": message("data.setting-core-all", "All points"),
+            "none": message("data.setting-core-none", "None"),
         },
     ),
     "smoothing": SettingText(
-        message("settings.smoothing", "Smoothing"),
+        message("data.setting-smoothing", "Smoothing"),
         message(
-            "settings.smoothing-about",
+            "data.setting-smoothing-about",
             "Weight of the bending energy outside the core. Automatic: from the scatter of the points. Larger is "
             "smoother, smaller is nearer to the points.",
         ),
@@ -97,9 +97,9 @@ SETTINGS: Mapping[str, SettingText] = {
         number="real",
     ),
     "boundary_tolerance": SettingText(
-        message("settings.boundary-tolerance", "Seam tolerance"),
+        message("data.setting-boundary-tolerance", "Seam tolerance"),
         message(
-            "settings.boundary-tolerance-about",
+            "data.setting-boundary-tolerance-about",
             "The largest gap allowed between the edges of neighbouring patches. Patches of a fit share their edges: no "
             "gap.",
         ),
@@ -107,97 +107,97 @@ SETTINGS: Mapping[str, SettingText] = {
         number="real",
     ),
     "across": SettingText(
-        message("settings.across", "Across sections"),
+        message("data.setting-across", "Across sections"),
         message(
-            "settings.across-about",
+            "data.setting-across-about",
             "How the core runs from one section to the next: lofted smoothly, or ruled along straight lines.",
         ),
         choices={
-            "cubic": message("settings.across-cubic", "Cubic"),
-            "linear": message("settings.across-linear", "Linear"),
+            "cubic": message("data.setting-across-cubic", "Cubic"),
+            "linear": message("data.setting-across-linear", "Linear"),
         },
     ),
     "seam": SettingText(
-        message("settings.seam", "At the seams"),
+        message("data.setting-seam", "At the seams"),
         message(
-            "settings.seam-about",
+            "data.setting-seam-about",
             "Whether neighbouring patches share a tangent plane, or meet at the edge and may break there.",
         ),
         choices={
-            "tangent": message("settings.seam-tangent", "Smooth"),
-            "position": message("settings.seam-position", "Break allowed"),
+            "tangent": message("data.setting-seam-tangent", "Smooth"),
+            "position": message("data.setting-seam-position", "Break allowed"),
         },
     ),
     "frame": SettingText(
-        message("settings.frame", "Parametrized over"),
+        message("data.setting-frame", "Parametrized over"),
         message(
-            "settings.frame-about",
+            "data.setting-frame-about",
             "Map: one height at each place. Best plane: for steep faults. Sections: for overturned folds, through the "
             "section lines in order.",
         ),
         choices={
             "auto": _AUTO,
-            "map": message("settings.frame-map", "The map"),
-            "best-plane": message("settings.frame-best-plane", "Its best plane"),
-            "sections": message("settings.frame-sections", "Its sections"),
+            "map": message("data.setting-frame-map", "The map"),
+            "best-plane": message("data.setting-frame-best-plane", "Its best plane"),
+            "sections": message("data.setting-frame-sections", "Its sections"),
         },
     ),
     "robust": SettingText(
-        message("settings.robust", "Outliers"),
+        message("data.setting-robust", "Outliers"),
         message(
-            "settings.robust-about",
+            "data.setting-robust-about",
             "Peripheral points that their neighbours contradict. They are listed and count in sigma either way.",
         ),
         choices={
-            False: message("settings.robust-false", "Fitted too"),
-            True: message("settings.robust-true", "Not fitted"),
+            False: message("data.setting-robust-false", "Fitted too"),
+            True: message("data.setting-robust-true", "Not fitted"),
         },
     ),
     "strict": SettingText(
-        message("settings.strict", "Beyond tolerance"),
+        message("data.setting-strict", "Beyond tolerance"),
         message(
-            "settings.strict-about",
+            "data.setting-strict-about",
             "Peripheral points farther from the surface than the interior tolerance: listed where noise explains them "
             "or neighbours contradict them, or met in any case, at the price of swings between them.",
         ),
         choices={
-            False: message("settings.strict-false", "Listed where noise explains them"),
-            True: message("settings.strict-true", "Met where knots allow"),
+            False: message("data.setting-strict-false", "Listed where noise explains them"),
+            True: message("data.setting-strict-true", "Met where knots allow"),
         },
     ),
     "dips": SettingText(
-        message("settings.dips", "Measured dips"),
+        message("data.setting-dips", "Measured dips"),
         message(
-            "settings.dips-about",
+            "data.setting-dips-about",
             "Check: dips measured on the horizon are compared with the surface. Fit: they are data as well, and the "
             "surface takes their slope as far as their accuracy asks for it.",
         ),
         choices={
-            "check": message("settings.dips-check", "Checked"),
-            "fit": message("settings.dips-fit", "Checked and fitted"),
+            "check": message("data.checked", "Checked"),
+            "fit": message("data.setting-dips-fit", "Checked and fitted"),
         },
     ),
     "dip_accuracy": SettingText(
-        message("settings.dip-accuracy", "Accuracy of dips"),
+        message("data.setting-dip-accuracy", "Accuracy of dips"),
         message(
-            "settings.dip-accuracy-about",
+            "data.setting-dip-accuracy-about",
             "Standard deviation of a measured dip about the surface's own, the waviness of the bed included.",
         ),
         "°",
         number="real",
     ),
     "max_iterations": SettingText(
-        message("settings.max-iterations", "Rounds, at most"),
+        message("data.setting-max-iterations", "Rounds, at most"),
         message(
-            "settings.max-iterations-about",
+            "data.setting-max-iterations-about",
             "How often the fit may refine and adjust before it stops and reports what is not met.",
         ),
         number="whole",
     ),
     "max_control_points": SettingText(
-        message("settings.max-control-points", "Control points, at most"),
+        message("data.setting-max-control-points", "Control points, at most"),
         message(
-            "settings.max-control-points-about",
+            "data.setting-max-control-points-about",
             "Limit of the surface's size. Automatic: 40 a data point, 15 with a core, between 1,600 and 20,000, and as "
             "many as it takes to interpolate the core.",
         ),
@@ -206,9 +206,9 @@ SETTINGS: Mapping[str, SettingText] = {
         least=16,
     ),
     "coincidence_distance": SettingText(
-        message("settings.coincidence-distance", "Coincidence distance"),
+        message("data.setting-coincidence-distance", "Coincidence distance"),
         message(
-            "settings.coincidence-distance-about",
+            "data.setting-coincidence-distance-about",
             "Points closer than this in plan are coincident. If their elevations differ, the more accurate one is used "
             "and the other listed.",
         ),
@@ -220,18 +220,18 @@ SETTINGS: Mapping[str, SettingText] = {
 #: Every field of :class:`~geofit.bodies.settings.BodySettings`, in the order of the panel of bodies.
 BODY_SETTINGS: Mapping[str, SettingText] = {
     "epsilon": SettingText(
-        message("settings.epsilon", "Control error ε"),
+        message("data.setting-epsilon", "Control error ε"),
         message(
-            "settings.body-epsilon-about",
+            "data.setting-body-epsilon-about",
             "The body passes when σ, the standard deviation of its contacts from the surface, is below this.",
         ),
         "m",
         number="real",
     ),
     "step": SettingText(
-        message("settings.step", "Sample spacing"),
+        message("data.setting-step", "Sample spacing"),
         message(
-            "settings.step-about",
+            "data.setting-step-about",
             "Distance between samples along logged intervals. Automatic: a quarter of the median interval in the body.",
         ),
         "m",
@@ -239,21 +239,21 @@ BODY_SETTINGS: Mapping[str, SettingText] = {
         number="real",
     ),
     "closed": SettingText(
-        message("settings.closed", "Far from data"),
+        message("data.setting-closed", "Far from data"),
         message(
-            "settings.closed-about",
+            "data.setting-closed-about",
             "Outside: ground beyond the reach of all contacts and inside samples is not in the body, so that it "
             "closes. Unknown: the body may continue there.",
         ),
         choices={
-            True: message("settings.closed-true", "Outside"),
-            False: message("settings.closed-false", "Unknown"),
+            True: message("data.setting-closed-true", "Outside"),
+            False: message("data.setting-closed-false", "Unknown"),
         },
     ),
     "reach": SettingText(
-        message("settings.reach", "Reach"),
+        message("data.setting-reach", "Reach"),
         message(
-            "settings.reach-about",
+            "data.setting-reach-about",
             "How far from contacts and inside samples the body may extend. Automatic: twice the distance between "
             "holes.",
         ),
@@ -262,70 +262,71 @@ BODY_SETTINGS: Mapping[str, SettingText] = {
         number="real",
     ),
     "ranges": SettingText(
-        message("settings.ranges", "Ranges"),
+        message("data.setting-ranges", "Ranges"),
         message(
-            "settings.ranges-about",
+            "data.setting-ranges-about",
             "How far data act along the major, the middle and the minor axis, relative to each other: 3 3 1 for a "
             "flat lens.",
         ),
     ),
     "azimuth": SettingText(
-        message("settings.azimuth", "Dip direction"),
+        message("data.setting-azimuth", "Dip direction"),
         message(
-            "settings.azimuth-about",
+            "data.setting-azimuth-about",
             "Direction towards which the plane of the major and middle axes dips, clockwise from grid north.",
         ),
         "°",
     ),
     "dip": SettingText(
-        message("settings.dip", "Dip"),
-        message("settings.dip-about", "Dip of the plane of the major and middle axes."),
+        message("data.setting-dip", "Dip"),
+        message("data.setting-dip-about", "Dip of the plane of the major and middle axes."),
         "°",
     ),
     "rake": SettingText(
-        message("settings.rake", "Rake"),
+        message("data.setting-rake", "Rake"),
         message(
-            "settings.rake-about",
+            "data.setting-rake-about",
             "Angle in that plane from the line of steepest descent to the major axis, clockwise seen from above.",
         ),
         "°",
     ),
     "box": SettingText(
-        message("settings.box", "Box"),
+        message("data.setting-box", "Box"),
         message(
-            "settings.box-about",
+            "data.setting-box-about",
             "Lower and upper corner at which the body is cut, six map coordinates in metres. Empty: the box of the "
             "data, enlarged by 1.1 times the reach.",
         ),
         choices={None: _AUTO},
     ),
     "coincidence_distance": SettingText(
-        message("settings.coincidence-distance", "Coincidence distance"),
-        message("settings.body-coincidence-about", "Contacts and samples closer than this to each other are one."),
+        message("data.setting-coincidence-distance", "Coincidence distance"),
+        message("data.setting-body-coincidence-about", "Contacts and samples closer than this to each other are one."),
         "m",
         number="real",
     ),
     "dense": SettingText(
-        message("settings.dense", "Conditions at once"),
+        message("data.setting-dense", "Conditions at once"),
         message(
-            "settings.dense-about",
+            "data.setting-dense-about",
             "Largest number of conditions that are solved at once; more are solved in overlapping parts.",
         ),
         number="whole",
         least=50,
     ),
     "realizations": SettingText(
-        message("settings.realizations", "Simulations"),
+        message("data.setting-realizations", "Simulations"),
         message(
-            "settings.realizations-about", "Number of conditional simulations behind the volumes P10, P50 and P90."
+            "data.setting-realizations-about", "Number of conditional simulations behind the volumes P10, P50 and P90."
         ),
         number="whole",
         least=10,
     ),
     "seed": SettingText(
-        message("settings.seed", "Seed"),
+        message("data.setting-seed", "Seed"),
         message(
-            "settings.seed-about", "Start of the random numbers of the simulations: the same seed, the same volumes."
+            "data.setting-seed-about",
+            "Start of the random numbers of the simulations: the same seed, the same volumes.",
         ),
         number="whole",
     ),

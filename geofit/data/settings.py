@@ -110,7 +110,9 @@ class FitSettings:
 
 def named(name: str) -> Message:
     """Return what a setting is called, with its keyword."""
-    return message("settings.label-keyword", "{label} ({name})", label=SETTINGS[name].label, name=Untranslated(name))
+    return message(
+        "data.setting-label-keyword", "{label} ({name})", label=SETTINGS[name].label, name=Untranslated(name)
+    )
 
 
 def _given(name: str, value: Any) -> dict[str, Any]:
@@ -123,13 +125,13 @@ def _require(name: str, value: Any, text: SettingText) -> None:
     if text.number == "real":
         if is_finite(value) and value > 0:
             return
-        unit = message("settings.unit-metres", "metres")
+        unit = message("data.setting-unit-metres", "metres")
         if text.unit == "°":
-            unit = message("settings.unit-degrees", "degrees")
+            unit = message("data.setting-unit-degrees", "degrees")
         if not text.unit:
-            unit = message("settings.auto-value-unit-word", "the auto value's unit, or the word 'auto'")
+            unit = message("data.setting-auto-or-value", "the auto value's unit, or the word 'auto'")
         refused = message(
-            "settings.finite-number-above-needed",
+            "data.setting-not-positive",
             "{setting} is {value}; a finite number above 0 is needed ({unit}).",
             unit=unit,
             **given,
@@ -138,23 +140,23 @@ def _require(name: str, value: Any, text: SettingText) -> None:
         if isinstance(value, int) and is_finite(value) and value >= text.least:
             return
         refused = message(
-            "settings.whole-number-needed",
+            "data.setting-not-whole-number",
             "{setting} is {value}; a whole number of at least {least} is needed.",
             least=text.least,
             **given,
         )
     elif True in text.choices:
-        refused = message("settings.true-false-needed", "{setting} is {value}; true or false is needed.", **given)
+        refused = message("data.setting-not-true-or-false", "{setting} is {value}; true or false is needed.", **given)
     elif name == "core":
         refused = message(
-            "settings.choose-polygon-map-coordinates",
+            "data.setting-unknown-choice-or-polygon",
             "{setting} is {value}; choose one of {words} or a polygon of map coordinates.",
             words=_words(text),
             **given,
         )
     else:
         refused = message(
-            "settings.unknown-choice", "{setting} is {value}; choose one of {words}.", words=_words(text), **given
+            "data.setting-unknown-choice", "{setting} is {value}; choose one of {words}.", words=_words(text), **given
         )
     raise SettingsError(refused)
 
@@ -170,7 +172,7 @@ def _polygon(value: ArrayLike) -> tuple[tuple[float, float], ...]:
         corners = np.empty(0)
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
         text = message(
-            "settings.shape-polygon-least-three",
+            "data.setting-polygon-wrong-shape",
             "{setting} has shape {shape}; a polygon of at least three (easting, northing) corners is needed.",
             shape=corners.shape,
             setting=named("core"),

@@ -26,9 +26,9 @@ FAR = 10.0
 _WORDS: dict[Level, str] = {"none": "–", "pass": "PASS", "warning": "WARNING", "fail": "FAIL"}
 _ORDER: tuple[Level, ...] = ("none", "pass", "warning", "fail")
 _SCHEMES = {
-    "hole": message("verdict.holes", "holes left out"),
-    "section": message("verdict.sections", "sections left out"),
-    "block": message("verdict.blocks", "blocks left out"),
+    "hole": message("data.verdict-holes", "holes left out"),
+    "section": message("data.verdict-sections", "sections left out"),
+    "block": message("data.verdict-blocks", "blocks left out"),
 }
 
 
@@ -74,7 +74,9 @@ class Verdict:
     def text(self) -> Message:
         """Everything in one sentence, the lamps that are not green first."""
         worst = sorted(self.lamps, key=lambda lamp: -_ORDER.index(lamp.level))
-        return message("verdict.sentence", "{word}: {lamps}", word=self.word, lamps=tuple(lamp.text for lamp in worst))
+        return message(
+            "data.verdict-sentence", "{word}: {lamps}", word=self.word, lamps=tuple(lamp.text for lamp in worst)
+        )
 
 
 def verdict_of(
@@ -103,44 +105,46 @@ def verdict_of(
 def _at_the_data(a: Accuracy) -> Lamp:
     figures = {"sigma": a.sigma, "epsilon": a.epsilon}
     if a.passed:
-        text = message("verdict.below", "σ {sigma:#.3g} m < ε {epsilon:g} m", **figures)
+        text = message("data.verdict-below", "σ {sigma:#.3g} m < ε {epsilon:g} m", **figures)
     elif a.sigma < a.epsilon:
         text = message(
-            "verdict.runs-away",
+            "data.verdict-runs-away",
             "σ {sigma:#.3g} m < ε {epsilon:g} m, but the surface runs far beyond the elevations of its data",
             **figures,
         )
     else:
-        text = message("verdict.not-below", "σ {sigma:#.3g} m ≥ ε {epsilon:g} m", **figures)
-    return Lamp(message("verdict.data", "At the data"), "pass" if a.passed else "fail", text)
+        text = message("data.verdict-not-below", "σ {sigma:#.3g} m ≥ ε {epsilon:g} m", **figures)
+    return Lamp(message("data.verdict-data", "At the data"), "pass" if a.passed else "fail", text)
 
 
 def _checks(checks: Sequence[Check]) -> Lamp:
-    title = message("verdict.checks", "Checks")
+    title = message("data.verdict-checks", "Checks")
     asked = [check for check in checks if check.passed is not None]
     failed = tuple(dict.fromkeys(check.name for check in asked if not check.passed))
     if not asked:
-        return Lamp(title, "none", message("verdict.no-checks", "no check applies"))
+        return Lamp(title, "none", message("data.verdict-no-checks", "no check applies"))
     figures = {"passed": sum(bool(check.passed) for check in asked), "total": len(asked)}
     if failed:
-        text = message("verdict.failed", "{passed} of {total} checks pass; failed: {names}", names=failed, **figures)
+        text = message(
+            "data.verdict-failed", "{passed} of {total} checks pass; failed: {names}", names=failed, **figures
+        )
         return Lamp(title, "warning", text)
-    return Lamp(title, "pass", message("verdict.passed", "{passed} of {total} checks pass", **figures))
+    return Lamp(title, "pass", message("data.verdict-passed", "{passed} of {total} checks pass", **figures))
 
 
 def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
-    title = message("verdict.away", "Away from the data")
+    title = message("data.verdict-away", "Away from the data")
     known = () if prediction is None else tuple(one for one in prediction.left_out if np.isfinite(one.rms))
     if not known:
-        text = message("verdict.not-examined", "not examined away from the data")
+        text = message("data.verdict-not-examined", "not examined away from the data")
         if prediction is not None:
-            text = message("verdict.cannot-examine", "the error away from the data cannot be estimated")
+            text = message("data.verdict-cannot-examine", "the error away from the data cannot be estimated")
         return Lamp(title, "none", text)
     farthest = max(known, key=lambda one: one.rms)
     ratio = farthest.rms / epsilon
     level: Level = "pass" if ratio <= 1 else "warning" if ratio < FAR else "fail"
     error = message(
-        "verdict.left-out-error",
+        "data.verdict-left-out-error",
         "left-out error {error:#.3g} m = {ratio:.1f} ε ({scheme})",
         error=farthest.rms,
         ratio=ratio,
@@ -152,7 +156,7 @@ def _away(prediction: PredictionResult | None, epsilon: float) -> Lamp:
     if round(worst.inside, 2) < LEAST_INSIDE and level == "pass":
         level = "warning"
     text = message(
-        "verdict.left-out",
+        "data.verdict-left-out",
         "{error}; the 90 % band contains {share:.0f} % ({scheme})",
         error=error,
         share=100 * worst.inside,

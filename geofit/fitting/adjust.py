@@ -14,7 +14,7 @@ from geofit.fitting.net import Net
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.skin import regularized_correction
 
-__all__ = ["adjust", "pull_to_worst"]
+__all__ = ["adjust_locally", "pull_to_worst"]
 
 Floats = NDArray[np.float64]
 
@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 SHARE = 0.7
 
 
-def adjust(model: Model, surface: HorizonFit) -> HorizonFit:
+def adjust_locally(model: Model, surface: HorizonFit) -> HorizonFit:
     """Adjust locally until sigma is below epsilon or no step helps, and say which."""
     given = model.problem
     for step in range(given.settings.max_iterations + 1):
@@ -33,7 +33,7 @@ def adjust(model: Model, surface: HorizonFit) -> HorizonFit:
                 surface = _with_note(
                     surface,
                     message(
-                        "fit.local-adjustments-until-sigma",
+                        "fitting.sigma-brought-below-epsilon",
                         "local adjustments until sigma came below epsilon: {step}",
                         step=step,
                     ),
@@ -44,7 +44,7 @@ def adjust(model: Model, surface: HorizonFit) -> HorizonFit:
         candidate = None if tried is None else fit_of(tried)
         if candidate is None or candidate.accuracy is None or candidate.accuracy.sigma > 0.99 * accuracy.sigma:
             words = message(
-                "fit.sigma-stays-above-epsilon",
+                "fitting.sigma-above-epsilon",
                 "sigma stays above epsilon: no further local adjustment lowers it (made: {step})",
                 step=step,
             )

@@ -13,7 +13,7 @@ from geofit.splines import bspline
 from geofit.splines.patch import Patch
 from geofit.splines.tensor import TensorSpace
 
-__all__ = ["Division", "Part", "divide", "multiply_knots", "patches_of", "with_knots"]
+__all__ = ["Division", "NetPart", "divide", "multiply_knots", "patches_of", "with_knots"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -94,7 +94,7 @@ def patches_of(
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class NetPart:
     """One patch as a part of the refined net: its rows and columns of control points, and its knots in units."""
 
     name: str
@@ -114,7 +114,7 @@ class Division:
     space: TensorSpace
     refine_u: Floats
     refine_v: Floats
-    parts: tuple[Part, ...]
+    parts: tuple[NetPart, ...]
 
     def refined(self, coefficients: Floats) -> Floats:
         """Return the coefficients of the refined net, (size,) or (size, 3)."""
@@ -137,7 +137,7 @@ def divide(space: TensorSpace, core: Rectangle | None, frame: Frame, interpolate
             name = _name((u0, u1, v0, v1), core, frame, interpolated)
             rows, part_u = _part(knots_u, p, u0, u1)
             columns, part_v = _part(knots_v, p, v0, v1)
-            parts.append(Part(name, rows, columns, part_u, part_v))
+            parts.append(NetPart(name, rows, columns, part_u, part_v))
     return Division(
         TensorSpace(knots_u, knots_v, p),
         bspline.insertion_matrix(space.knots_u, knots_u, p),

@@ -114,17 +114,17 @@ def _swept(columns: Floats, key: Floats, distance: float) -> Ints:
 def _describe(points: PointSet, winner: int, loser: int, difference: float) -> Conflict:
     names = points.describe(winner), points.describe(loser)
     if difference == 0:
-        text = message("conflict.repeated", "{dropped} repeats {kept}", dropped=names[1], kept=names[0])
+        text = message("fitting.conflict-repeated", "{dropped} repeats {kept}", dropped=names[1], kept=names[0])
     else:
         stated = np.nan_to_num(points.accuracy[[winner, loser]], nan=np.inf)
         if stated[0] < stated[1]:
-            reason = message("conflict.kept-accuracy", "the better stated accuracy")
+            reason = message("fitting.conflict-kept-by-accuracy", "the better stated accuracy")
         elif _TRUST.get(points.kind[winner], 3) < _TRUST.get(points.kind[loser], 3):
-            reason = message("conflict.kept-source", "the source nearer to the rock")
+            reason = message("fitting.conflict-kept-by-source", "the source nearer to the rock")
         else:
-            reason = message("conflict.kept-first", "the first")
+            reason = message("fitting.conflict-kept-first", "the first")
         text = message(
-            "conflict.different-elevation",
+            "fitting.conflict-of-elevation",
             "{dropped} differs by {difference:+.3f} m from {kept} at the same location; used: {reason}",
             dropped=names[1],
             difference=difference,

@@ -17,9 +17,19 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.approximate import fixed_by_core
 from geofit.fitting.assemble import multiply_knots, with_knots
-from geofit.fitting.field import Field, Smoothed
+from geofit.fitting.field import FieldChoice, Smoothed
 from geofit.fitting.knots import graded_breaks, neighbour_pairs, pair_sizes, some_breaks
-from geofit.fitting.net import Data, Net, Periphery, cap_for, choose_field, degree_for, gather, in_patches, smoothed
+from geofit.fitting.net import (
+    Data,
+    Net,
+    Periphery,
+    cap_for,
+    choose_field,
+    degree_for,
+    gather_points,
+    in_patches,
+    smoothed,
+)
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.skin import Lines, lofted, minimum_norm_correction, refine_knots, ruled, section_lines
 from geofit.fitting.slopes import Slopes
@@ -73,7 +83,7 @@ def fit_with_core(
         If no control net within the cap passes through them without swinging between them.
     """
     assert split.core is not None
-    data = gather(points, parametrization, kept, split, slopes)
+    data = gather_points(points, parametrization, kept, split, slopes)
     inside = split.inside[kept]
     scaled = [x / data.unit for x in split.core]
     core = (scaled[0], scaled[1], scaled[2], scaled[3])
@@ -87,7 +97,7 @@ def fit_with_core(
     if chosen and field.noise > max(resolved, little):
         raise ExactnessError(
             message(
-                "fitting.points-bear-each-other",
+                "fitting.points-support-to-noise",
                 "its points support each other to about {noise:.3g} m only, where their height varies "
                 "by about {spread:.3g} m",
                 noise=field.noise,
@@ -102,7 +112,7 @@ def fit_with_core(
         linear = False
         notes = (
             message(
-                "fit.across-linear-needs-least",
+                "fitting.ruled-core-without-sections",
                 "across='linear' needs at least two straight, named sections; the core is cubic across",
             ).with_severity("warning"),
         )
@@ -126,14 +136,14 @@ def fit_with_core(
     if linear and rule is None:
         notes = (
             message(
-                "fit.core-linear-across-sections",
+                "fitting.ruled-core-not-exact",
                 "a core linear across its sections cannot meet all of its points; it is cubic across",
             ).with_severity("warning"),
         )
     first = cap_for(settings, len(data.plane), A_POINT)
     if most > first:
         words = message(
-            "fitting.meeting-every-point-core",
+            "fitting.core-too-many-control-points",
             "meeting every point of the core takes {count} control points, more than {a_point} a data point",
             count=in_patches(space.shape, core, space),
             a_point=A_POINT,
@@ -158,7 +168,7 @@ def _through_points(
     data: Data,
     core: Rectangle,
     inside: NDArray[np.bool_],
-    field: Field,
+    field: FieldChoice,
     lines: Lines,
     linear: bool,
     parametric: bool,
@@ -246,7 +256,7 @@ def _breaks(
     return (breaks_u, breaks_v), counted
 
 
-def _torn(data: Data, inside: NDArray[np.bool_], coarse: TensorSpace, field: Field) -> NDArray[np.bool_]:
+def _torn(data: Data, inside: NDArray[np.bool_], coarse: TensorSpace, field: FieldChoice) -> NDArray[np.bool_]:
     """Return (n,) the core's points to let go: of two that ask for a cliff, the one farther from the field."""
     torn = np.zeros(len(inside), bool)
     if data.value.ndim > 1:
@@ -266,7 +276,7 @@ def _torn(data: Data, inside: NDArray[np.bool_], coarse: TensorSpace, field: Fie
 
 def _torn_note(point: Message) -> Message:
     note = message(
-        "fitting.core-point-contradicts-neighbour",
+        "fitting.core-points-contradict",
         "{point} contradicts a point very close to it: the core cannot meet both and passes through the other",
         point=point,
     )

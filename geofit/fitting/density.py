@@ -9,7 +9,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from geofit.data.messages import Message, message
-from geofit.fitting.split import Rectangle, Split, split_none, widened, within
+from geofit.fitting.split import Rectangle, Split, in_rectangle, split_none, widened
 
 __all__ = ["CLOUD", "split_auto"]
 
@@ -41,27 +41,27 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
     n = len(plane)
     if n < 2 * FEWEST:
         words = message(
-            "fit.points-too-few-tell",
+            "fitting.too-few-points-for-core",
             "{n} points are too few to distinguish a dense core from a periphery (40 are needed)",
             n=n,
         )
         return split_none(plane, words)
     if n > CLOUD:
-        return _uniform(plane, area, message("fit.cloud-of-points", "{n} points are a cloud", n=n))
+        return _uniform(plane, area, message("fitting.points-are-cloud", "{n} points are a cloud", n=n))
     spacing = np.asarray(KDTree(plane).query(plane, k=min(NEIGHBOURS + 1, n))[0])[:, -1]
     limit = _otsu(np.log(np.maximum(spacing, 1e-9)))
     if limit is None:
-        return _uniform(plane, area, message("fit.points-spread-evenly", "the points are spread evenly"))
+        return _uniform(plane, area, message("fitting.points-spread-evenly", "the points are spread evenly"))
     limit = float(np.exp(limit))
     dense = np.flatnonzero(spacing <= limit)
     cluster = dense[_largest_cluster(plane[dense], limit)]
     if len(cluster) < FEWEST:
         return _uniform(
-            plane, area, message("fit.dense-places-hold-fewer", "the dense places contain fewer than 20 points each")
+            plane, area, message("fitting.dense-places-too-small", "the dense places contain fewer than 20 points each")
         )
     low, high = _trimmed_box(plane[cluster], float(np.median(spacing[cluster])) / 2)
     # The points of the box, not of the cluster: the edges may be drawn in to one section.
-    length, width = _extents(plane[cluster][within(plane[cluster], (low[0], high[0], low[1], high[1]))])
+    length, width = _extents(plane[cluster][in_rectangle(plane[cluster], (low[0], high[0], low[1], high[1]))])
     if width < LINE * length and drawn is not None and drawn.sum() >= FEWEST:
         # A few sections near to each other; the others are farther apart, and part of the core all the same.
         cluster = np.flatnonzero(drawn)
@@ -72,7 +72,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         return split_none(
             plane,
             message(
-                "fit.dense-points-lie-along",
+                "fitting.dense-points-on-line",
                 "the {count} dense points lie along a line {length:.0f} m long and {width:.0f} m wide: "
                 "one section makes no core, all points are approximated",
                 count=len(cluster),
@@ -81,15 +81,15 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
             ),
         )
     core = widened((low[0], high[0], low[1], high[1]), plane, area)
-    inside = within(plane, core)
+    inside = in_rectangle(plane, core)
     if inside.all():
-        return _uniform(plane, area, message("fit.dense-points-fill-area", "the dense points fill the area"))
+        return _uniform(plane, area, message("fitting.dense-points-fill-area", "the dense points fill the area"))
     if inside.sum() > MOST:
         return split_none(plane, _too_many(int(inside.sum())))
     contrast = _density(inside.sum(), core) / _density((~inside).sum(), area, core)
     if contrast < CONTRAST + 10 / np.sqrt(inside.sum()):
         words = message(
-            "fit.densest-part-times-dense",
+            "fitting.densest-part-too-sparse",
             "the densest part is only {contrast:.1f} times as dense as the rest",
             contrast=float(contrast),
         )
@@ -98,7 +98,7 @@ def split_auto(plane: Floats, area: Rectangle, drawn: NDArray[np.bool_] | None =
         core,
         inside,
         message(
-            "fit.points-spacing-below-fill",
+            "fitting.dense-points-fill-core",
             "{count} points with a spacing below {limit:.0f} m fill {width:.0f} m x {length:.0f} m, {contrast:.1f} "
             "times as dense as the other {others} points",
             count=int(inside.sum()),
@@ -115,13 +115,13 @@ def _uniform(plane: Floats, area: Rectangle, reason: Message) -> Split:
     """No core stands out: the points are all sparse, and approximated."""
     return split_none(
         plane,
-        message("fit.no-dense-core-points", "no dense core: {reason}; all points are approximated", reason=reason),
+        message("fitting.no-dense-core", "no dense core: {reason}; all points are approximated", reason=reason),
     )
 
 
 def _too_many(n: int) -> Message:
     return message(
-        "fit.dense-points-need-control",
+        "fitting.dense-points-too-many",
         "{n} dense points would need more control points than data to be interpolated; all points are "
         "approximated (name a smaller core to interpolate it)",
         n=n,

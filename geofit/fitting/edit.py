@@ -19,7 +19,7 @@ from geofit.data.columns import LARGEST
 from geofit.data.errors import ExactnessError, FitError
 from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite, shown
-from geofit.fitting.assemble import Part, divide
+from geofit.fitting.assemble import NetPart, divide
 from geofit.fitting.model import Model
 from geofit.fitting.skin import minimum_norm_correction
 from geofit.geometry.projection import project
@@ -82,7 +82,7 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
         surface,
         model.with_net(replace(model.net, coefficients=coefficients)),
         message(
-            "edit.hand-control-point-patch",
+            "fitting.control-point-moved-note",
             "manual edit: control point ({i}, {j}) of patch '{patch}' moved by {dz:+.3g} m",
             i=i,
             j=j,
@@ -142,7 +142,7 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
         if tied or wider == BEYOND:
             raise ExactnessError(
                 message(
-                    "edit.surface-cannot-pulled-points",
+                    "fitting.target-near-exact-points",
                     "The surface cannot be moved to {name}: the exactly interpolated points around it "
                     "({count}) leave no freedom. Exclude the one that is wrong, or fit with core='none'.",
                     name=name,
@@ -157,7 +157,7 @@ def move_to(surface: HorizonFit, point: int | ArrayLike, share: float = 1.0) -> 
         surface,
         model.with_net(replace(net, coefficients=net.coefficients + change)),
         message(
-            "edit.hand-pulled-distance",
+            "fitting.moved-towards-note",
             "manual edit: moved by {share:.0%} of the distance to {name}",
             share=share,
             name=name,
@@ -172,7 +172,7 @@ def _require_movable(model: Model, acting: NDArray[np.bool_]) -> None:
     if any(_touches(part, weights, acting, model) for part, weights in _weighed(model)):
         raise FitError(
             message(
-                "edit.control-points-weights-act",
+                "fitting.weights-act",
                 "Control points with weights other than 1 act here. Set their weights to 1 first.",
             )
         )
@@ -229,7 +229,7 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
     if not is_finite(weight) or not 0.01 <= weight <= 100:
         raise FitError(
             message(
-                "edit.weight-01-100-needed",
+                "fitting.weight-out-of-range",
                 "The weight is {weight}; between 0.01 and 100 is needed (1 is neutral).",
                 weight=shown(weight),
             )
@@ -240,7 +240,7 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
     for k, count, knots, ends in zip((i, j), _shape(part), (part.knots_u, part.knots_v), whole, strict=True):
         if (k < TANGENT_ROWS and knots[0] != ends[0]) or (k >= count - TANGENT_ROWS and knots[-1] != ends[-1]):
             text = message(
-                "edit.control-point-patch-holds",
+                "fitting.control-point-on-seam",
                 "Control point ({i}, {j}) of patch '{patch}' defines the tangent plane of a seam; its "
                 "weight stays 1. Choose one at least {rows} rows away from the seam.",
                 i=i,
@@ -258,7 +258,7 @@ def weigh(surface: HorizonFit, patch: str, i: int, j: int, weight: float) -> Hor
         surface,
         replace(model, weights=weights),
         message(
-            "edit.hand-control-point-patch-weight",
+            "fitting.control-point-weighted-note",
             "manual edit: control point ({i}, {j}) of patch '{patch}' has weight {weight:g}",
             i=i,
             j=j,
@@ -290,7 +290,7 @@ def acted_on(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[NDArray[n
 def _model(surface: HorizonFit) -> Model:
     if surface.model is None:
         text = message(
-            "edit.read-file-patches-no",
+            "fitting.no-common-control-net",
             "'{name}' was read from a file: its patches have no common control net. Fit it again, then adjust.",
             name=surface.name,
         )
@@ -302,7 +302,7 @@ def _finite(value: float, name: str) -> None:
     if not is_finite(value) or abs(value) > LARGEST:
         raise FitError(
             message(
-                "edit.finite-number-needed",
+                "fitting.value-not-finite",
                 "{name} is {value}; a finite number up to {most:.0e} is needed.",
                 name=name,
                 value=shown(value),
@@ -317,7 +317,7 @@ def _refuse_exact(surface: HorizonFit, model: Model, index: int, patch: str, i: 
     if held.any():
         raise ExactnessError(
             message(
-                "edit.control-point-patch-acts",
+                "fitting.control-point-moves-exact-points",
                 "Control point ({i}, {j}) of patch '{patch}' acts on points that are met exactly "
                 "({count}: {names}). Choose one that lies farther from them, or exclude them first.",
                 i=i,
@@ -332,14 +332,14 @@ def _refuse_exact(surface: HorizonFit, model: Model, index: int, patch: str, i: 
 def _straight() -> FitError:
     return FitError(
         message(
-            "edit.core-straight-section-curves",
+            "fitting.core-ruled",
             "The core is straight between its section curves, and its control points follow them. Change the "
             "periphery, or fit with across='cubic'.",
         )
     )
 
 
-def _part(model: Model, patch: str) -> Part:
+def _part(model: Model, patch: str) -> NetPart:
     given, net = model.problem, model.net
     parts = divide(net.space, net.core, given.parametrization.frame, given.split.core is not None).parts
     for part in parts:
@@ -347,7 +347,7 @@ def _part(model: Model, patch: str) -> Part:
             return part
     raise FitError(
         message(
-            "edit.no-patch-patches",
+            "fitting.patch-unknown",
             "There is no patch '{patch}'. The patches are: {names}.",
             patch=patch,
             names=", ".join(part.name for part in parts),
@@ -355,18 +355,18 @@ def _part(model: Model, patch: str) -> Part:
     )
 
 
-def _shape(part: Part) -> tuple[int, int]:
+def _shape(part: NetPart) -> tuple[int, int]:
     return part.rows.stop - part.rows.start, part.columns.stop - part.columns.start
 
 
-def _coefficient(model: Model, part: Part, i: int, j: int) -> tuple[int, float]:
+def _coefficient(model: Model, part: NetPart, i: int, j: int) -> tuple[int, float]:
     """Return the coefficient of the whole net that moves a patch's control point most, and by which share."""
     rows, columns = _shape(part)
     whole = all(isinstance(k, (int, np.integer)) for k in (i, j))
     if not (whole and 0 <= i < rows and 0 <= j < columns):
         raise FitError(
             message(
-                "edit.patch-control-points-given",
+                "fitting.control-point-unknown",
                 "Patch '{name}' has control points (0, 0) to ({rows}, {columns}); ({i}, {j}) was given.",
                 name=part.name,
                 rows=rows - 1,
@@ -405,11 +405,11 @@ def _exact(model: Model) -> NDArray[np.bool_]:
     return model.problem.split.inside & model.problem.kept
 
 
-def _weighed(model: Model) -> list[tuple[Part, Floats]]:
+def _weighed(model: Model) -> list[tuple[NetPart, Floats]]:
     return [(_part(model, name), weights) for name, weights in model.weights.items()]
 
 
-def _touches(part: Part, weights: Floats, acting: NDArray[np.bool_], model: Model) -> bool:
+def _touches(part: NetPart, weights: Floats, acting: NDArray[np.bool_], model: Model) -> bool:
     """Tell whether a weight other than 1 belongs to one of the coefficients."""
     return any(acting[_coefficient(model, part, int(i), int(j))[0]] for i, j in np.argwhere(weights != 1))
 
@@ -427,7 +427,7 @@ def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[
         if not 0 <= point < len(surface.points):
             raise FitError(
                 message(
-                    "edit.points-given",
+                    "fitting.point-unknown",
                     "'{name}' has points 0 to {last}; {point} was given.",
                     name=surface.name,
                     last=len(surface.points) - 1,
@@ -443,7 +443,7 @@ def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[
     if xyz.shape != (3,) or not (np.abs(xyz) <= LARGEST).all():
         raise FitError(
             message(
-                "edit.point-three-finite-map",
+                "fitting.target-not-finite",
                 "The point is {point}; three map coordinates (easting, northing, elevation) up to {most:.0e} m are "
                 "needed.",
                 point=shown(point),
@@ -451,7 +451,7 @@ def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[
             )
         )
     x, y, z = xyz
-    name = message("edit.x-y-z", "({x:.2f}, {y:.2f}, {z:.2f})", x=x, y=y, z=z)
+    name = message("fitting.place-coordinates", "({x:.2f}, {y:.2f}, {z:.2f})", x=x, y=y, z=z)
     if parametrization.parametric:
         foot = project(_plain(surface.patches), xyz[None] - surface.origin)
         return np.column_stack([foot.u, foot.v]), xyz[None] - surface.origin, name
@@ -459,7 +459,7 @@ def _target(surface: HorizonFit, model: Model, point: int | ArrayLike) -> tuple[
     u0, u1, v0, v1 = parametrization.area
     if not (u0 <= local[0, 0] <= u1 and v0 <= local[0, 1] <= v1):
         text = message(
-            "edit.point-lies-beside-surface",
+            "fitting.point-off-surface",
             "The point {point} is not above or below the surface '{name}'. Choose a place above or below it.",
             point=name,
             name=surface.name,

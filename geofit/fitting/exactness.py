@@ -14,7 +14,7 @@ from geofit.fitting.split import Split
 __all__ = ["exact_or_not"]
 
 #: Code of the note about a core's point that was let go.
-TORN = "fitting.core-point-contradicts-neighbour"
+TORN = "fitting.core-points-contradict"
 
 
 def exact_or_not(surface: HorizonFit) -> HorizonFit:
@@ -31,7 +31,7 @@ def exact_or_not(surface: HorizonFit) -> HorizonFit:
         return surface
     split = model.problem.split
     reason = message(
-        "fit.approximated-points",
+        "fitting.points-called-approximated",
         "{reason}; points that it does not meet, by up to {worst:.3g} m: {count}, which count as approximated",
         reason=split.reason,
         count=int(missed.sum()),

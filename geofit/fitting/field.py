@@ -28,9 +28,9 @@ from geofit.splines.tensor import Factor, TensorSpace
 
 __all__ = [
     "ENOUGH",
-    "Field",
+    "FieldChoice",
     "Smoothed",
-    "choose",
+    "choose_covariance",
     "drift_of",
     "plane_trend",
     "planes_of",
@@ -39,7 +39,7 @@ __all__ = [
     "restricted",
     "slope_of",
     "smooth",
-    "widened",
+    "widened_space",
 ]
 
 Floats = NDArray[np.float64]
@@ -64,7 +64,7 @@ _FIRST, _LAST, _AGAIN, _NEARBY = 4, 3, 5, (0.0, 1.5, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Field:
+class FieldChoice:
     """What was chosen: the covariance of the field, and the noise (1 sigma, metres) that the likelihood finds.
 
     ``alpha`` is the exponent of the operator (smoothness nu = alpha - 1), ``kappa`` its inverse range per unit,
@@ -96,7 +96,7 @@ class Field:
         return self.rho
 
     @property
-    def turned(self) -> Field:
+    def turned(self) -> FieldChoice:
         """The same field with u and v exchanged."""
         return replace(self, stretch=(-self.stretch[0], self.stretch[1]))
 
@@ -138,7 +138,7 @@ def relative_noise(accuracy: Floats) -> Floats:
     return ratio
 
 
-def precision_band(space: TensorSpace, field: Field) -> Floats:
+def precision_band(space: TensorSpace, field: FieldChoice) -> Floats:
     """Return the band of rho * E, (bandwidth + 1, size), the precision of the field in units of the noise's."""
     return field.rho * MaternPrecision(space, field.alpha).band(field.kappa, field.stretch)
 
@@ -172,17 +172,17 @@ def slope_of(plane: Rows, trend: Floats | None, measured: Slopes | None = None) 
     return Slope(directions, np.append(0.0, -(directions[1:, 1:].T @ trend[1:])), extent)
 
 
-def choose(
+def choose_covariance(
     space: TensorSpace,
     plane: Rows,
     z: Rows,
     noise: Floats,
     smoothing: float | None = None,
-    known: Sequence[Field] = (),
+    known: Sequence[FieldChoice] = (),
     trend: Floats | None = None,
     measured: Slopes | None = None,
     expected: float = 0.0,
-) -> list[tuple[Field, float]]:
+) -> list[tuple[FieldChoice, float]]:
     """Choose the covariance and the noise for data about their trend.
 
     Parameters
@@ -215,7 +215,7 @@ def choose(
     FitError
         If no field gives a solvable system.
     """
-    wide = widened(space)
+    wide = widened_space(space)
     turned = wide.shape[1] > wide.shape[0]
     if turned:
         wide, plane, trend, known = wide.turned, plane[:, ::-1], _exchanged(trend), [one.turned for one in known]
@@ -250,7 +250,7 @@ def choose(
     found = sorted(found, key=lambda one: one.value)
     if found[0].value >= UNSOLVABLE:
         text = message(
-            "fit.no-smoothing-system-points",
+            "fitting.system-not-solvable",
             "No smoothing makes the system of {points} points and {size} control points solvable: the points lie on "
             "too few places. Give more points, or a larger coincidence_distance.",
             points=len(plane),
@@ -263,7 +263,7 @@ def choose(
         own = math.sqrt(optimum.variance) if optimum.value < UNSOLVABLE else math.nan
         contradictory = not few and own > CONTRADICTION * max(scatter, FINEST)
         covariance = (optimum.alpha, optimum.kappa, optimum.rho, optimum.stretch)
-        field = Field(*covariance, own, contradictory, scatter, optimum.hold)
+        field = FieldChoice(*covariance, own, contradictory, scatter, optimum.hold)
         fields.append((field.turned if turned else field, optimum.value))
     return [(field, value) for field, value in fields if value < UNSOLVABLE]
 
@@ -289,7 +289,7 @@ def _search(likelihood: Callable[[int], Likelihood], degree: int, n: int, log_rh
     return [best, *(replace(other, stretch=best.stretch) for other, _ in found[1:])]
 
 
-def widened(space: TensorSpace) -> TensorSpace:
+def widened_space(space: TensorSpace) -> TensorSpace:
     """Return the space carried on beyond its edges, in spans that grow."""
     return TensorSpace(_beyond(space.knots_u, space.degree), _beyond(space.knots_v, space.degree), space.degree)
 
@@ -309,7 +309,7 @@ def _beyond(knots: Floats, degree: int) -> Floats:
 
 def restricted(space: TensorSpace, coefficients: Floats) -> Floats:
     """Return the coefficients on a space of a surface on the widened one: cut by knot insertion at the edges."""
-    wide, p = widened(space), space.degree
+    wide, p = widened_space(space), space.degree
     net = coefficients.reshape(*wide.shape, -1)
     for axis, (knots, wide_knots) in enumerate(((space.knots_u, wide.knots_u), (space.knots_v, wide.knots_v))):
         fine = np.sort(np.concatenate([wide_knots, np.repeat([knots[0], knots[-1]], p - 1)]))
@@ -322,7 +322,7 @@ def restricted(space: TensorSpace, coefficients: Floats) -> Floats:
 
 def smooth(
     space: TensorSpace,
-    field: Field,
+    field: FieldChoice,
     plane: Rows,
     z: Rows,
     weight: Floats,
@@ -333,7 +333,7 @@ def smooth(
 
     ``measured`` slopes, about the trend as well, join the heights by their own accuracy.
     """
-    wide = widened(space)
+    wide = widened_space(space)
     turned = wide.shape[1] > wide.shape[0]
     if turned:
         wide, plane, trend, field = wide.turned, plane[:, ::-1], _exchanged(trend), field.turned

@@ -86,7 +86,7 @@ def loft(points: PointSet) -> Loft:
         plane[index] = np.column_stack([np.full(len(index), line), v * length])
         on_line[index] = True
     note = message(
-        "fit.section-curves-points",
+        "fitting.section-curves",
         "{lines} section curves over {length:.0f} m, {count} points between them",
         lines=len(u),
         length=float(u[-1] - u[0]),

@@ -62,7 +62,7 @@ def judge(
             checks=(*accuracy.checks, *_mesh_checks(surface.triangulate(), points)),
             notes=(
                 message(
-                    "check.triangle-mesh-seams-control",
+                    "fitting.mesh-without-seams",
                     "A triangle mesh: seams, control points and the tangent plane do not apply.",
                 ),
             ),
@@ -75,20 +75,20 @@ def _with_beyond(accuracy: Accuracy, points: PointSet, found: Projection) -> Acc
     assert found.beyond is not None
     beside = np.flatnonzero(found.beyond)
     text = message(
-        "check.points-beyond-surface-edge",
+        "fitting.points-beyond-edge",
         "points beyond the surface's edge, measured to the edge: {count} of {total}",
         count=beside.size,
         total=accuracy.n,
     )
     added = Check("beyond the surface", None, float(beside.size), 0.0, "points", text)
     named = [
-        message("check.beyond-surface", "beyond the surface: {point}", point=points.describe(int(i)))
+        message("fitting.point-beyond-edge", "beyond the surface: {point}", point=points.describe(int(i)))
         for i in beside[:NAMED].tolist()
     ]
     if beside.size > NAMED:
         named.append(
             message(
-                "check.beyond-surface-further-points",
+                "fitting.further-points-beyond-edge",
                 "beyond the surface: further points, {count}",
                 count=beside.size - NAMED,
             )
@@ -104,7 +104,7 @@ def _mesh_checks(mesh: Mesh, points: PointSet) -> tuple[Check, ...]:
     size = np.linalg.norm(normal, axis=1)
     turned = int(((normal @ normal.sum(axis=0) < 0) | (size <= 1e-12 * size.max())).sum())
     text = message(
-        "check.triangles-turned-without-area",
+        "fitting.triangles-degenerate",
         "{count} of {total} triangles turned over or without an area",
         count=turned,
         total=len(size),
@@ -115,7 +115,7 @@ def _mesh_checks(mesh: Mesh, points: PointSet) -> tuple[Check, ...]:
         beyond = max(float(z.min() - heights.min()), float(heights.max() - z.max()), 0.0)
         limit = RANGE_SHARE * float(np.ptp(z))
         text = message(
-            "check.elevations-reach-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=beyond
+            "data.elevations-beyond-data", "elevations reach {value:.1f} m beyond the data's range", value=beyond
         )
         checks.append(Check("elevation range", beyond <= limit, beyond, limit, "m", text))
     return tuple(checks)

@@ -14,7 +14,7 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting.assemble import patches_of
 from geofit.fitting.core import fit_with_core
-from geofit.fitting.net import Net, approximate_all, gather
+from geofit.fitting.net import Net, approximate_all, gather_points
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
 from geofit.fitting.split import Split
@@ -49,7 +49,7 @@ class Problem:
     def fit(self, active: NDArray[np.bool_], stage: Callable[[str, float], None]) -> Model:
         """Return the control net that meets the core's points and approximates the other active ones."""
         if self.split.core is None:
-            given = gather(self.points, self.parametrization, active, None, self.slopes)
+            given = gather_points(self.points, self.parametrization, active, None, self.slopes)
             return Model(self, approximate_all(given, self.settings, stage))
         return Model(
             self,

@@ -21,7 +21,16 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.approximate import approximate, fixed_by_core, solved_beside
 from geofit.fitting.assemble import multiply_knots
 from geofit.fitting.density import CLOUD
-from geofit.fitting.field import ENOUGH, Field, Smoothed, choose, plane_trend, precision_band, relative_noise, smooth
+from geofit.fitting.field import (
+    ENOUGH,
+    FieldChoice,
+    Smoothed,
+    choose_covariance,
+    plane_trend,
+    precision_band,
+    relative_noise,
+    smooth,
+)
 from geofit.fitting.likelihood import plane_coefficients
 from geofit.fitting.parametrize import Parametrization
 from geofit.fitting.slopes import Slopes
@@ -38,7 +47,7 @@ __all__ = [
     "choose_field",
     "degree_for",
     "even_space",
-    "gather",
+    "gather_points",
     "in_patches",
 ]
 
@@ -85,7 +94,7 @@ class Net:
     core: Rectangle | None
     lines: Floats | None
     unit: float
-    field: Field
+    field: FieldChoice
     rounds: int
     limit: float
     notes: tuple[Message, ...]
@@ -108,7 +117,7 @@ class Data:
         return np.asarray(plane_coefficients(space) @ self.trend)
 
 
-def gather(
+def gather_points(
     points: PointSet,
     parametrization: Parametrization,
     kept: NDArray[np.bool_],
@@ -166,8 +175,8 @@ def in_patches(shape: tuple[int, int], core: Rectangle | None, space: TensorSpac
     return rows[0] * rows[1]
 
 
-def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, TensorSpace]:
-    """Choose the regional field, and the even space that resolves it (see :func:`geofit.fitting.field.choose`).
+def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[FieldChoice, TensorSpace]:
+    """Choose the regional field, and the even space that resolves it (see :func:`geofit.fitting.field.choose_covariance`).
 
     Smoothness and direction are found on few control points, where a value of the likelihood costs little, range and
     noise on the first level. Its spans are halved in area while the likelihood gains by it, down to those that the
@@ -178,27 +187,29 @@ def choose_field(data: Data, settings: FitSettings, most: int) -> tuple[Field, T
     limit = min(most, LAST_LEVEL)
     count = min(FIRST_LEVEL, limit)
     space, sketch = (even_space(data.area, EVEN, degree, most) for most in (count, SKETCH))
-    known: list[Field] = []
+    known: list[FieldChoice] = []
     if sketch.size < space.size:
         some = slice(None, None, max(len(data.plane) // SKETCHED, 1))
-        found = choose(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
+        found = choose_covariance(sketch, data.plane[some], data.value[some], noise[some], given, (), data.trend)
         known = [one for one, _ in found]
-    field, value = choose(space, data.plane, data.value, noise, given, known, data.trend)[0]
+    field, value = choose_covariance(space, data.plane, data.value, noise, given, known, data.trend)[0]
     while 2 * count <= limit:
         count *= 2
         finer = even_space(data.area, EVEN, degree, count)
         if finer.size < 1.3 * space.size:
             break
-        better, reached = choose(finer, data.plane, data.value, noise, given, [field], data.trend)[0]
+        better, reached = choose_covariance(finer, data.plane, data.value, noise, given, [field], data.trend)[0]
         if reached > value - GAIN:
             break
         space, field, value = finer, better, reached
     if data.slopes is not None and len(data.slopes):
-        field = choose(space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise)[0][0]
+        field = choose_covariance(
+            space, data.plane, data.value, noise, given, [field], data.trend, data.slopes, field.noise
+        )[0][0]
     return field, space
 
 
-def smoothed(data: Data, space: TensorSpace, field: Field) -> Smoothed:
+def smoothed(data: Data, space: TensorSpace, field: FieldChoice) -> Smoothed:
     """Return a chosen field on a space."""
     weight = inverse_squares(relative_noise(data.accuracy))
     return smooth(space, field, data.plane, data.value, weight, data.trend, data.slopes)
@@ -243,7 +254,7 @@ class Periphery:
     data: Data
     outer: NDArray[np.bool_]
     core: Rectangle | None
-    field: Field
+    field: FieldChoice
     settings: FitSettings
     most: int
     refit: bool
@@ -367,7 +378,7 @@ class Periphery:
         if not count:
             return ()
         note = message(
-            "fitting.points-beyond-noise-predicts",
+            "fitting.points-beyond-tolerance-as-noise",
             "{count} points beyond {tolerance:g} m, as noise of {noise:.3g} m predicts; they are listed, not fitted",
             count=count,
             tolerance=self.settings.interior_tolerance,
@@ -381,7 +392,7 @@ class Periphery:
         if not self._chased or noise <= BENT * tolerance or len(self.data.plane) < ENOUGH:
             return ()
         note = message(
-            "fit.points-scatter-smoothest-surface",
+            "fitting.points-scatter",
             "the points scatter by about {noise:.2g} m about the smoothest surface that they support; meeting each "
             "within {tolerance:g} m bends it between them, and an interior tolerance of about {wider:.2g} m would "
             "predict new holes better",
@@ -395,7 +406,7 @@ class Periphery:
         count = int((excess > 0).sum())
         if not count:
             return ()
-        reason = message("fit.no-control-points-allowed", "no more control points are allowed there")
+        reason = message("fitting.control-points-used-up", "no more control points are allowed there")
         if released:
             reason = message(
                 "fitting.neighbours-contradict",
@@ -405,16 +416,16 @@ class Periphery:
         if self.field.contradictory:
             noise = self.field.noise
             reason = message(
-                "fit.data-contradict-not-chased",
+                "fitting.data-contradict",
                 "the data contradict each other by about {noise:.2f} m, which is not fitted",
                 noise=noise,
             )
         elif len(self.data.plane) > CLOUD:
-            reason = message("fit.cloud-not-chased", "the points of a cloud are not met one by one")
+            reason = message("fitting.cloud-not-met-by-points", "the points of a cloud are not met one by one")
         elif self.settings.smoothing != "auto":
-            reason = message("fit.smoothing-given", "the smoothing is given")
+            reason = message("fitting.smoothing-given", "the smoothing is given")
         note = message(
-            "fit.interior-tolerance-not-met",
+            "fitting.tolerance-not-met",
             "interior tolerance {tolerance:g} m not met in height, points: {count}, worst {worst:.3f} m: {reason}",
             tolerance=self.settings.interior_tolerance,
             count=count,

@@ -20,7 +20,7 @@ from geofit.fitting.fold import Loft, backtracking, loft
 from geofit.fitting.sections import section_labels
 from geofit.geometry.frame import Frame, best_plane_frame, map_frame, section_azimuth
 
-__all__ = ["STEEP", "Parametrization", "box_of", "direction_of", "parametrize"]
+__all__ = ["STEEP", "Parametrization", "direction_of", "parametrize", "plan_box"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -105,7 +105,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
     if section is not points.section and (section != "").any():
         lines = len(np.unique(section[section != ""]))
         notes.append(
-            message("fit.section-lines-found-points", "{lines} section lines found in the points' plan", lines=lines)
+            message("fitting.section-lines-found", "{lines} section lines found in the points' plan", lines=lines)
         )
     if boundary is not None and kind == "map":
         corners = frame.plan(boundary)
@@ -115,7 +115,7 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
             count = int(beyond.sum())
             notes.append(
                 message(
-                    "fit.points-beyond-study-area",
+                    "fitting.points-beyond-study-area",
                     "points beyond the study area: {count}; the surface is widened to contain them",
                     count=count,
                 ).with_severity("warning")
@@ -123,33 +123,29 @@ def parametrize(points: PointSet, settings: FitSettings, boundary: Floats | None
         places = [local[:, :2], corners]
     placed = np.ones(len(points), bool)
     return Parametrization(
-        frame, local[:, :2], local[:, 2], box_of(np.concatenate(places)), tuple(notes), placed, section
+        frame, local[:, :2], local[:, 2], plan_box(np.concatenate(places)), tuple(notes), placed, section
     )
 
 
 def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]:
     if settings.frame != "auto":
-        return settings.frame, message("fit.frame-asked", "frame '{frame}' as requested", frame=settings.frame)
+        return settings.frame, message("fitting.frame-requested", "frame '{frame}' as requested", frame=settings.frame)
     plane = best_plane_frame(points)
     dip = _dip(points, plane)
     over_map = backtracking(points, map_frame(points))
     if dip < STEEP and over_map <= OVERTURNED:
-        return "map", message(
-            "fit.height-field-map-mean", "height field over the map (mean dip {dip:.0f} degrees)", dip=dip
-        )
+        return "map", message("fitting.frame-map", "height field over the map (mean dip {dip:.0f} degrees)", dip=dip)
     extent = np.ptp(plane.to_local(points.xyz), axis=0)
     thin = extent[2] <= PLANAR * min(extent[0], extent[1])
     over_plane = backtracking(points, plane)
-    steep = message(
-        "fit.height-field-best-plane", "height field over its best plane: it dips {dip:.0f} degrees", dip=dip
-    )
+    steep = message("fitting.frame-best-plane", "height field over its best plane: it dips {dip:.0f} degrees", dip=dip)
     if dip >= STEEP and thin and over_plane <= OVERTURNED:
         return "best-plane", steep
     if over_map > OVERTURNED and len(np.unique(points.section[points.section != ""])) >= 2:
         return (
             "sections",
             message(
-                "fit.parametric-surface-through-sections",
+                "fitting.frame-sections",
                 "parametric surface through its sections: {share:.0f} % of their length runs backwards "
                 "(overturned), so it is not a height field",
                 share=100 * over_map,
@@ -157,7 +153,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
         )
     if over_map <= OVERTURNED:
         return "map", message(
-            "fit.cloud-not-plane",
+            "fitting.frame-map-despite-dip",
             "height field over the map: as a whole the points dip {dip:.0f} degrees, but they scatter across that "
             "plane by {thickness:.0f} m over {length:.0f} x {width:.0f} m",
             dip=dip,
@@ -168,7 +164,7 @@ def _choose_kind(points: PointSet, settings: FitSettings) -> tuple[str, Message]
     if dip >= STEEP:
         return "best-plane", steep
     return "map", message(
-        "fit.height-field-map-some",
+        "fitting.frame-map-despite-overturned",
         "height field over the map; some section lines run backwards, check the residuals there",
     )
 
@@ -210,7 +206,7 @@ def _parametrize_over_sections(points: PointSet, reason: Message) -> Parametriza
     lines = len(surface.u)
     if lines < 2:
         text = message(
-            "fit.frame-sections-needs-least",
+            "fitting.frame-needs-sections",
             "frame='sections' needs at least two named sections with ordered points; {lines} were given. Name them in "
             "the section column, or choose frame='map' or 'best-plane'.",
             lines=lines,
@@ -218,11 +214,11 @@ def _parametrize_over_sections(points: PointSet, reason: Message) -> Parametriza
         raise FitError(text)
     frame = replace(map_frame(points), kind="sections")
     local = frame.to_local(points.xyz)
-    area = box_of(surface.plane[surface.on_line])
+    area = plan_box(surface.plane[surface.on_line])
     return Parametrization(frame, surface.plane, local, area, (reason, *surface.notes), surface.on_line, points.section)
 
 
-def box_of(plane: Floats) -> Rectangle:
+def plan_box(plane: Floats) -> Rectangle:
     """Return the rectangle of (n, 2) places, at least a strip wide."""
     low, high = (np.array([end(axis) for axis in plane.T]) for end in (np.min, np.max))
     # A line of points still needs a strip to stand on.

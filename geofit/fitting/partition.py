@@ -22,21 +22,21 @@ def partition(parametrization: Parametrization, settings: FitSettings, kept: NDA
         found = split_all(
             plane,
             parametrization.area,
-            message("fit.section-curves-span-whole", "the section curves span the whole surface"),
+            message("fitting.sections-span-surface", "the section curves span the whole surface"),
         )
     elif settings.core == "all":
         found = split_all(
             plane,
             parametrization.area,
-            message("fit.core-every-point-interpolated", "core='all': every point is interpolated"),
+            message("fitting.core-all", "core='all': every point is interpolated"),
         )
     elif settings.core == "none":
-        found = split_none(plane, message("fit.core-none-every-point", "core='none': every point is approximated"))
+        found = split_none(plane, message("fitting.core-none", "core='none': every point is approximated"))
     elif settings.core == "auto":
         found = split_auto(plane, parametrization.area, parametrization.section[kept] != "")
     elif parametrization.frame.kind != "map":
         text = message(
-            "fit.core-polygon-map-coordinates",
+            "fitting.core-polygon-in-other-frame",
             "core is a polygon of map coordinates, but the surface is fitted in the frame '{frame}'. Choose "
             "core='auto', 'all' or 'none', or frame='map'.",
             frame=parametrization.frame.kind,
@@ -49,13 +49,13 @@ def partition(parametrization: Parametrization, settings: FitSettings, kept: NDA
         if (high <= low).any():
             raise FitError(
                 message(
-                    "fit.core-polygon-lies-outside",
+                    "fitting.core-polygon-outside",
                     "The core's polygon lies outside the study area. Check its coordinates and their order.",
                 )
             )
         rectangle = (float(low[0]), float(high[0]), float(low[1]), float(high[1]))
         found = split_rectangle(
-            plane, rectangle, parametrization.area, message("fit.core-polygon-drawn", "the core's polygon as drawn")
+            plane, rectangle, parametrization.area, message("fitting.core-polygon-drawn", "the core's polygon as drawn")
         )
     inside = np.zeros(len(kept), bool)
     inside[kept] = found.inside

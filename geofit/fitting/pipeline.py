@@ -11,7 +11,7 @@ from geofit.data.progress import Progress
 from geofit.data.settings import FitSettings
 from geofit.data.site import Orientations
 from geofit.data.threads import one_thread
-from geofit.fitting.adjust import adjust
+from geofit.fitting.adjust import adjust_locally
 from geofit.fitting.conflicts import resolve_conflicts
 from geofit.fitting.exactness import exact_or_not
 from geofit.fitting.horizon_fit import HorizonFit, fit_of
@@ -91,6 +91,6 @@ def fit_horizon(
         stage("check", 0.8)
         surface = fit_of(model)
         stage("adjust", 0.9)
-        surface = exact_or_not(adjust(model, surface))
+        surface = exact_or_not(adjust_locally(model, surface))
         stage("done", 1.0)
     return surface.with_(diagnostics={**surface.diagnostics, "seconds": dict(stage.seconds)})

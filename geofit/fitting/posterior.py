@@ -19,9 +19,9 @@ from scipy.sparse import csr_array
 
 from geofit.data.errors import FitError
 from geofit.data.messages import message
-from geofit.fitting.field import Field, planes_of, relative_noise, slope_of, widened
+from geofit.fitting.field import FieldChoice, planes_of, relative_noise, slope_of, widened_space
 from geofit.fitting.model import Model
-from geofit.fitting.net import even_space, gather
+from geofit.fitting.net import even_space, gather_points
 from geofit.splines.blocks import BlockFactor, InverseBlocks
 from geofit.splines.matern import MaternPrecision
 from geofit.splines.tensor import TensorSpace
@@ -74,7 +74,7 @@ class Posterior:
     drift: Floats
     moment: Floats
     field: Floats
-    model: Field
+    model: FieldChoice
     square: float
     trend: Floats
 
@@ -154,15 +154,15 @@ def posterior(model: Model) -> Posterior:
     if given.parametrization.parametric:
         raise FitError(
             message(
-                "prediction.parametric-surface-no-height",
+                "fitting.posterior-needs-height-field",
                 "A parametric surface is not a height field, and has no posterior. Leave out its sections instead.",
             )
         )
     kept = given.kept & given.parametrization.parametrized
     split = given.split if given.split.core is not None else None
-    data = gather(given.points, given.parametrization, kept, split, given.slopes)
+    data = gather_points(given.points, given.parametrization, kept, split, given.slopes)
     space = net.base if net.base.size <= LARGEST else even_space(data.area, _SPAN, net.base.degree, LARGEST)
-    space, field = widened(space), net.field
+    space, field = widened_space(space), net.field
     turned = space.shape[1] > space.shape[0]
     if turned:
         space, field = space.turned, field.turned

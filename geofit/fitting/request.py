@@ -33,9 +33,9 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
         that is far off the points.
     """
     if len(points) < 3:
-        given = plural_message("fit.given-points", "{count} point given", "{count} points given", count=len(points))
+        given = plural_message("fitting.points-given", "{count} point given", "{count} points given", count=len(points))
         text = message(
-            "fit.least-needed-lay-surface",
+            "fitting.too-few-points",
             "{given}; at least 3 are needed to fit a surface. Check the horizon's name and the filters of the import.",
             given=given,
         )
@@ -43,7 +43,7 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     if all(np.ptp(axis) == 0 for axis in points.xyz.T):
         raise PointsError(
             message(
-                "fit.points-stand-place-least",
+                "fitting.points-at-one-location",
                 "All {count} points are at one location; at least 3 locations are needed.",
                 count=len(points),
             )
@@ -52,7 +52,7 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     if look_like_degrees(points.xyz):
         raise PointsError(
             message(
-                "fit.degrees",
+                "fitting.points-in-degrees",
                 "The points look like longitude and latitude in degrees (the first: {x:.6g}, {y:.6g}); easting and "
                 "northing in metres are needed. Project them to the grid of the site (geofit fit --crs EPSG:..., or "
                 "crs in the site file).",
@@ -67,13 +67,13 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     except (TypeError, ValueError, OverflowError):
         raise PointsError(
             message(
-                "fit.no-corners",
+                "fitting.boundary-without-corners",
                 "The boundary is not a list of corners; at least three pairs of easting and northing are needed.",
             )
         ) from None
     if corners.ndim != 2 or corners.shape[1] != 2 or len(corners) < 3 or not np.isfinite(corners).all():
         text = message(
-            "fit.boundary-shape-least-three",
+            "fitting.boundary-wrong-shape",
             "The boundary has shape {shape}; at least three finite (easting, northing) corners are needed.",
             shape=corners.shape,
         )
@@ -83,14 +83,16 @@ def require(points: PointSet, boundary: ArrayLike | None) -> Floats | None:
     if fault is not None:
         raise PointsError(
             message(
-                "fit.study-area", "{fault}. List the corners in order around the study area, each once.", fault=fault
+                "fitting.study-area-invalid",
+                "{fault}. List the corners in order around the study area, each once.",
+                fault=fault,
             )
         )
     low, high = corners.min(axis=0), corners.max(axis=0)
     off = np.maximum(low - points.xyz[:, :2], points.xyz[:, :2] - high).max(axis=1).min()
     if off > max(np.hypot(*(high - low)), np.hypot(*np.ptp(points.xyz[:, :2], axis=0))):
         text = message(
-            "fit.points-off-area",
+            "fitting.points-off-study-area",
             "All points lie off the study area, the nearest by {off:.6g} m. Check the coordinates of both, and the "
             "order of easting and northing.",
             off=float(off),

@@ -47,7 +47,7 @@ def fit_robustly(model: Model, stage: Callable[[str, float], None]) -> Model:
             return _noted(
                 model,
                 message(
-                    "prediction.points-too-many-robust",
+                    "fitting.too-many-points-for-robust",
                     "{count} points are too many for robust weights",
                     count=int(before.sum()),
                 ),
@@ -62,7 +62,7 @@ def fit_robustly(model: Model, stage: Callable[[str, float], None]) -> Model:
         return model
     names = [given.points.describe(int(k)) for k in np.flatnonzero(rejected)[:5]]
     text = message(
-        "prediction.robust-peripheral-points-neighbours",
+        "fitting.outliers-not-used",
         "robust: peripheral points that their neighbours contradict are not used in the fit "
         "({count}: {names}); sigma counts them all the same",
         count=int(rejected.sum()),

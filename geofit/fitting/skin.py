@@ -108,7 +108,7 @@ def minimum_norm_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.
         solver = splu(gram, diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except RuntimeError:
         raise ExactnessError(
-            _unmet(message("fit.system-points-singular", "the system of its {n} points is singular", n=len(misfit)))
+            _unmet(message("fitting.core-system-singular", "the system of its {n} points is singular", n=len(misfit)))
         ) from None
     change = acting.T @ solver.solve(misfit)
     change += acting.T @ solver.solve(misfit - acting @ change)
@@ -117,7 +117,7 @@ def minimum_norm_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.
         raise ExactnessError(
             _unmet(
                 message(
-                    "fit.not-points-met-exactly",
+                    "fitting.core-not-met",
                     "not all {n} points can be met exactly ({left:.1e} m is left)",
                     n=len(misfit),
                     left=left,
@@ -127,7 +127,7 @@ def minimum_norm_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.
     swing = float(np.abs(change).max(initial=0.0))
     if swing > SWING * max(float(np.abs(misfit).max(initial=0.0)), 1e-3):
         words = message(
-            "fit.meeting-points-swing-surface",
+            "fitting.core-would-oscillate",
             "meeting all {n} points would swing the surface by {swing:.3g} m",
             n=len(misfit),
             swing=swing,
@@ -152,7 +152,7 @@ def regularized_correction(matrix: csr_array, misfit: Floats, free: NDArray[np.b
 
 def _unmet(what: Message) -> Message:
     return message(
-        "fit.core-cannot-interpolated-points",
+        "fitting.core-not-interpolable",
         "The core cannot be interpolated: {what}. Points lie nearer to each other than the allowed control points. "
         "Raise max_control_points or coincidence_distance, or approximate (core='none').",
         what=what,

@@ -110,7 +110,7 @@ def _rows(place: Floats, gradient: Floats, accuracy: float) -> Slopes:
 
 def _note_parametric(count: int) -> Message:
     return plural_message(
-        "fit.dips-not-fitted-parametric",
+        "fitting.dips-not-fitted-parametric",
         "{count} measured dip is checked but not fitted: a surface through sections has no gradient over the map",
         "{count} measured dips are checked but not fitted: a surface through sections has no gradient over the map",
         count=count,
@@ -122,7 +122,7 @@ def _notes(used: int, left: int, accuracy: float) -> tuple[Message, ...]:
     if used:
         notes.append(
             plural_message(
-                "fit.dips-fitted",
+                "fitting.dips-fitted",
                 "{count} measured dip holds the surface's slope, with an accuracy of {accuracy:g} degrees",
                 "{count} measured dips hold the surface's slope, with an accuracy of {accuracy:g} degrees",
                 count=used,
@@ -132,7 +132,7 @@ def _notes(used: int, left: int, accuracy: float) -> tuple[Message, ...]:
     if left:
         notes.append(
             plural_message(
-                "fit.dips-not-fitted",
+                "fitting.dips-not-fitted",
                 "{count} measured dip is checked but not fitted: it is off the study area, or nearly at right angles "
                 "to the surface's plane",
                 "{count} measured dips are checked but not fitted: they are off the study area, or nearly at right "

@@ -57,7 +57,7 @@ def solve(problem: Problem, stage: Stages) -> Model:
 def _without_core(problem: Problem, error: ExactnessError) -> Problem:
     """Return the problem with all points approximated, and why."""
     reason = message(
-        "fit.points-approximated",
+        "fitting.core-given-up",
         "{reason}, but all points are approximated: {error}",
         reason=problem.split.reason,
         error=error.message,

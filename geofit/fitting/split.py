@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
 
-__all__ = ["Rectangle", "Split", "split_all", "split_none", "split_rectangle", "widened", "within"]
+__all__ = ["Rectangle", "Split", "in_rectangle", "split_all", "split_none", "split_rectangle", "widened"]
 
 Floats = NDArray[np.float64]
 Rectangle = tuple[float, float, float, float]
@@ -42,12 +42,12 @@ def split_all(plane: Floats, area: Rectangle, reason: Message) -> Split:
 def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Message) -> Split:
     """Return the split by a given rectangle, widened to the area's edges where nothing lies beyond it."""
     core = widened(core, plane, area)
-    inside = within(plane, core)
+    inside = in_rectangle(plane, core)
     if not inside.any():
         return split_none(
             plane,
             message(
-                "fit.no-point-lies-inside", "{reason}; no point lies inside, so all are approximated", reason=reason
+                "fitting.no-point-inside", "{reason}; no point lies inside, so all are approximated", reason=reason
             ).with_severity("warning"),
         )
     if inside.all():
@@ -55,7 +55,7 @@ def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Mes
             plane,
             area,
             message(
-                "fit.no-point-lies-outside", "{reason}; no point lies outside, so all are interpolated", reason=reason
+                "fitting.no-point-outside", "{reason}; no point lies outside, so all are interpolated", reason=reason
             ),
         )
     counts = {"within": int(inside.sum()), "outside": int((~inside).sum())}
@@ -63,7 +63,10 @@ def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Mes
         core,
         inside,
         message(
-            "fit.points-inside-outside", "{reason}: {within} points inside, {outside} outside", reason=reason, **counts
+            "fitting.points-inside-outside",
+            "{reason}: {within} points inside, {outside} outside",
+            reason=reason,
+            **counts,
         ),
     )
 
@@ -71,7 +74,7 @@ def split_rectangle(plane: Floats, core: Rectangle, area: Rectangle, reason: Mes
 def widened(core: Rectangle, plane: Floats, area: Rectangle) -> Rectangle:
     """Move each side to the area's edge if the strip between them is narrow and holds next to no points."""
     sides = list(core)
-    inner = within(plane, core)
+    inner = in_rectangle(plane, core)
     density = max(inner.sum(), 1) / max((core[1] - core[0]) * (core[3] - core[2]), 1e-9)
     for side in range(4):
         axis = side // 2
@@ -86,7 +89,7 @@ def widened(core: Rectangle, plane: Floats, area: Rectangle) -> Rectangle:
     return sides[0], sides[1], sides[2], sides[3]
 
 
-def within(plane: Floats, core: Rectangle) -> NDArray[np.bool_]:
+def in_rectangle(plane: Floats, core: Rectangle) -> NDArray[np.bool_]:
     """Return which places (n, 2) lie in a rectangle, its edges included."""
     edge = 1e-9 * max(core[1] - core[0], core[3] - core[2], 1.0)
     u, v = plane.T

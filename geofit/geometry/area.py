@@ -23,7 +23,7 @@ def fault_of_area(corners: NDArray[np.float64]) -> Message | None:
     distinct = len(np.unique(corners, axis=0))
     if distinct < 3:
         return message(
-            "import.different-corners-boundary-least",
+            "geometry.boundary-too-few-corners",
             "Different corners of the boundary: {count}; at least three are needed",
             count=distinct,
         )
@@ -35,11 +35,11 @@ def fault_of_area(corners: NDArray[np.float64]) -> Message | None:
     centred = corners - corners.mean(axis=0)
     length, width = np.linalg.svd(centred, compute_uv=False)
     if width < 1e-9 * length:
-        return message("area.no-area", "The boundary has no area: its corners lie on one line")
+        return message("geometry.boundary-without-area", "The boundary has no area: its corners lie on one line")
     if not polygon.is_valid or polygon.area == 0:
         what, _, place = explain_validity(Polygon(corners)).rstrip("]").partition("[")
         return message(
-            "import.boundary-crosses-touches",
+            "geometry.boundary-crosses-itself",
             "The boundary crosses or touches itself: {reason}, {place}",
             reason=what,
             place=place,

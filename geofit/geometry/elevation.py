@@ -15,7 +15,7 @@ from geofit.splines.patch import Patch, Patches
 if TYPE_CHECKING:
     from shapely import Polygon
 
-__all__ = ["Plan", "elevation", "plan_map"]
+__all__ = ["PlanMap", "elevation", "plan_map"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -62,7 +62,7 @@ def elevation(patches: Sequence[Patch], origin: Floats, outline: Floats | None, 
     return np.asarray((height + origin[2]).reshape(x.shape))
 
 
-class Plan:
+class PlanMap:
     """The affine map from parameters to plan of a height field: (x, y) = start + matrix @ (u, v)."""
 
     def __init__(self, start: Floats, matrix: Floats) -> None:
@@ -73,7 +73,7 @@ class Plan:
         return np.asarray(np.linalg.solve(self.matrix, plan - self.start[:, None]))
 
 
-def plan_map(patch: Patch) -> Plan | None:
+def plan_map(patch: Patch) -> PlanMap | None:
     """Return the map to the plan if the patch is a height field, else None.
 
     A patch is one if its weights are equal and the x, y of its control points are an affine image of the
@@ -82,7 +82,7 @@ def plan_map(patch: Patch) -> Plan | None:
     return patch.prepared(_plan_map)
 
 
-def _plan_map(patch: Patch) -> Plan | None:
+def _plan_map(patch: Patch) -> PlanMap | None:
     if patch.weights is not None and np.ptp(patch.weights) > 1e-15 * np.abs(patch.weights).max():
         return None
     gu = bspline.greville(patch.knots_u, patch.degree[0])
@@ -97,10 +97,10 @@ def _plan_map(patch: Patch) -> Plan | None:
     sides = np.linalg.norm(along_u) * np.linalg.norm(along_v)
     if np.abs(xy - expected).max() > 1e-12 * size or abs(np.linalg.det(matrix)) <= 1e-6 * sides:
         return None
-    return Plan(start, matrix)
+    return PlanMap(start, matrix)
 
 
-def _over_height_field(single: Patches, mapping: Plan, plan: Floats, height: Floats) -> None:
+def _over_height_field(single: Patches, mapping: PlanMap, plan: Floats, height: Floats) -> None:
     u0, u1, v0, v1 = single[0].domain
     u, v = mapping.parameters(plan)
     rim_u, rim_v = RIM * (u1 - u0), RIM * (v1 - v0)
@@ -112,7 +112,7 @@ def _over_height_field(single: Patches, mapping: Plan, plan: Floats, height: Flo
     height[inside] = np.maximum(height[inside], z)
 
 
-def _sorted(patches: Patches) -> tuple[list[tuple[Patches, Plan]], Patches]:
+def _sorted(patches: Patches) -> tuple[list[tuple[Patches, PlanMap]], Patches]:
     """Return the height fields over the map, each by itself with its map, and all other patches together."""
     mapped = [(patch, plan_map(patch)) for patch in patches]
     return (

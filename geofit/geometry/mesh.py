@@ -97,7 +97,7 @@ def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.0
     if not is_finite(tolerance) or tolerance <= 0:
         raise SettingsError(
             message(
-                "geometry.chordal-tolerance-give-metres",
+                "geometry.chordal-tolerance-not-positive",
                 "The chordal tolerance is {tolerance}; give metres above 0.",
                 tolerance=shown(tolerance),
             )

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from geofit.geometry.foot_points import Projection
 from geofit.geometry.mesh import Mesh
 
-__all__ = ["elevation", "nearest"]
+__all__ = ["mesh_elevation", "nearest_on_mesh"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -30,7 +30,7 @@ RIM = 1e-9
 CHUNK = 5_000
 
 
-def nearest(mesh: Mesh, xyz: ArrayLike) -> Projection:
+def nearest_on_mesh(mesh: Mesh, xyz: ArrayLike) -> Projection:
     """Find the nearest place of triangles to each point, exactly.
 
     The upper side is that of the triangles' normals, turned round if their mean points downwards. Where the
@@ -151,7 +151,7 @@ def _on_rim(corners: Floats, foot: Floats, edges: Bools, ends: Bools) -> Bools:
     return np.asarray(((off <= SAME) & edges).any(axis=1) | (at_corner & ends).any(axis=1))
 
 
-def elevation(mesh: Mesh, x: ArrayLike, y: ArrayLike) -> Floats:
+def mesh_elevation(mesh: Mesh, x: ArrayLike, y: ArrayLike) -> Floats:
     """Return the height of triangles at map coordinates, metres: nan outside, the highest of several."""
     import shapely
 

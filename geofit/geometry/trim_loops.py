@@ -22,7 +22,7 @@ from geofit.geometry.mesh_projection import ASIDE
 from geofit.geometry.projection import Projection, project
 from geofit.splines.patch import Patch
 
-__all__ = ["Loops", "beyond_edge", "inside", "nearest", "trim"]
+__all__ = ["Loops", "beyond_edge", "inside_loops", "nearest_on_trimmed", "trim"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -40,7 +40,7 @@ STARTS, STEPS = 4, 60
 SLACK, NEWTON, REST = 1.5, 12, 1e-11
 
 
-def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Projection:
+def nearest_on_trimmed(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Projection:
     """Find the nearest place of trimmed patches to each point.
 
     Parameters
@@ -66,7 +66,7 @@ def nearest(patches: Sequence[Patch], xyz: ArrayLike, loops: Loops = ()) -> Proj
         within = np.ones(len(target), bool)
         for k in range(len(patches)):
             own = found.patch == k
-            within[own] = inside(patches[k], loops[k], found.u[own], found.v[own])
+            within[own] = inside_loops(patches[k], loops[k], found.u[own], found.v[own])
         again = np.flatnonzero(~within)
         if again.size:
             rim, face = (
@@ -116,7 +116,7 @@ def _region(patch: Patch, loops: tuple[Floats, ...]) -> Any:
     return region.buffer(ON, join_style="mitre")
 
 
-def inside(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Bools:
+def inside_loops(patch: Patch, loops: tuple[Floats, ...], u: Floats, v: Floats) -> Bools:
     """Whether parameters of a patch, arrays of one shape, lie inside its loops; all do where it has none."""
     import shapely
 
@@ -237,7 +237,7 @@ def _inner_foot_points(patches: Sequence[Patch], loops: Loops, target: Floats) -
     distance = np.linalg.norm(foot - target[point], axis=1)
     for k, patch in enumerate(patches):
         own = np.flatnonzero(part == k)
-        distance[own[~inside(patch, loops[k], u[own], v[own])]] = np.inf
+        distance[own[~inside_loops(patch, loops[k], u[own], v[own])]] = np.inf
     best = np.lexsort((distance, point))[::count]
     return Projection(distance[best], foot[best], part[best], u[best], v[best], np.ones(len(target), bool))
 
@@ -249,7 +249,7 @@ def _lattice(patches: Sequence[Patch], loops: Loops) -> tuple[Cells, cKDTree, Pl
     for k, patch in enumerate(patches):
         u0, u1, v0, v1 = patch.domain
         u, v = (a.ravel() for a in np.meshgrid(np.linspace(u0, u1, LATTICE), np.linspace(v0, v1, LATTICE)))
-        held = inside(patch, loops[k], u, v)
+        held = inside_loops(patch, loops[k], u, v)
         if not held.any():  # a sliver between the lattice's places
             some = _region(patch, loops[k]).representative_point()
             u, v, held = np.array([u0 + some.x * (u1 - u0)]), np.array([v0 + some.y * (v1 - v0)]), np.ones(1, bool)

@@ -18,7 +18,7 @@ from geofit.data.messages import message
 from geofit.implicit.field import Box, points_of
 from geofit.implicit.kernels import Potential, potential
 
-__all__ = ["Metaballs", "metaballs"]
+__all__ = ["Metaballs", "spherical_metaballs"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -59,7 +59,7 @@ class Metaballs:
         if shapes.shape != (n, 3, 3) or densities.shape != (n,):
             raise SettingsError(
                 message(
-                    "implicit.centres-many-matrices",
+                    "implicit.balls-arrays-differ",
                     "{centres} centres need as many matrices and densities, not {shapes} and {densities}",
                     centres=n,
                     shapes=len(shapes),
@@ -69,14 +69,14 @@ class Metaballs:
         if not (np.isfinite(centres).all() and np.isfinite(shapes).all() and np.isfinite(densities).all()):
             raise SettingsError(
                 message(
-                    "implicit.centres-matrices-densities",
+                    "implicit.balls-not-finite",
                     "centres, matrices and densities of balls must be finite numbers",
                 )
             )
         if not self.threshold > 0:
             raise SettingsError(
                 message(
-                    "implicit.threshold-positive",
+                    "implicit.threshold-not-positive",
                     "the threshold {threshold} must be positive",
                     threshold=self.threshold,
                 )
@@ -84,7 +84,7 @@ class Metaballs:
         if not (densities > self.threshold).any() and not densities[densities > 0].sum() > self.threshold:
             raise SettingsError(
                 message(
-                    "implicit.density-reaches-threshold",
+                    "implicit.density-below-threshold",
                     "no density reaches the threshold {threshold}: the body is empty",
                     threshold=self.threshold,
                 )
@@ -180,7 +180,7 @@ class Metaballs:
         return (self.threshold - highest) / self.slope_scale, (self.threshold - lowest) / self.slope_scale
 
 
-def metaballs(
+def spherical_metaballs(
     centres: ArrayLike,
     radii: ArrayLike,
     densities: ArrayLike = 1.0,
@@ -219,7 +219,7 @@ def metaballs(
     if not (np.isfinite(reach) & (reach > 0)).all():
         raise SettingsError(
             message(
-                "implicit.smallest-radius-positive",
+                "implicit.radius-not-positive-ball",
                 "the smallest radius, {radius}, must be positive",
                 radius=float(np.min(reach)),
             )

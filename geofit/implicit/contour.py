@@ -12,7 +12,7 @@ from geofit.data.messages import message
 from geofit.implicit.field import Field
 from geofit.implicit.roots import roots_between
 
-__all__ = ["Contour", "contours"]
+__all__ = ["Contour", "field_contours"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -34,7 +34,7 @@ class Contour:
     closed: bool
 
 
-def contours(
+def field_contours(
     field: Field, origin: ArrayLike, along: ArrayLike, up: ArrayLike, *, size: tuple[float, float], spacing: float
 ) -> tuple[Contour, ...]:
     """Return the lines in which the surface of a field meets a rectangle of a plane.
@@ -61,7 +61,7 @@ def contours(
     if not np.isclose(np.linalg.norm(u), 1) or not np.isclose(np.linalg.norm(v), 1) or abs(u @ v) > 1e-9:
         raise SettingsError(
             message(
-                "implicit.directions-orthogonal-not",
+                "implicit.directions-not-orthogonal",
                 "the directions {along} and {up} must be orthogonal and not zero",
                 along=u.tolist(),
                 up=v.tolist(),
@@ -70,7 +70,7 @@ def contours(
     if not (min(size) > 0 and spacing > 0):
         raise SettingsError(
             message(
-                "implicit.rectangle-spacing-positive",
+                "implicit.rectangle-not-positive",
                 "the rectangle {size} and the spacing {spacing} must be positive lengths",
                 size=size,
                 spacing=spacing,

@@ -81,7 +81,7 @@ def kernel_integral(
     if kernel != "cauchy":
         raise SettingsError(
             message(
-                "implicit.kernel-choose-compact",
+                "implicit.kernel-unknown",
                 "there is no kernel '{name}': choose compact, gauss or cauchy",
                 name=kernel,
             )
@@ -122,7 +122,7 @@ class Convolution:
         if segments.ndim != 3 or segments.shape[1:] != (2, 3) or not len(segments) or not np.isfinite(segments).all():
             raise SettingsError(
                 message(
-                    "implicit.segments-array-not",
+                    "implicit.segments-wrong-shape",
                     "segments must be a finite (n, 2, 3) array, not one of shape {shape}",
                     shape=segments.shape,
                 )
@@ -131,7 +131,7 @@ class Convolution:
         if not (np.isfinite(radii) & (radii > 0)).all():
             raise SettingsError(
                 message(
-                    "implicit.smallest-radius-positive",
+                    "implicit.radius-not-positive-ball",
                     "the smallest radius, {radius}, must be positive",
                     radius=float(np.min(radii)),
                 )
@@ -140,7 +140,7 @@ class Convolution:
         if not (lengths > 0).all():
             raise SettingsError(
                 message(
-                    "implicit.segment-length-leave",
+                    "implicit.segment-without-length",
                     "segment {number} has no length: leave it out",
                     number=int(np.argmin(lengths)),
                 )
@@ -148,7 +148,7 @@ class Convolution:
         if self.kernel not in WIDTH:
             raise SettingsError(
                 message(
-                    "implicit.kernel-choose-compact",
+                    "implicit.kernel-unknown",
                     "there is no kernel '{name}': choose compact, gauss or cauchy",
                     name=self.kernel,
                 )

@@ -186,7 +186,7 @@ def _common_box(fields: tuple[Field, ...]) -> Box:
 def _some(fields: tuple[Field, ...]) -> tuple[Field, ...]:
     if not fields:
         raise SettingsError(
-            message("implicit.nothing-combine-field", "there is nothing to combine: give one field or more")
+            message("implicit.nothing-to-combine", "there is nothing to combine: give one field or more")
         )
     return fields
 
@@ -195,7 +195,7 @@ def _blend(radius: float) -> float:
     if not (np.isfinite(radius) and radius > 0):
         raise SettingsError(
             message(
-                "implicit.radius-blend-positive",
+                "implicit.blend-not-positive",
                 "the radius {radius} of a blend must be a positive length",
                 radius=radius,
             )

@@ -37,7 +37,7 @@ class _Distance:
 def _positive(radius: float) -> float:
     if not (np.isfinite(radius) and radius > 0):
         raise SettingsError(
-            message("implicit.radius-positive-length", "the radius {radius} must be a positive length", radius=radius)
+            message("implicit.radius-not-positive", "the radius {radius} must be a positive length", radius=radius)
         )
     return float(radius)
 
@@ -48,7 +48,7 @@ def _unit(direction: Floats) -> Floats:
     if vector.shape != (3,) or not length > 0:
         raise SettingsError(
             message(
-                "implicit.direction-not-zero", "the direction {direction} must not be zero", direction=vector.tolist()
+                "implicit.direction-is-zero", "the direction {direction} must not be zero", direction=vector.tolist()
             )
         )
     return np.asarray(vector / length)
@@ -267,7 +267,7 @@ class RoundCones(_Distance):
         if not (np.isfinite(radii) & (radii > 0)).all():
             raise SettingsError(
                 message(
-                    "implicit.smallest-radius-positive",
+                    "implicit.radius-not-positive-ball",
                     "the smallest radius, {radius}, must be positive",
                     radius=float(np.min(radii)),
                 )
@@ -299,7 +299,7 @@ def _centre_line(points: Floats) -> Floats:
     if line.ndim != 2 or line.shape[1] != 3 or len(line) < 2 or not np.isfinite(line).all():
         raise SettingsError(
             message(
-                "implicit.centre-line-points",
+                "implicit.centre-line-too-short",
                 "a centre line needs two or more points x, y, z, not an array of shape {shape}",
                 shape=line.shape,
             )
@@ -308,7 +308,7 @@ def _centre_line(points: Floats) -> Floats:
     if len(same):
         raise SettingsError(
             message(
-                "implicit.points-centre-line",
+                "implicit.centre-line-points-coincide",
                 "points {first} and {second} of the centre line coincide: leave one out",
                 first=int(same[0]),
                 second=int(same[0]) + 1,

@@ -108,7 +108,7 @@ def points_of(xyz: ArrayLike) -> Floats:
     if points.ndim != 2 or points.shape[1] != 3:
         raise SettingsError(
             message(
-                "implicit.points-shape-columns",
+                "implicit.points-wrong-shape",
                 "points have shape {shape}, but need (n, 3): give x, y, z in columns",
                 shape=points.shape,
             )
@@ -128,7 +128,7 @@ def box_of(lower: ArrayLike, upper: ArrayLike) -> Box:
     if low.shape != (3,) or high.shape != (3,) or not (low <= high).all():
         raise SettingsError(
             message(
-                "implicit.box-corners-lower",
+                "implicit.box-empty",
                 "no box lies between the corners {lower} and {upper}: give lower <= upper, three coordinates each",
                 lower=low.tolist(),
                 upper=high.tolist(),

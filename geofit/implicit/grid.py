@@ -139,7 +139,7 @@ def spline_grid(values: ArrayLike, lattice: Lattice) -> SplineGrid:
     if samples.shape != lattice.shape:
         raise SettingsError(
             message(
-                "implicit.samples-shape-lattice",
+                "implicit.samples-wrong-shape",
                 "the samples have shape {given}, the lattice {needed}: give one value a node",
                 given=samples.shape,
                 needed=lattice.shape,
@@ -148,7 +148,7 @@ def spline_grid(values: ArrayLike, lattice: Lattice) -> SplineGrid:
     if not np.isfinite(samples).all():
         raise SettingsError(
             message(
-                "implicit.samples-not-fill",
+                "implicit.samples-not-finite",
                 "{count} samples are not finite: fill them first",
                 count=int((~np.isfinite(samples)).sum()),
             )

@@ -100,7 +100,7 @@ def isosurface_of_samples(values: NDArray[np.floating], lattice: Lattice, *, cap
     if samples.shape != lattice.shape:
         raise SettingsError(
             message(
-                "implicit.samples-shape-lattice",
+                "implicit.samples-wrong-shape",
                 "the samples have shape {given}, the lattice {needed}: give one value a node",
                 given=samples.shape,
                 needed=lattice.shape,
@@ -206,7 +206,7 @@ def _crossings(values: NDArray[np.floating], blocks: Ints, end: Ints | None) -> 
     if np.isnan(values).any():
         raise FitError(
             message(
-                "implicit.field-not-nodes",
+                "implicit.field-not-finite",
                 "the field is not a number at {count} nodes: check its data and its box",
                 count=int(np.isnan(values).sum()),
             )

@@ -109,7 +109,7 @@ class Potential:
         if not 0 < ratio < 1:
             raise SettingsError(
                 message(
-                    "implicit.ball-threshold-density",
+                    "implicit.ball-without-surface",
                     "a ball with threshold/density {ratio} has no surface: give a ratio between 0 and 1",
                     ratio=ratio,
                 )
@@ -164,7 +164,7 @@ def potential(name: str) -> Potential:
     if name not in POTENTIALS:
         raise SettingsError(
             message(
-                "implicit.potential-choose",
+                "implicit.potential-unknown",
                 "there is no potential '{name}': choose one of {names}",
                 name=name,
                 names=", ".join(POTENTIALS),

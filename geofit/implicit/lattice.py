@@ -42,7 +42,7 @@ class Lattice:
         if origin.shape != (3,) or not np.isfinite(origin).all():
             raise SettingsError(
                 message(
-                    "implicit.origin-not-point",
+                    "implicit.origin-not-a-point",
                     "the origin {origin} is not a point: give x, y, z",
                     origin=origin.tolist(),
                 )
@@ -50,7 +50,7 @@ class Lattice:
         if not (np.isfinite(self.spacing) and self.spacing > 0):
             raise SettingsError(
                 message(
-                    "implicit.spacing-positive-length",
+                    "implicit.spacing-not-positive",
                     "the spacing {spacing} must be a positive length",
                     spacing=self.spacing,
                 )
@@ -58,7 +58,7 @@ class Lattice:
         if len(self.shape) != 3 or min(self.shape) < 2:
             raise SettingsError(
                 message(
-                    "implicit.lattice-nodes-axis",
+                    "implicit.lattice-too-small",
                     "a lattice needs 2 nodes or more an axis, not {shape}",
                     shape=tuple(self.shape),
                 )
@@ -82,7 +82,7 @@ class Lattice:
         if not np.isfinite(size).all() or size.max() <= 0 or cells < 1:
             raise SettingsError(
                 message(
-                    "implicit.cells-cannot-cover",
+                    "implicit.cells-cannot-cover-box",
                     "{cells} cells cannot cover the box {lower} to {upper}: give a finite box and at least 1 cell",
                     cells=cells,
                     lower=low.tolist(),
@@ -121,7 +121,7 @@ class Lattice:
         if any(n % 2 == 0 for n in self.shape):
             raise SettingsError(
                 message(
-                    "implicit.every-second-node",
+                    "implicit.nodes-not-odd",
                     "every second node of a lattice of shape {shape} misses its end: give odd numbers of nodes",
                     shape=self.shape,
                 )

@@ -47,7 +47,7 @@ class TriangleMesh:
         if triangles.size and (triangles.min() < 0 or triangles.max() >= len(vertices)):
             raise SettingsError(
                 message(
-                    "implicit.triangle-vertex",
+                    "implicit.triangle-vertex-unknown",
                     "a triangle names vertex {vertex}, but there are {count}: number them from 0",
                     vertex=int(triangles.max() if triangles.min() >= 0 else triangles.min()),
                     count=len(vertices),

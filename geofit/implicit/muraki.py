@@ -240,7 +240,7 @@ def fit_metaballs(
     if len(points) != len(directions) or not epsilon > 0 or most < 1:
         raise SettingsError(
             message(
-                "implicit.samples-many-normals",
+                "implicit.metaball-settings-unusable",
                 "{points} samples need as many normals, not {normals}; epsilon {epsilon} and most {most} positive",
                 points=len(points),
                 normals=len(directions),
@@ -250,7 +250,7 @@ def fit_metaballs(
         )
     if len(points) < 10:
         raise FitError(
-            message("implicit.samples-not-fix", "{count} samples do not fix a body: give 10 or more", count=len(points))
+            message("implicit.too-few-samples", "{count} samples do not fix a body: give 10 or more", count=len(points))
         )
     middle = points.mean(axis=0)
     scale = float(np.sqrt(((points - middle) ** 2).sum(axis=1).mean()))
@@ -293,7 +293,7 @@ def fit_metaballs(
     except SettingsError as error:
         raise FitError(
             message(
-                "implicit.balls-surface-normals",
+                "implicit.balls-without-surface",
                 "the balls have no surface: are the normals outward? ({reason})",
                 reason=error,
             )

@@ -55,7 +55,7 @@ def even_samples(field: Field, mesh: TriangleMesh, count: int, *, seed: int = 0)
     if count < 1 or not len(mesh.triangles):
         raise SettingsError(
             message(
-                "implicit.points-cannot-spread",
+                "implicit.points-not-spreadable",
                 "{count} points cannot be spread over {triangles} triangles: give at least one of each",
                 count=count,
                 triangles=len(mesh.triangles),

@@ -61,7 +61,7 @@ class Plane:
         if not length > 0:
             raise SettingsError(
                 message(
-                    "implicit.plane-normal-not",
+                    "implicit.plane-normal-zero",
                     "a plane needs a normal that is not zero, not {normal}",
                     normal=self.normal,
                 )
@@ -108,7 +108,7 @@ class Quadric:
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
             raise SettingsError(
                 message(
-                    "implicit.quadric-matrix-not",
+                    "implicit.quadric-not-a-matrix",
                     "a quadric needs a finite 4x4 matrix, not {shape}",
                     shape=matrix.shape,
                 )
@@ -161,9 +161,7 @@ class Quadric:
         largest = np.abs(eigenvalues).max()
         if largest == 0:
             raise FitError(
-                message(
-                    "implicit.quadric-quadratic-terms", "the quadric has no quadratic terms: it is a plane or empty"
-                )
+                message("implicit.quadric-is-plane", "the quadric has no quadratic terms: it is a plane or empty")
             )
         p, n = int((eigenvalues > ZERO * largest).sum()), int((eigenvalues < -ZERO * largest).sum())
         _, constant, linear = self._centre()
@@ -223,7 +221,7 @@ def ellipsoid(centre: ArrayLike, semi_axes: ArrayLike, rotation: ArrayLike | Non
     if half.shape != (3,) or not (half > 0).all():
         raise SettingsError(
             message(
-                "implicit.ellipsoid-three-positive",
+                "implicit.ellipsoid-axes-not-positive",
                 "an ellipsoid needs three positive half lengths, not {axes}",
                 axes=half.tolist(),
             )
@@ -264,7 +262,11 @@ def fit_quadric(xyz: ArrayLike) -> Quadric:
     points = points_of(xyz)
     if len(points) < 9:
         raise FitError(
-            message("implicit.points-not-fix", "{count} points do not fix a quadric: give 9 or more", count=len(points))
+            message(
+                "implicit.too-few-points-for-quadric",
+                "{count} points do not fix a quadric: give 9 or more",
+                count=len(points),
+            )
         )
     middle = points.mean(axis=0)
     scale = float(np.sqrt(((points - middle) ** 2).mean())) or 1.0
@@ -285,7 +287,7 @@ def fit_quadric(xyz: ArrayLike) -> Quadric:
     if np.linalg.matrix_rank(n, tol=1e-10 * np.linalg.norm(n)) < len(n):
         raise FitError(
             message(
-                "implicit.points-quadric-points",
+                "implicit.quadric-ambiguous",
                 "the points lie on more than one quadric: add points off their plane or curve",
             )
         )
@@ -293,7 +295,7 @@ def fit_quadric(xyz: ArrayLike) -> Quadric:
     if eigenvalues[1] < 1e-12:
         raise FitError(
             message(
-                "implicit.points-quadric-points",
+                "implicit.quadric-ambiguous",
                 "the points lie on more than one quadric: add points off their plane or curve",
             )
         )

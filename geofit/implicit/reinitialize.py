@@ -53,7 +53,7 @@ def distance_samples(field: Field, lattice: Lattice, *, band: float = 10.0) -> F
     if not crossed.any():
         raise FitError(
             message(
-                "implicit.field-sign-nodes",
+                "implicit.field-of-one-sign",
                 "the field has one sign at all nodes: choose a box that its surface passes through",
             )
         )

@@ -139,14 +139,14 @@ class _March:
         if not np.isfinite(field.lipschitz):
             raise SettingsError(
                 message(
-                    "implicit.field-lipschitz-bound",
+                    "implicit.lipschitz-bound-missing",
                     "the field has no finite Lipschitz bound: give its region, or reinitialize it on a lattice",
                 )
             )
         if not resolution > 0:
             raise SettingsError(
                 message(
-                    "implicit.resolution-positive-length",
+                    "implicit.resolution-not-positive",
                     "the resolution {resolution} must be a positive length",
                     resolution=resolution,
                 )

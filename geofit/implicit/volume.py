@@ -74,7 +74,7 @@ def extent_of_samples(values: NDArray[np.floating], lattice: Lattice) -> Extent:
     if f.shape != lattice.shape:
         raise SettingsError(
             message(
-                "implicit.samples-shape-lattice",
+                "implicit.samples-wrong-shape",
                 "the samples have shape {given}, the lattice {needed}: give one value a node",
                 given=f.shape,
                 needed=lattice.shape,

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from geofit.medial.chamfer import chamfer_distance, step_weights
 from geofit.medial.weights import INTEGER_WEIGHTS, world_factor
 
-__all__ = ["MedialPoints", "chamfer_length", "inclusion_table", "medial_points"]
+__all__ = ["MedialPoints", "chamfer_length", "including_values", "medial_points"]
 
 Floats = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ def medial_points(void: ArrayLike, weights: ArrayLike = INTEGER_WEIGHTS, *, corr
         Chamfer weights of face, edge and corner steps.
     corrected : bool
         For integer weights, compare with the smallest ball that includes the ball of the voxel
-        (:func:`inclusion_table`). Without it, the comparison is the article's v[n] < v + w[n], which leaves included
+        (:func:`including_values`). Without it, the comparison is the article's v[n] < v + w[n], which leaves included
         balls of small radius in the axis.
 
     Returns
@@ -74,7 +74,7 @@ def medial_points(void: ArrayLike, weights: ArrayLike = INTEGER_WEIGHTS, *, corr
     values = field[tuple(inside.T)]
     medial = np.ones(len(inside), dtype=bool)
     exact = corrected and np.issubdtype(steps.dtype, np.integer)
-    table = inclusion_table(int(values.max(initial=0)), w) if exact else None
+    table = including_values(int(values.max(initial=0)), w) if exact else None
     for step in _NEIGHBOURS:
         kind = int(np.abs(step).sum()) - 1
         there = field[tuple((inside + step).T)]
@@ -84,7 +84,7 @@ def medial_points(void: ArrayLike, weights: ArrayLike = INTEGER_WEIGHTS, *, corr
     return MedialPoints(inside[medial] - 1, chosen, chosen * world_factor(w))
 
 
-def inclusion_table(largest: int, weights: ArrayLike = INTEGER_WEIGHTS) -> NDArray[np.int64]:
+def including_values(largest: int, weights: ArrayLike = INTEGER_WEIGHTS) -> NDArray[np.int64]:
     """Return the smallest value of a neighbour whose ball includes that of a voxel.
 
     Parameters

@@ -62,7 +62,7 @@ class MetaballBody(OwnField):
         if centre.ndim != 2 or centre.shape[1:] != (3,) or radius.shape != centre.shape[:1] or not len(radius):
             raise SettingsError(
                 message(
-                    "medial.centres-shape-radii",
+                    "medial.balls-wrong-shape",
                     "Centres have shape {centres}, radii {radii}; give (n, 3) and (n,) with at least one ball.",
                     centres=centre.shape,
                     radii=radius.shape,
@@ -71,14 +71,16 @@ class MetaballBody(OwnField):
         if not (np.isfinite(centre).all() and np.isfinite(radius).all() and (radius > 0).all()):
             raise SettingsError(
                 message(
-                    "medial.ball-radius-not",
+                    "medial.ball-not-finite",
                     "A ball has a radius that is not above 0, or a number that is not finite; correct it.",
                 )
             )
         if not self.stiffness > 0:
             raise SettingsError(
                 message(
-                    "medial.stiffness", "The stiffness is {stiffness}; give a number above 0.", stiffness=self.stiffness
+                    "medial.stiffness-not-positive",
+                    "The stiffness is {stiffness}; give a number above 0.",
+                    stiffness=self.stiffness,
                 )
             )
         centre.flags.writeable = radius.flags.writeable = False
@@ -155,7 +157,7 @@ class MetaballBody(OwnField):
         if not 0 <= i < len(self):
             raise SettingsError(
                 message(
-                    "medial.ball-balls-numbered",
+                    "medial.ball-unknown",
                     "There is no ball {i}; the balls are numbered from 0 to {last}.",
                     i=i,
                     last=len(self) - 1,

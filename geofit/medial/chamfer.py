@@ -25,7 +25,9 @@ def step_weights(weights: ArrayLike) -> NDArray[Any]:
     if w.shape != (3,) or not (w > 0).all() or not np.isfinite(w).all():
         raise SettingsError(
             message(
-                "medial.chamfer-weights", "The chamfer weights are {weights}; give 3 numbers above 0.", weights=weights
+                "medial.chamfer-weights-not-positive",
+                "The chamfer weights are {weights}; give 3 numbers above 0.",
+                weights=weights,
             )
         )
     return np.asarray(w[np.abs(FORWARD).sum(axis=1) - 1])
@@ -58,7 +60,7 @@ def chamfer_distance(
     body = np.ascontiguousarray(void, dtype=bool)
     if body.ndim != 3:
         raise SettingsError(
-            message("medial.volume-axes-array", "The volume has {count} axes; give an array of 3.", count=body.ndim)
+            message("medial.volume-not-three-axes", "The volume has {count} axes; give an array of 3.", count=body.ndim)
         )
     integer = np.issubdtype(step_weights(weights).dtype, np.integer)
     kind = np.dtype(np.int32 if integer else np.float64)

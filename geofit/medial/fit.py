@@ -15,13 +15,13 @@ from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.medial.agreement import Agreement, agreement
 from geofit.medial.balls import MetaballBody
-from geofit.medial.greedy import UNIT, Choice, Cover, choose
+from geofit.medial.greedy import UNIT, Choice, Cover, choose_next
 from geofit.medial.kernel import STIFFNESS, reach
 from geofit.medial.polish import polish, surface_points
 from geofit.medial.weights import INTEGER_WEIGHTS
 from geofit.pores.volume import RockVolume
 
-__all__ = ["FittedMetaballs", "Step", "metaballs"]
+__all__ = ["BallStep", "FittedMetaballs", "metaballs"]
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ SLAB = 1 << 20
 
 
 @dataclass(frozen=True)
-class Step:
+class BallStep:
     """One ball of the greedy choice: what the body was after it.
 
     Parameters
@@ -75,7 +75,7 @@ class FittedMetaballs(MetaballBody):
     """
 
     volume: RockVolume
-    curve: tuple[Step, ...] = ()
+    curve: tuple[BallStep, ...] = ()
     candidates: int = 0
     evaluations: int = 0
 
@@ -164,7 +164,7 @@ def metaballs(
     if not (cost > 0 and 0 < share <= 1 and stiffness > 0 and (max_balls is None or max_balls > 0)):
         raise SettingsError(
             message(
-                "medial.cost-stiffness-share",
+                "medial.settings-unusable",
                 "Give a cost and a stiffness above 0, a share above 0 and at most 1, and at least 1 ball.",
             )
         )
@@ -179,7 +179,7 @@ def metaballs(
     if not chosen:
         raise SettingsError(
             message(
-                "medial.ball-covers-voxel",
+                "medial.body-too-thin",
                 "No ball covers a voxel more than it costs: the body is thinner than a voxel. Scan it with smaller "
                 "voxels.",
             )
@@ -211,7 +211,7 @@ def _candidates(volume: RockVolume, distance: str, weights: ArrayLike) -> tuple[
     if distance != "chamfer":
         raise SettingsError(
             message(
-                "medial.distance-unknown-euclid",
+                "medial.distance-unknown",
                 "The distance '{name}' is unknown; give 'euclid' or 'chamfer'.",
                 name=distance,
             )
@@ -219,7 +219,7 @@ def _candidates(volume: RockVolume, distance: str, weights: ArrayLike) -> tuple[
     if not volume.cubic:
         raise SettingsError(
             message(
-                "medial.voxels-measure-chamfer",
+                "medial.chamfer-needs-cubes",
                 "The voxels measure {edges} m, and a chamfer distance needs cubes; use distance='euclid'.",
                 edges=volume.voxel,
             )
@@ -232,22 +232,22 @@ def _candidates(volume: RockVolume, distance: str, weights: ArrayLike) -> tuple[
 
 def _choose_all(
     cover: Cover, volume: RockVolume, share: float, max_balls: int | None, progress: Progress | None
-) -> tuple[list[Choice], tuple[Step, ...]]:
+) -> tuple[list[Choice], tuple[BallStep, ...]]:
     heap = [(-bound, i, -1) for i, bound in enumerate(cover.bounds().tolist())]
     heapq.heapify(heap)
     chosen: list[Choice] = []
-    curve: list[Step] = []
+    curve: list[BallStep] = []
     size = float(np.prod(volume.voxel))
     check = 1
     while max_balls is None or len(chosen) < max_balls:
         covered = cover.covered / cover.total
         tell(progress, "metaballs", covered)
-        choice = choose(cover, heap)
+        choice = choose_next(cover, heap)
         if choice is None:
             break
         chosen.append(choice)
         covered = cover.covered / cover.total
-        step = Step(len(chosen), choice.gain, cover.dice, covered, (cover.covered + cover.spilled) * size)
+        step = BallStep(len(chosen), choice.gain, cover.dice, covered, (cover.covered + cover.spilled) * size)
         if len(chosen) >= check or (max_balls is not None and len(chosen) == max_balls):
             step = _measured(step, cover, volume)
             # Once the share is reached the surfaces are compared every tenth ball more, before that at 1, 2, 4, 8 ...
@@ -262,6 +262,6 @@ def _choose_all(
     return chosen, tuple(curve)
 
 
-def _measured(step: Step, cover: Cover, volume: RockVolume) -> Step:
+def _measured(step: BallStep, cover: Cover, volume: RockVolume) -> BallStep:
     found = agreement(cover.field >= UNIT, cover.body, volume.voxel)
-    return Step(step.balls, step.gain, step.dice, step.share, step.volume, found.hausdorff, found.hausdorff95)
+    return BallStep(step.balls, step.gain, step.dice, step.share, step.volume, found.hausdorff, found.hausdorff95)

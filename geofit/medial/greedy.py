@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from geofit.medial.kernel import STIFFNESS, reach, visible_radius
 
-__all__ = ["UNIT", "Choice", "Cover", "choose", "choose_fully"]
+__all__ = ["UNIT", "Choice", "Cover", "choose_fully", "choose_next"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -147,7 +147,7 @@ class Cover:
         return 2.0 * self.covered / max(self.total + self.covered + self.spilled, 1)
 
 
-def choose(cover: Cover, heap: list[tuple[float, int, int]]) -> Choice | None:
+def choose_next(cover: Cover, heap: list[tuple[float, int, int]]) -> Choice | None:
     """Choose the next ball with a heap of (-bound, candidate, round of the bound), and add it.
 
     Start with ``[(-bound, i, -1) ...]`` of :meth:`Cover.bounds`, made a heap. Returns None where no candidate gains a
@@ -169,7 +169,7 @@ def choose(cover: Cover, heap: list[tuple[float, int, int]]) -> Choice | None:
 
 
 def choose_fully(cover: Cover, candidates: list[int]) -> Choice | None:
-    """Choose the next ball by evaluating every candidate, and add it: the reference for :func:`choose`."""
+    """Choose the next ball by evaluating every candidate, and add it: the reference for :func:`choose_next`."""
     while candidates:
         gains = [cover.gain(i) for i in candidates]
         best = int(np.argmax(gains))

@@ -95,7 +95,7 @@ def optimal_weights(dimension: int = 3, *, first: float | None = None, relative:
     """
     if dimension not in (2, 3):
         raise SettingsError(
-            message("medial.dimension", "The dimension is {dimension}; give 2 or 3.", dimension=dimension)
+            message("medial.dimension-unknown", "The dimension is {dimension}; give 2 or 3.", dimension=dimension)
         )
     from scipy.optimize import linprog
 
@@ -136,7 +136,7 @@ def _checked(weights: ArrayLike) -> Floats:
     if w.ndim != 1 or len(w) not in (2, 3) or not (w[0] > 0 and (np.diff(w) >= 0).all() and np.isfinite(w).all()):
         raise SettingsError(
             message(
-                "medial.chamfer-weights-not",
+                "medial.chamfer-weights-fall",
                 "The chamfer weights are {weights}; give 2 or 3 numbers above 0 that do not fall, such as 3, 4, 5.",
                 weights=weights,
             )

@@ -129,7 +129,7 @@ def between(
     if not (np.isfinite(h) and h > 0) or size / h > MOST:
         raise SettingsError(
             message(
-                "morphing.raster-spacing",
+                "morphing.raster-spacing-unusable",
                 "A raster of {spacing} m cannot be used for an area {size:.1f} m wide: give {least:.3g} m or more.",
                 spacing=spacing,
                 size=size,
@@ -183,7 +183,7 @@ def _area(upper: Any, lower: Any, area: ArrayLike | None) -> tuple[Floats, Float
                 return low, high
     raise SettingsError(
         message(
-            "morphing.area-needed",
+            "morphing.area-unknown",
             "The area of the body is not known: give area=((west, south), (east, north)) in metres, or surfaces whose "
             "boxes overlap.",
         )

@@ -34,7 +34,9 @@ def dates_of(given: Sequence[str | date]) -> tuple[date, ...]:
                 found.append(date.fromisoformat(str(one)))
             except ValueError:
                 raise MorphError(
-                    message("morphing.not-date", "'{text}' is not a date: write year-month-day, 2024-05-31.", text=one)
+                    message(
+                        "morphing.not-a-date", "'{text}' is not a date: write year-month-day, 2024-05-31.", text=one
+                    )
                 ) from None
     return tuple(found)
 
@@ -52,7 +54,7 @@ def knots_of(days: Sequence[date] | None, count: int) -> NDArray[np.float64]:
     if len(days) != count or any(later <= earlier for earlier, later in pairwise(days)):
         raise MorphError(
             message(
-                "morphing.dates-rise",
+                "morphing.dates-not-rising",
                 "{count} bodies need as many dates, each later than the one before; given: {dates}.",
                 count=count,
                 dates=", ".join(day.isoformat() for day in days),

@@ -116,7 +116,7 @@ def _end(given: Any, body: Any, name: str, origin: Floats) -> End:
     else:
         raise MorphError(
             message(
-                "morphing.not-body",
+                "morphing.not-a-body",
                 "'{name}' is a {kind}, not a body: give an implicit field, a fitted body, a closed triangle mesh, or "
                 "two horizons closed by geofit.between.",
                 name=name,

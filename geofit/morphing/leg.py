@@ -17,7 +17,7 @@ from geofit.implicit.lattice import Lattice
 from geofit.morphing.arrival import arrival, source_field
 from geofit.morphing.distance import Samples, both_distances, distances
 from geofit.morphing.errors import MorphError
-from geofit.morphing.parts import SEED, Part, isolated_parts, with_seeds, without_parts
+from geofit.morphing.parts import SEED, LonePart, isolated_parts, with_seeds, without_parts
 from geofit.morphing.paths import Line, Path, level_set_path, quick_surface, samples_at
 
 __all__ = ["Leg", "Mode", "Pace", "leg_between"]
@@ -55,8 +55,8 @@ class Leg:
     d_b: Floats
     start: Samples
     end: Samples
-    unreached: tuple[Part, ...]
-    vanishing: tuple[Part, ...]
+    unreached: tuple[LonePart, ...]
+    vanishing: tuple[LonePart, ...]
 
     @property
     def lattice(self) -> Lattice:
@@ -220,7 +220,7 @@ def leg_between(
     return Leg(path, d_a, d_b, start, end, unreached, vanishing)
 
 
-def _seed_places(seeds: bool | Sequence[ArrayLike], unreached: Sequence[Part], origin: Floats) -> Floats:
+def _seed_places(seeds: bool | Sequence[ArrayLike], unreached: Sequence[LonePart], origin: Floats) -> Floats:
     if isinstance(seeds, bool):
         return np.array([part.deepest for part in unreached if seeds]).reshape(-1, 3) - origin
     return np.asarray(seeds, float).reshape(-1, 3) - origin

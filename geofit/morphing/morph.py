@@ -146,7 +146,7 @@ def _check(
         if given not in choices:
             raise SettingsError(
                 message(
-                    "morphing.choose-one",
+                    "morphing.choice-unknown",
                     "{what}='{given}' is unknown: choose one of {choices}.",
                     what=what,
                     given=given,
@@ -157,7 +157,7 @@ def _check(
     if cells < 16 or not positive or (eps is not None and not (np.isfinite(eps) and eps >= 0)):
         raise SettingsError(
             message(
-                "morphing.lattice-settings",
+                "morphing.lattice-settings-unusable",
                 "cells={cells}, spacing={spacing}, eps={eps}: give 16 cells or more, a positive spacing and eps >= 0.",
                 cells=cells,
                 spacing=spacing,
@@ -167,7 +167,7 @@ def _check(
     if sd is not None and (len(sd) != len(bodies) or not all(np.isfinite(s) and s >= 0 for s in sd)):
         raise SettingsError(
             message(
-                "morphing.sd-each",
+                "morphing.standard-deviations-unusable",
                 "sd={sd}: give one standard deviation in metres, 0 or more, for each of the {count} surveys.",
                 sd=list(sd),
                 count=len(bodies),
@@ -175,12 +175,12 @@ def _check(
         )
     if align not in (None, "principal"):
         raise SettingsError(
-            message("morphing.align-word", "align='{given}' is unknown: give 'principal' or nothing.", given=align)
+            message("morphing.align-unknown", "align='{given}' is unknown: give 'principal' or nothing.", given=align)
         )
     if align is not None and (len(bodies) > 2 or dates is not None):
         raise SettingsError(
             message(
-                "morphing.align-surveys",
+                "morphing.surveys-not-aligned",
                 "Surveys with dates, and more than two bodies, are not aligned: their coordinates are real. Read the "
                 "alignment that is reported, and register the surveys first if it is large.",
             )
@@ -195,7 +195,7 @@ def _lattice(ends: Sequence[End], spacing: float | None, cells: int) -> Lattice:
     if size > FAR * own:
         raise MorphError(
             message(
-                "morphing.far-apart",
+                "morphing.bodies-far-apart",
                 "The bodies span {size:.6g} m together, but are at most {own:.4g} m long: they lie far from each "
                 "other. Check their coordinates, such as an origin that only one of the files states.",
                 size=size,
@@ -208,7 +208,7 @@ def _lattice(ends: Sequence[End], spacing: float | None, cells: int) -> Lattice:
         least = h * (float(np.prod(counts + 1.0)) / MOST) ** (1 / 3)
         raise SettingsError(
             message(
-                "morphing.lattice-large",
+                "morphing.lattice-too-large",
                 "A spacing of {spacing:.3g} m needs {count:.3g} nodes, about {memory:.0f} GB: give {least:.3g} m or "
                 "more.",
                 spacing=h,

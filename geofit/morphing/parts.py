@@ -12,7 +12,7 @@ from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 from geofit.morphing.distance import Samples
 
-__all__ = ["Part", "isolated_parts", "with_seeds", "without_parts"]
+__all__ = ["LonePart", "isolated_parts", "with_seeds", "without_parts"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -22,7 +22,7 @@ SEED = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class LonePart:
     """A part of one body that does not touch the other.
 
     Parameters
@@ -52,7 +52,7 @@ class Part:
 
 def isolated_parts(
     body: Samples, other: Bools, kind: Literal["unreached", "vanishing"], origin: Floats, leg: int
-) -> tuple[tuple[Part, ...], Bools]:
+) -> tuple[tuple[LonePart, ...], Bools]:
     """Return the parts of a body that have no node in another, the largest first, and their nodes."""
     from scipy.ndimage import label
 
@@ -66,7 +66,7 @@ def isolated_parts(
     for number in np.flatnonzero(~touched):
         nodes = np.argwhere(numbers == number)
         depth, at = _deepest(nodes, lattice)
-        parts.append(Part(kind, len(nodes) * lattice.spacing**3, at + origin, depth, leg))
+        parts.append(LonePart(kind, len(nodes) * lattice.spacing**3, at + origin, depth, leg))
     parts.sort(key=lambda part: -part.volume)
     return tuple(parts), alone
 

@@ -22,12 +22,12 @@ from geofit.morphing.dates import dates_of
 from geofit.morphing.distance import distances
 from geofit.morphing.ends import End
 from geofit.morphing.leg import Leg, Mode, Pace
-from geofit.morphing.parts import Part
+from geofit.morphing.parts import LonePart
 from geofit.morphing.paths import quick_surface
 
 if TYPE_CHECKING:
     from geofit.morphing.change import Change
-    from geofit.morphing.table import Event, Row
+    from geofit.morphing.table import Event, FrameRow
 
 __all__ = ["Morph"]
 
@@ -78,12 +78,12 @@ class Morph:
         return self.legs[0].lattice
 
     @property
-    def unreached(self) -> tuple[Part, ...]:
+    def unreached(self) -> tuple[LonePart, ...]:
         """Parts of a later body that no front reaches; seeds are offered at their deepest places."""
         return tuple(part for leg in self.legs for part in leg.unreached)
 
     @property
-    def vanishing(self) -> tuple[Part, ...]:
+    def vanishing(self) -> tuple[LonePart, ...]:
         """Parts of an earlier body that do not touch the later one: they shrink to nothing."""
         return tuple(part for leg in self.legs for part in leg.vanishing)
 
@@ -122,7 +122,7 @@ class Morph:
         """Return n equal steps of tau from 0 to 1."""
         if n < 2:
             raise SettingsError(
-                message("morphing.frames-two", "{count} frames cannot hold both ends: ask for 2 or more.", count=n)
+                message("morphing.too-few-frames", "{count} frames cannot hold both ends: ask for 2 or more.", count=n)
             )
         return np.linspace(0.0, 1.0, n)
 
@@ -137,7 +137,7 @@ class Morph:
             vertices = (vertices - self.alignment.centre - shift) @ rotation / scale + self.alignment.centre
         return TriangleMesh(vertices + self.origin, mesh.triangles)
 
-    def table(self, n: int = 25, progress: Progress | None = None) -> tuple[Row, ...]:
+    def table(self, n: int = 25, progress: Progress | None = None) -> tuple[FrameRow, ...]:
         """Return volume, area, Euler number, components, gain, loss, net, rate and drift of n frames.
 
         Raises

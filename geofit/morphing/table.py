@@ -15,14 +15,14 @@ from geofit.morphing.paths import quick_surface
 if TYPE_CHECKING:
     from geofit.morphing.sequence import Morph
 
-__all__ = ["Event", "Row", "events", "rows"]
+__all__ = ["Event", "FrameRow", "events", "rows"]
 
 #: Steps of a leg between which an event is looked for, and halvings that place it.
 LOOKED, HALVINGS = 32, 8
 
 
 @dataclass(frozen=True)
-class Row:
+class FrameRow:
     """One frame: volumes in m3, area in m2.
 
     ``gain`` and ``loss`` count from the first survey of its leg, ``net`` is their difference, ``rate`` that over the
@@ -57,7 +57,7 @@ class Event:
     euler: tuple[int, int]
 
 
-def rows(morph: Morph, n: int, progress: Progress | None = None) -> tuple[Row, ...]:
+def rows(morph: Morph, n: int, progress: Progress | None = None) -> tuple[FrameRow, ...]:
     """Return a row for each of n frames at equal steps of tau."""
     found = []
     for count, tau in enumerate(morph.steps(n).tolist()):
@@ -71,7 +71,7 @@ def rows(morph: Morph, n: int, progress: Progress | None = None) -> tuple[Row, .
         if morph.dates is not None:
             passed *= (morph.dates[-1] - morph.dates[0]).days / DAYS
         found.append(
-            Row(
+            FrameRow(
                 tau, body.date, s, body.volume, body.area, body.euler, body.components, gain, loss, net,
                 change_sd(morph, k, s), float(net / passed) if passed > 0 else float("nan"), leg.drift(s),
                 body.interpolated,

@@ -121,14 +121,12 @@ def maximal_balls(
     rule = rule or ("exact" if volume.cubic else "cover")
     if rule not in ("exact", "paper", "cover"):
         raise VolumeError(
-            message(
-                "pores.rule-unknown-exact", "rule={rule} is unknown. Give 'exact', 'paper' or 'cover'.", rule=repr(rule)
-            )
+            message("pores.rule-unknown", "rule={rule} is unknown. Give 'exact', 'paper' or 'cover'.", rule=repr(rule))
         )
     if rule != "cover" and not volume.cubic:
         raise VolumeError(
             message(
-                "pores.rule-compares-sums",
+                "pores.rule-needs-cubic-voxels",
                 "rule='{rule}' compares sums of three squares and needs cubic voxels; these measure {voxel} m. Use "
                 "rule='cover'.",
                 rule=rule,
@@ -143,7 +141,7 @@ def maximal_balls(
     if not isinstance(volume, RockVolume):
         raise VolumeError(
             message(
-                "pores.rule-needs-whole",
+                "pores.rule-needs-whole-volume",
                 "rule='{rule}' needs the whole volume in memory, and this one is read slab by slab. Read a part of it "
                 "with read_volume; for cubic voxels rule='exact' works in slabs.",
                 rule=rule,

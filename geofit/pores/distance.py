@@ -33,7 +33,7 @@ def border_walls(border: Border) -> tuple[bool, bool, bool]:
     if len(words) != 3 or not all(word in ("closed", "open") for word in words):
         raise VolumeError(
             message(
-                "pores.border-not-valid",
+                "pores.border-unknown",
                 "border={border} is not valid. Give 'closed', 'open', or one of the two for each of the three axes.",
                 border=repr(border),
             )

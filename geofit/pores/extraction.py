@@ -90,7 +90,7 @@ def pore_network(
     if not (r_min >= 0 and 0 < tau <= 2):
         raise VolumeError(
             message(
-                "pores.min-tau-not",
+                "pores.ball-settings-unusable",
                 "r_min={r_min} and tau={tau} are not usable. r_min is a radius in voxels and not negative; tau is a "
                 "ratio between 0 and 2.",
                 r_min=r_min,
@@ -100,7 +100,7 @@ def pore_network(
     if hierarchy not in ("merge-tree", "paper"):
         raise VolumeError(
             message(
-                "pores.hierarchy-unknown-merge",
+                "pores.hierarchy-unknown",
                 "hierarchy={name} is unknown. Give 'merge-tree' or 'paper'.",
                 name=repr(hierarchy),
             )
@@ -109,7 +109,7 @@ def pore_network(
     size, whole = int(np.prod(volume.shape)), isinstance(volume, RockVolume)
     check_memory(
         int(_PORE * size * volume.porosity + _VOXEL * size + _WHOLE * size * whole + _SLAB * min(size, slabs.VOXELS)),
-        message("pores.network-voxels", "The network of {count} voxels", count=size),
+        message("pores.network-of-voxels", "The network of {count} voxels", count=size),
     )
     if volume.porosity == 1:
         border = "closed"
@@ -152,7 +152,7 @@ def _assembled(
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    from geofit.pores.sections import measure
+    from geofit.pores.sections import measure_sections
     from geofit.pores.spots import own_saddle, widest_balls
     from geofit.pores.windows import inner_windows, outer_windows
 
@@ -180,7 +180,7 @@ def _assembled(
 
     free = np.zeros((count, 3))
     inscribed = np.maximum(widest_balls(peaks, free, space, edges, centre.astype(float)) - 0.5, radius)
-    sections = measure(inner, space, edges, radius_at, in_faces=False)
+    sections = measure_sections(inner, space, edges, radius_at, in_faces=False)
     use = kept[inner.first] & own
     to_centre = np.stack(
         [np.linalg.norm((sections.middle - centre[end]) * edges, axis=1) for end in (inner.first, inner.second)], axis=1
@@ -195,7 +195,7 @@ def _assembled(
         sections.middle[use],
         sections.conductance[use],
     )
-    sections = measure(outer, space, edges, radius_at, in_faces=True)
+    sections = measure_sections(outer, space, edges, radius_at, in_faces=True)
     to_face = np.linalg.norm((sections.middle - centre[outer.first]) * edges, axis=1)
     use = kept[outer.first]
     face_throats = FaceThroats(

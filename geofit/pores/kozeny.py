@@ -33,7 +33,7 @@ def kozeny_permeability(porosity: float, diameter: float, constant: float = CARM
     if not 0 <= porosity < 1:
         raise VolumeError(
             message(
-                "pores.porosity-kozeny-permeability",
+                "pores.porosity-not-below-one",
                 "A porosity of {porosity} has no Kozeny permeability; it must be below 1.",
                 porosity=porosity,
             )

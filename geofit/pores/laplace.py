@@ -95,7 +95,7 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
             values.append(0.0)
             messages.append(
                 message(
-                    "pores.pore-space-not",
+                    "pores.laplace-faces-not-connected",
                     "The pore space does not connect the two faces of {axis} (porosity {porosity:.4f}): its "
                     "permeability is 0.",
                     axis=AXES[axis],
@@ -115,7 +115,7 @@ def laplace_permeability(volume: RockVolume, *, progress: Progress | None = None
         if steps < 0:
             raise VolumeError(
                 message(
-                    "pores.laplace-solve-along",
+                    "pores.laplace-not-converged",
                     "The Laplace solve along {axis} did not converge in 5000 steps.",
                     axis=AXES[axis],
                 )

@@ -49,7 +49,7 @@ def check_memory(needed: int, task: str | Message) -> None:
     if free is not None and needed > free:
         raise VolumeError(
             message(
-                "pores.memory-free-take",
+                "pores.memory-too-small",
                 "{task} needs {needed:.1f} GB of memory, and {free:.1f} GB are free. Leave the volume on the disk "
                 "(geofit.open_volume, geofit pores --slabs), take a part of it, or close other programs.",
                 task=task,

@@ -73,7 +73,7 @@ def network_permeability(network: PoreNetwork) -> Permeability:
 
 def _no_flow(network: PoreNetwork, axis: int) -> Message:
     return message(
-        "pores.pore-space-not-connect",
+        "pores.faces-not-connected",
         "The pore space does not connect the two faces of {axis} (porosity {porosity:.4f}): its permeability is 0. A "
         "larger sample or a finer scan may show a path.",
         axis=AXES[axis],

@@ -13,10 +13,10 @@ from geofit.pores.packed import PackedSpace
 from geofit.pores.spots import widest_balls
 from geofit.pores.windows import Windows
 
-__all__ = ["Sections", "measure"]
+__all__ = ["PoreSections", "measure_sections"]
 
 
-class Sections(NamedTuple):
+class PoreSections(NamedTuple):
     """One row a window; lengths in units of the shortest voxel edge, ``middle`` in indices."""
 
     radius: NDArray[np.float64]
@@ -27,9 +27,9 @@ class Sections(NamedTuple):
     conductance: NDArray[np.float64]
 
 
-def measure(
+def measure_sections(
     windows: Windows, space: PackedSpace, edges: NDArray[np.float64], radius_at: NDArray[np.float64], *, in_faces: bool
-) -> Sections:
+) -> PoreSections:
     """Return the sections of windows.
 
     Parameters
@@ -47,7 +47,7 @@ def measure(
     count = len(windows.first)
     if count == 0:
         empty = np.zeros(0)
-        return Sections(empty, empty, empty, empty, np.zeros((0, 3)), empty)
+        return PoreSections(empty, empty, empty, empty, np.zeros((0, 3)), empty)
     begin = windows.start[:-1]
     face_area = edges.prod() / edges
     radius = radius_at[np.maximum.reduceat(windows.level, begin)]
@@ -65,7 +65,7 @@ def measure(
         windows.start, windows.voxel, windows.axis, windows.sign, vector, edges, space.shape
     )
     inscribed = np.maximum(_inscribed(windows, index, vector, space, edges) - 0.5, radius)
-    return Sections(radius, inscribed, area, perimeter, middle, conductance)
+    return PoreSections(radius, inscribed, area, perimeter, middle, conductance)
 
 
 def _inscribed(

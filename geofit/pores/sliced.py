@@ -89,7 +89,7 @@ class SlicedVolume:
             if part.dtype.kind == "f" and not np.isfinite(part).all():
                 raise VolumeError(
                     message(
-                        "pores.voxels-nan-slices",
+                        "pores.slices-not-finite",
                         "Slices {first} to {last} have voxels that are NaN or infinite. Give them the value of rock or "
                         "of pore before reading.",
                         first=first,

@@ -255,7 +255,7 @@ def pore_surface(
     if construction not in ("contact", "blend"):
         raise VolumeError(
             message(
-                "pores.construction-unknown-contact",
+                "pores.construction-unknown",
                 "construction={name} is unknown. Give 'contact' or 'blend'; geofit.metaballs covers the pores with few "
                 "balls.",
                 name=repr(construction),
@@ -268,7 +268,7 @@ def pore_surface(
     if network.pore_of is None or network.pore_of.shape != volume.shape:
         raise VolumeError(
             message(
-                "pores.network-voxels-volume",
+                "pores.network-without-voxels",
                 "The network stores no voxels of a volume of shape {shape}. Compute it from this "
                 "volume with pore_network.",
                 shape=volume.shape,

@@ -137,20 +137,18 @@ def check_array(values: NDArray[Any]) -> None:
     if values.ndim != 3:
         raise VolumeError(
             message(
-                "pores.array-axes-rock",
+                "pores.array-not-three-axes",
                 "The array has {count} axes; a rock volume has three. Give a single slice the shape "
                 "(1, rows, columns).",
                 count=values.ndim,
             )
         )
     if values.size == 0:
-        raise VolumeError(
-            message("pores.array-shape-voxel", "The array of shape {shape} has no voxel.", shape=values.shape)
-        )
+        raise VolumeError(message("pores.array-empty", "The array of shape {shape} has no voxel.", shape=values.shape))
     if values.dtype.kind not in "buif":
         raise VolumeError(
             message(
-                "pores.array-type-voxels",
+                "pores.array-type-unusable",
                 "The array has the type {kind}; voxels need numbers or booleans.",
                 kind=str(values.dtype),
             )
@@ -158,7 +156,7 @@ def check_array(values: NDArray[Any]) -> None:
     if values.dtype.kind == "f" and not np.isfinite(values).all():
         raise VolumeError(
             message(
-                "pores.voxels-nan-infinite",
+                "pores.voxels-not-finite",
                 "{count} voxels are NaN or infinite. Give them the value of rock or of pore before reading.",
                 count=int((~np.isfinite(values)).sum()),
             )
@@ -173,7 +171,7 @@ def pore_mask(values: NDArray[Any], pore: Any, shares: dict[Any, float] | None =
         if pore is None:
             raise VolumeError(
                 message(
-                    "pores.value-pore-volume",
+                    "pores.pore-value-missing",
                     "Which value is pore? The volume has the values {labels}. State it: pore={example}.",
                     labels=_listed(shares),
                     example=next(iter(reversed(shares))),
@@ -182,7 +180,7 @@ def pore_mask(values: NDArray[Any], pore: Any, shares: dict[Any, float] | None =
         if len(shares) > 2:
             raise VolumeError(
                 message(
-                    "pores.volume-different-values",
+                    "pores.too-many-values",
                     "The volume has {count} different values ({labels}), but pore={pore} names only one. List all "
                     "values of pore voxels, for example pore=[{pore}] if all others are rock, or pore=range(0, 100) "
                     "for a threshold.",
@@ -197,7 +195,7 @@ def pore_mask(values: NDArray[Any], pore: Any, shares: dict[Any, float] | None =
     if not mask.any():
         raise VolumeError(
             message(
-                "pores.voxel-pore-value",
+                "pores.pore-value-absent",
                 "No voxel has the pore value {pore}; the volume has the values {labels}. Check which value is pore.",
                 pore=list(pore) if several and len(pore) <= _SHOWN else pore,
                 labels=_listed(shares or label_shares(values)),
@@ -216,7 +214,7 @@ def voxel_edges(voxel: float | Collection[float] | None) -> tuple[float, float, 
     if voxel is None:
         raise VolumeError(
             message(
-                "pores.size-voxel-missing",
+                "pores.voxel-size-missing",
                 "The size of a voxel is missing. State its edge length in metres, for example voxel=5e-6.",
             )
         )
@@ -224,7 +222,7 @@ def voxel_edges(voxel: float | Collection[float] | None) -> tuple[float, float, 
     if edges.shape != (3,) or not np.isfinite(edges).all() or (edges <= 0).any():
         raise VolumeError(
             message(
-                "pores.voxel-not-voxel",
+                "pores.voxel-size-unusable",
                 "voxel={voxel} is not a voxel size. Give one positive edge length in metres, or three, one for each "
                 "axis of the array.",
                 voxel=voxel,

@@ -160,7 +160,7 @@ def prediction_sd(surface: HorizonFit, uncertainty: Uncertainty, xyz: ArrayLike,
         if frame.kind != "map":
             raise FitError(
                 message(
-                    "prediction.surface-best-plane-needs",
+                    "prediction.plane-needs-elevations",
                     "A surface over its best plane needs (n, 3) coordinates; (n, 2) were given.",
                 )
             )
@@ -208,7 +208,7 @@ def band(
     if not is_finite(share) or not 0 < share < 1:
         raise SettingsError(
             message(
-                "prediction.share-probability-above-below",
+                "prediction.share-out-of-range",
                 "share is {share}; a probability above 0 and below 1 is needed, for instance 0.9.",
                 share=shown(share),
             )
@@ -217,7 +217,7 @@ def band(
     if uncertainty is None:
         raise FitError(
             message(
-                "prediction.no-standard-deviation-known",
+                "prediction.standard-deviation-unknown-here",
                 "No standard deviation is known of '{name}'; see the notes of its examination.",
                 name=surface.name,
             )
@@ -261,7 +261,7 @@ def _model(surface: HorizonFit) -> Model:
     if surface.model is None:
         raise FitError(
             message(
-                "prediction.not-fitted-nothing-known",
+                "prediction.surface-not-fitted",
                 "'{name}' was not fitted here: nothing is known about what lies between its points.",
                 name=surface.name,
             )

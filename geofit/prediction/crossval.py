@@ -162,7 +162,7 @@ def about_the_hull(given: Posterior, fold: Fold) -> Message | None:
     if not beyond.any() or not within.any():
         return None
     return message(
-        "prediction.points-left-lie-beyond",
+        "prediction.left-out-beyond-hull",
         "{beyond} of {total} points left out by {scheme} lie beyond the hull of the others, where every method "
         "extrapolates: error {outer:.3g} m there, {inner:.3g} m within",
         beyond=int(beyond.sum()),

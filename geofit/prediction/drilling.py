@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from geofit.data.prediction import Suggestion
 from geofit.prediction.bands import Grid, PredictionError
 
-__all__ = ["Plan", "greedy_holes", "suggest_holes"]
+__all__ = ["DrillingPlan", "greedy_holes", "suggest_holes"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,14 +27,14 @@ _CHUNK = 256
 
 
 @dataclass(frozen=True, eq=False)
-class Plan:
+class DrillingPlan:
     """Candidates in greedy order, and the mean of the standard deviation after each, metres."""
 
     chosen: Ints
     mean_after: Floats
 
 
-def greedy_holes(covariance: Floats, rest: Floats, noise: float, count: int) -> Plan:
+def greedy_holes(covariance: Floats, rest: Floats, noise: float, count: int) -> DrillingPlan:
     """Choose holes one after another.
 
     Parameters
@@ -65,7 +65,7 @@ def greedy_holes(covariance: Floats, rest: Floats, noise: float, count: int) -> 
         chosen.append(best)
         means.append(float(after[best]))
         left = left - np.outer(left[:, best], left[best]) / (left[best, best] + noise)
-    return Plan(np.array(chosen, dtype=np.int64), np.array(means))
+    return DrillingPlan(np.array(chosen, dtype=np.int64), np.array(means))
 
 
 def suggest_holes(grid: Grid, error_model: PredictionError, count: int = 10) -> tuple[Suggestion, ...]:

@@ -68,7 +68,7 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> Prediction
     if model is None:
         return _nothing(
             message(
-                "prediction.not-fitted-no-point",
+                "prediction.nothing-to-leave-out",
                 "'{name}' was not fitted here: no point can be left out of it",
                 name=surface.name,
             )
@@ -78,9 +78,7 @@ def examine(surface: HorizonFit, progress: Progress | None = None) -> Prediction
 
         def missing(reason: Message) -> None:
             notes.append(
-                message(
-                    "prediction.error-off-data-cannot", "the prediction error cannot be found: {reason}", reason=reason
-                )
+                message("prediction.error-not-found", "the prediction error cannot be found: {reason}", reason=reason)
             )
 
         look = sections_by_refit if model.problem.parametrization.parametric else _examine
@@ -101,7 +99,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Pr
         nothing,
         lambda reason: notes.append(
             message(
-                "prediction.not-calibrated",
+                "prediction.band-not-calibrated",
                 "no point was left out, the band is not calibrated: {reason}",
                 reason=reason,
             )
@@ -110,7 +108,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Pr
     if model.net.lines is not None:
         notes.append(
             message(
-                "prediction.core-linear-across-sections",
+                "prediction.ruled-core-as-cubic",
                 "the core is linear across its sections; its left-out errors are those of a cubic one",
             )
         )
@@ -119,7 +117,7 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Pr
         lambda: None if many else thin_plate_inverse(given.plane),
         None,
         lambda reason: notes.append(
-            message("prediction.no-other-method", "no other method was compared: {reason}", reason=reason)
+            message("prediction.no-method-compared", "no other method was compared: {reason}", reason=reason)
         ),
     )
     results = []
@@ -132,7 +130,9 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Pr
     error_model = PredictionError(model, given, calibration)
     if not len(grid.plane):
         notes.append(
-            message("prediction.no-area", "the points have no area: there is no standard deviation between them")
+            message(
+                "prediction.points-without-area", "the points have no area: there is no standard deviation between them"
+            )
         )
     none: tuple[Suggestion, ...] = ()
     suggestions = guarded(
@@ -146,7 +146,9 @@ def _examine(surface: HorizonFit, model: Model, progress: Progress | None) -> Pr
         lambda: uncertainty_on(grid, error_model) if len(grid.plane) else None,
         None,
         lambda reason: notes.append(
-            message("prediction.no-standard-deviation", "the standard deviation is not known: {reason}", reason=reason)
+            message(
+                "prediction.standard-deviation-unknown", "the standard deviation is not known: {reason}", reason=reason
+            )
         ),
     )
     tell(progress, "done", 1.0)
@@ -163,7 +165,7 @@ def _left_out(
         outliers: tuple[Outlier, ...] = ()
         notes.append(
             message(
-                "prediction.points-too-many-leave",
+                "prediction.too-many-points-for-groups",
                 "{count} points are too many to leave out in groups: each is left out alone, of the regional field, "
                 "and no other method is compared",
                 count=len(given.value),
@@ -213,7 +215,7 @@ def _not_held(found: LeftOut) -> list[Message]:
         return []
     return [
         message(
-            "prediction.points-left-lie-inside",
+            "prediction.band-too-narrow",
             "only {share:.0%} of the points left out by {scheme} lie inside the 90 % band "
             "({raw:.0%} before calibration)",
             share=found.inside,

@@ -31,7 +31,7 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
     label = np.zeros(len(points), dtype=parametrization.section.dtype)
     notes = [
         message(
-            "prediction.folded-surface-no-standard",
+            "prediction.folded-without-standard-deviation",
             "a folded surface has no standard deviation: only leaving out its sections is possible",
         )
     ]
@@ -39,7 +39,7 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
     if len(inner) > MOST_SECTIONS:
         notes.append(
             message(
-                "prediction.sections-too-many-leave",
+                "prediction.too-many-sections",
                 "{count} sections are too many to leave out by new fits",
                 count=len(inner),
             )
@@ -60,7 +60,7 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
     if failed:
         notes.append(
             message(
-                "prediction.without-sections-no-surface",
+                "prediction.sections-indispensable",
                 "without {failed} of the sections no surface can be fitted",
                 failed=failed,
             ).with_severity("warning")
@@ -70,7 +70,7 @@ def sections_by_refit(surface: HorizonFit, model: Model, progress: Progress | No
         return PredictionResult((), None, (), (), tuple(notes))
     notes.append(
         message(
-            "prediction.errors-distances-surface-through",
+            "prediction.errors-across-sections",
             "errors are distances from the surface through the other sections; the outermost two stay",
         )
     )

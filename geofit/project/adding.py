@@ -13,7 +13,7 @@ from geofit.data.progress import Progress, tell
 from geofit.data.site import ImportIssue, Site
 from geofit.io.added_tables import tables_text, with_tables
 from geofit.io.horizons import HorizonNames
-from geofit.io.import_plan import Plan, complete, look_at
+from geofit.io.import_plan import ImportPlan, complete, look_at
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping
 from geofit.io.site_file import build_site, read_site
@@ -63,14 +63,14 @@ def add_files(
     InputError
         If no file can be used, with the reason for the first; or if a file cannot be read.
     """
-    plan, folder = Plan(), site_file.resolve().parent
+    plan, folder = ImportPlan(), site_file.resolve().parent
     known = {(folder / name).resolve() for name in site.inputs}
     for k, file in enumerate(files):
         tell(progress, "inspect files", 0.3 * k / len(files))
         if file.resolve() in known:
             raise InputError(
-                message("import.added-known", "The file belongs to the site already"),
-                message("import.added-known-remedy", "Reload the site where it has changed."),
+                message("project.file-added-already", "The file belongs to the site already"),
+                message("project.reload-where-changed", "Reload the site where it has changed."),
                 file=file.name,
             )
         look_at(file.resolve(), folder, mappings, site.crs, plan)
@@ -79,8 +79,8 @@ def add_files(
     if not tables:
         first = plan.issues[0] if plan.issues else None
         raise InputError(
-            first.reason if first else message("import.no-file-given", "No file is given"),
-            first.remedy if first else message("import.added-choose", "Choose the files to add."),
+            first.reason if first else message("project.no-file-given", "No file is given"),
+            first.remedy if first else message("project.choose-files", "Choose the files to add."),
             file=first.file if first else None,
         )
     text = tables_text([*tables, *_new_horizons(tables, site_file, site, added)])

@@ -25,8 +25,8 @@ class SetArea(Command):
     @property
     def text(self) -> Message:  # noqa: D102
         if self.area is None:
-            return message("step.area-of-files", "Study area as in the files")
-        return message("step.area", "Study area with {count} corners", count=len(self.area))
+            return message("project.step-area-of-files", "Study area as in the files")
+        return message("project.step-area", "Study area with {count} corners", count=len(self.area))
 
     def on(self, state: State) -> State:  # noqa: D102
         if self.area is not None:

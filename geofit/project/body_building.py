@@ -20,7 +20,7 @@ from geofit.data.messages import Message, message
 from geofit.data.numbers import is_finite
 from geofit.data.progress import Progress, tell
 from geofit.implicit.mesh import TriangleMesh
-from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import BodyProvenance, BodySource, ClosedMesh, Intervals, MorphFrame
 
 if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy
@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 __all__ = [
     "BodyResult",
     "MeshBody",
-    "codes_of",
     "given_of_logs",
+    "interval_codes",
     "made_body",
     "make_body",
     "measured_strata",
@@ -103,7 +103,7 @@ class BodyResult:
         return self.body.overview
 
 
-def codes_of(campaigns: Sequence[Any]) -> dict[str, int]:
+def interval_codes(campaigns: Sequence[Any]) -> dict[str, int]:
     """Return the codes of interval tables with how often each occurs, the most frequent first."""
     counts: dict[str, int] = {}
     for log in (log for campaign in campaigns for log in campaign.logs):
@@ -136,7 +136,7 @@ def site_codes(file: Path, *, progress: Progress) -> dict[str, int]:
     InputError
         If the file cannot be read, or its site has no interval tables.
     """
-    return codes_of(_campaigns(file, progress))
+    return interval_codes(_campaigns(file, progress))
 
 
 def make_body(
@@ -186,7 +186,7 @@ def make_body(
             given = given_of_logs(holes)
         case ClosedMesh(file):
             result, given = BodyResult(read_mesh_body(folder / file, name)), _file_digest(folder / file)
-        case Frame():
+        case MorphFrame():
             made = [
                 make_body(end.source, end.settings, one, campaigns, folder, {}, None)
                 for end, one in zip(source.ends, source.names, strict=True)
@@ -219,7 +219,7 @@ def measured_strata(result: BodyResult, horizons: Mapping[str, Any], *, progress
     return replace(result, strata=strata_table(body, over) if over else (), divided_by=tuple(over))
 
 
-def frame_of(source: Frame, ends: Sequence[Any], name: str, progress: Progress | None = None) -> MorphBody:
+def frame_of(source: MorphFrame, ends: Sequence[Any], name: str, progress: Progress | None = None) -> MorphBody:
     """Return the frame of a metamorphosis between bodies."""
     from geofit.morphing.morph import morph
 
@@ -283,15 +283,15 @@ def _file_digest(file: Path) -> str:
 def origin_text(result: BodyResult) -> Message:
     """Return in words how a body came here."""
     if result.origin == "read back":
-        return message("body.read-back", "Read from the project file; it has not been made again.")
+        return message("project.body-read-back", "Read from the project file; it has not been made again.")
     if result.origin == "fitted":
-        return message("body.made-now", "Made in this session.")
+        return message("project.body-made-now", "Made in this session.")
     if not is_finite(result.difference):
-        return message("body.made-again", "Made again from the same data.")
+        return message("project.body-made-again", "Made again from the same data.")
     if result.difference == 0:
-        return message("body.made-again-same", "Made again from the same data: the same as the project's file.")
+        return message("project.body-made-again-same", "Made again from the same data: the same as the project's file.")
     return message(
-        "body.made-again-other",
+        "project.body-made-again-other",
         "Made again from the same data; it differs from the project's file by up to {difference:.3g} m.",
         difference=result.difference,
     )

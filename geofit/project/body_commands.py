@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from geofit.data.messages import Message, message
-from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, Frame
+from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, MorphFrame
 from geofit.project.command import Command
 from geofit.project.provenance import DocumentError
 from geofit.project.state import State
@@ -18,7 +18,7 @@ __all__ = ["DeleteBody", "RenameBody", "SetBody", "StyleBody", "body_of"]
 def body_of(state: State, name: str) -> BodyRecord:
     """Return a body of a state; DocumentError if it has none of that name."""
     if name not in state.bodies:
-        names = ", ".join(state.bodies) or message("site.none", "none")
+        names = ", ".join(state.bodies) or message("data.none", "none")
         raise DocumentError(
             message("project.no-body", "There is no body '{name}'. The bodies are: {names}.", name=name, names=names)
         )
@@ -35,11 +35,11 @@ class SetBody(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        if isinstance(self.record.provenance.source, Frame):
-            return message("step.body-frame", "Take a frame as body {name}", name=self.name)
+        if isinstance(self.record.provenance.source, MorphFrame):
+            return message("project.step-body-frame", "Take a frame as body {name}", name=self.name)
         if isinstance(self.record.provenance.source, ClosedMesh):
-            return message("step.body-read", "Read body {name}", name=self.name)
-        return message("step.body", "Fit body {name}", name=self.name)
+            return message("project.step-body-read", "Read body {name}", name=self.name)
+        return message("project.step-body", "Fit body {name}", name=self.name)
 
     def on(self, state: State) -> State:  # noqa: D102
         if not self.name.strip():
@@ -61,7 +61,7 @@ class RenameBody(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.body-rename", "Rename body {name} to {new}", name=self.name, new=self.new)
+        return message("project.step-body-rename", "Rename body {name} to {new}", name=self.name, new=self.new)
 
     def on(self, state: State) -> State:  # noqa: D102
         body_of(state, self.name)
@@ -84,7 +84,7 @@ class DeleteBody(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.body-delete", "Delete body {name}", name=self.name)
+        return message("project.step-body-delete", "Delete body {name}", name=self.name)
 
     def on(self, state: State) -> State:  # noqa: D102
         body_of(state, self.name)
@@ -101,7 +101,7 @@ class StyleBody(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.body-style", "Style of body {name}", name=self.name)
+        return message("project.step-body-style", "Style of body {name}", name=self.name)
 
     def on(self, state: State) -> State:  # noqa: D102
         record = replace(body_of(state, self.name), style=self.style)

@@ -71,11 +71,11 @@ def export_body(result: BodyResult, name: str, target: Path, *, progress: Progre
     else:
         needs_field = ending in BLOCK_ENDINGS
         raise InputError(
-            message("export.body-blocks", "Body '{name}' was not fitted: it has no block model", name=name)
+            message("project.body-blocks", "Body '{name}' was not fitted: it has no block model", name=name)
             if needs_field
-            else message("export.body-ending", "A body cannot be written as '{ending}'", ending=ending),
+            else message("project.body-ending", "A body cannot be written as '{ending}'", ending=ending),
             message(
-                "export.body-endings",
+                "project.body-endings",
                 "Name the file {names}.",
                 names=", ".join((".step", *TRIANGLE_ENDINGS, *(BLOCK_ENDINGS if fitted is not None else ()))),
             ),

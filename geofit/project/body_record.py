@@ -9,7 +9,16 @@ from typing import Any
 from geofit.bodies.settings import BodySettings
 from geofit.data.site import COLOURS
 
-__all__ = ["BodyProvenance", "BodyRecord", "BodySource", "BodyStyle", "ClosedMesh", "Frame", "Intervals", "next_colour"]
+__all__ = [
+    "BodyProvenance",
+    "BodyRecord",
+    "BodySource",
+    "BodyStyle",
+    "ClosedMesh",
+    "Intervals",
+    "MorphFrame",
+    "next_colour",
+]
 
 #: Colours of bodies in turn: those of horizons from the end, so that the first of both differ.
 BODY_COLOURS = (COLOURS[5], COLOURS[4], COLOURS[6], COLOURS[3], COLOURS[1], COLOURS[2], COLOURS[0], COLOURS[7])
@@ -31,7 +40,7 @@ class ClosedMesh:
 
 
 @dataclass(frozen=True)
-class Frame:
+class MorphFrame:
     """A frame of a metamorphosis between bodies: interpolated geometry, not a record.
 
     ``ends`` made the bodies, in order; ``tau`` is the share of the way. The others are those of :func:`geofit.morph`.
@@ -47,7 +56,7 @@ class Frame:
     seeds: bool = False
 
 
-BodySource = Intervals | ClosedMesh | Frame
+BodySource = Intervals | ClosedMesh | MorphFrame
 
 
 @dataclass(frozen=True)
@@ -107,7 +116,7 @@ def _source_data(source: BodySource) -> dict[str, Any]:
             return {"kind": "intervals", "codes": list(codes), "file": file}
         case ClosedMesh(file):
             return {"kind": "mesh", "file": file}
-        case Frame():
+        case MorphFrame():
             plain = {
                 name: getattr(source, name) for name in ("names", "mode", "pace", "dates", "cells", "tau", "seeds")
             }
@@ -126,7 +135,7 @@ def _source_from(data: Mapping[str, Any]) -> BodySource:
         case "frame":
             ends = tuple(BodyProvenance.from_data(end) for end in data["ends"])
             names, dates = (tuple(map(str, data[key])) for key in ("names", "dates"))
-            return Frame(
+            return MorphFrame(
                 ends,
                 names,
                 data["mode"],

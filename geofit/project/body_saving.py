@@ -18,7 +18,7 @@ from geofit.project.body_building import BodyResult, read_mesh_body
 from geofit.project.body_record import BodyProvenance, BodyRecord
 from geofit.project.state import State
 
-__all__ = ["SavedBody", "bodies_of", "difference", "read_bodies", "records_of", "saved_body"]
+__all__ = ["SavedBody", "bodies_of", "largest_difference", "read_bodies", "records_of", "saved_body"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +84,7 @@ def records_of(project: Project) -> dict[str, BodyRecord]:
                     name=body.name,
                     error=repr(error),
                 ),
-                message("project.undo-last-change-hand", "Undo the last manual edit, or open a copy."),
+                message("data.undo-last-edit", "Undo the last manual edit, or open a copy."),
                 file=project.name,
             ) from None
     return found
@@ -107,7 +107,7 @@ def read_bodies(project: Project, folder: Path, changed: Mapping[str, str]) -> d
     return found
 
 
-def difference(old: BodyResult, new: BodyResult) -> float:
+def largest_difference(old: BodyResult, new: BodyResult) -> float:
     """Return the largest distance in metres between the vertices of two bodies; 0 if they are the same."""
     one, two = (saved_body(result).mesh for result in (old, new))
     if np.array_equal(one.triangles, two.triangles) and np.allclose(one.vertices, two.vertices, rtol=0, atol=1e-6):

@@ -151,14 +151,14 @@ def run_cave(
     InputError
         If a file cannot be written.
     """
-    from geofit.caves.adjust import adjust
+    from geofit.caves.adjust import adjust_survey
     from geofit.caves.body import centreline_body
     from geofit.caves.clearance import clearance, excavation_points
     from geofit.caves.strata import strata
     from geofit.caves.uncertainty import volume_estimate
 
     tell(progress, "adjust", 0.0)
-    adjusted = adjust(survey)
+    adjusted = adjust_survey(survey)
     body = centreline_body(adjusted, radius=radius)
     tell(progress, "volume", 0.1)
     volume = volume_estimate(body)
@@ -172,7 +172,7 @@ def run_cave(
     away = None
     if excavation is not None:
         tell(progress, "clearance", 0.8)
-        points, size = excavation_points(adjust(excavation))
+        points, size = excavation_points(adjust_survey(excavation))
         away = clearance(body, points, polyline=False, radius=size)
     tell(progress, "files", 0.9)
     name = Path(survey.name).stem

@@ -103,8 +103,8 @@ def run_cloud(
         state.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            message("run.folder-cannot", "The folder cannot be made: {error}", error=error.strerror or str(error)),
-            message("run.name-other-folder", "Name another one with --out."),
+            message("data.folder-not-made", "The folder cannot be made: {error}", error=error.strerror or str(error)),
+            message("project.name-other-folder", "Name another one with --out."),
             file=str(out),
         ) from None
     spool = spooled(cloud.chunks(), state, cloud.key, cloud.total, _within(progress, 0.0, READ))

@@ -45,9 +45,7 @@ class Command(ABC):
         """Take it back."""
         if self._before is None:
             raise DocumentError(
-                message(
-                    "project.not-done-yet-cannot", "'{step}' was not done yet and cannot be undone.", step=self.text
-                )
+                message("project.step-not-done", "'{step}' was not done yet and cannot be undone.", step=self.text)
             )
         document.become(self._before)
 
@@ -65,7 +63,7 @@ class Command(ABC):
 def known(state: State, horizon: str) -> None:
     """Raise DocumentError if the state has no such horizon."""
     if horizon not in state.order:
-        names = ", ".join(state.order) or message("site.none", "none")
+        names = ", ".join(state.order) or message("data.none", "none")
         raise DocumentError(
             message(
                 "project.site-no-horizon",

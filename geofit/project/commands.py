@@ -70,7 +70,7 @@ class SetSettings(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.settings", "Settings of {name}", name=self.horizon)
+        return message("project.step-settings", "Settings of {name}", name=self.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
         known(state, self.horizon)
@@ -91,7 +91,7 @@ class SetCore(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.core", "Core of {name}", name=self.horizon)
+        return message("project.step-core", "Core of {name}", name=self.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
         known(state, self.horizon)
@@ -113,7 +113,7 @@ class SetSurface(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.fit", "Fit {name}", name=self.provenance.horizon)
+        return message("project.step-fit", "Fit {name}", name=self.provenance.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
         known(state, self.provenance.horizon)
@@ -135,7 +135,7 @@ class SplitAtFaults(Command):
     @property
     def text(self) -> Message:  # noqa: D102
         faults = dict.fromkeys(fault.horizon for part in self.blocks.values() for fault in part.faults)
-        return message("step.part", "Part {name} at {faults}", name=self.horizon, faults=", ".join(faults))
+        return message("project.step-part", "Part {name} at {faults}", name=self.horizon, faults=", ".join(faults))
 
     def on(self, state: State) -> State:  # noqa: D102
         former = [name for name, part in state.parts.items() if part.horizon == self.horizon] or [self.horizon]
@@ -144,7 +144,7 @@ class SplitAtFaults(Command):
         if taken:
             raise DocumentError(
                 message(
-                    "site.block-called-horizon-rename",
+                    "data.block-name-taken",
                     "A block of '{name}' is called '{block}', and so is a horizon. Rename the horizon.",
                     name=self.horizon,
                     block=taken[0],
@@ -184,7 +184,7 @@ class _ManualCommand(Command):
         if provenance is None:
             raise DocumentError(
                 message(
-                    "project.no-surface-adjust-fit",
+                    "data.no-surface-to-adjust",
                     "'{name}' has no surface to adjust. Fit it first.",
                     name=self.horizon,
                 )
@@ -206,7 +206,7 @@ class AdjustControlPoint(_ManualCommand):
     @property
     def text(self) -> Message:  # noqa: D102
         return message(
-            "step.move-control-point", "Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})",
+            "project.step-move-control-point", "Move control point {i}, {j} of {patch} by {dz:+.3f} m ({name})",
             i=self.i, j=self.j, patch=self.patch, dz=self.dz, name=self.horizon,
         )  # fmt: skip
 
@@ -228,7 +228,7 @@ class ChangeWeight(_ManualCommand):
     @property
     def text(self) -> Message:  # noqa: D102
         return message(
-            "step.weight", "Weight {weight:g} for control point {i}, {j} of {patch} ({name})",
+            "project.step-weight", "Weight {weight:g} for control point {i}, {j} of {patch} ({name})",
             weight=self.weight, i=self.i, j=self.j, patch=self.patch, name=self.horizon,
         )  # fmt: skip
 
@@ -247,7 +247,7 @@ class MoveToPoint(_ManualCommand):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.pull", "Move {name} to point {number}", name=self.horizon, number=self.index + 1)
+        return message("project.step-pull", "Move {name} to point {number}", name=self.horizon, number=self.index + 1)
 
     @property
     def edit(self) -> ManualEdit:  # noqa: D102
@@ -265,7 +265,7 @@ class SeparateHorizons(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.separate", "Separate {names}", names=", ".join(self.moved))
+        return message("project.step-separate", "Separate {names}", names=", ".join(self.moved))
 
     def provenances(self, state: State) -> dict[str, Provenance]:
         """Return the new provenances of the horizons that move."""
@@ -273,7 +273,7 @@ class SeparateHorizons(Command):
         if missing:
             raise DocumentError(
                 message(
-                    "project.no-surface-moved-fit",
+                    "project.no-surface-to-move",
                     "'{name}' has no surface that could be moved. Fit it first.",
                     name=missing[0],
                 )
@@ -302,13 +302,13 @@ class SetOrder(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.order", "Order of the horizons")
+        return message("project.step-order", "Order of the horizons")
 
     def on(self, state: State) -> State:  # noqa: D102
         if sorted(self.order) != sorted(state.order):
             raise DocumentError(
                 message(
-                    "project.order-name-horizon-once",
+                    "project.order-incomplete",
                     "The order must name each horizon once: {names}.",
                     names=", ".join(state.order),
                 )
@@ -329,11 +329,11 @@ class RenameSite(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.rename", "Rename the site to {name}", name=self.name)
+        return message("project.step-rename", "Rename the site to {name}", name=self.name)
 
     def on(self, state: State) -> State:  # noqa: D102
         if not self.name.strip():
-            raise DocumentError(message("project.site-name-empty-give", "The site's name is empty. Give it a word."))
+            raise DocumentError(message("project.site-name-empty", "The site's name is empty. Give it a word."))
         return replace(state, name=self.name)
 
 

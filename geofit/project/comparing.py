@@ -123,9 +123,9 @@ def compare_states(
     common = [name for name in before if name in after]
     if not common:
         raise InputError(
-            message("compare.nothing-common", "The two states have no horizon in common"),
+            message("project.states-without-common-horizon", "The two states have no horizon in common"),
             message(
-                "compare.names", "The earlier state has {old}; the later one has {new}.",
+                "project.horizons-of-states", "The earlier state has {old}; the later one has {new}.",
                 old=", ".join(before) or "-", new=", ".join(after) or "-",
             ),
             file=str(new),

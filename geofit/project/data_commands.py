@@ -36,7 +36,7 @@ class ChangeData(Command):
     @property
     def text(self) -> Message:  # noqa: D102
         return plural_message(
-            "step.data", "New data: {file}", "New data: {count} files, the first {file}",
+            "project.step-data", "New data: {file}", "New data: {count} files, the first {file}",
             count=len(self.files), file=self.files[0] if self.files else "",
         )  # fmt: skip
 

@@ -50,10 +50,10 @@ class DipTable:
     def text(self) -> Message:
         """The number of measurements, their mean plane, and how far they lie from the surface, in words."""
         if not len(self):
-            return message("dips.none", "no dips were measured here")
+            return message("project.dips-none", "no dips were measured here")
         azimuth, dip, spread = mean_plane(self.azimuth, self.dip)
         head = plural_message(
-            "dips.mean",
+            "project.dips-mean",
             "{count} measurement, {azimuth:03.0f}/{dip:02.0f}",
             "{count} measurements, mean plane {azimuth:03.0f}/{dip:02.0f}, mean angle from it {spread:.0f}°",
             count=len(self),
@@ -65,7 +65,7 @@ class DipTable:
         if not len(known):
             return head
         return message(
-            "dips.mean-and-surface",
+            "project.dips-mean-and-surface",
             "{head}; angle to the surface: mean {mean:.0f}°, largest {largest:.0f}°",
             head=head,
             mean=float(known.mean()),
@@ -105,14 +105,14 @@ def dip_lines(measured: Orientations, index: int) -> tuple[Message, ...]:
     name, file = str(measured.horizon[index]), str(measured.file[index])
     lines = [
         message(
-            "dips.one",
+            "project.dip-towards",
             "dip {dip:.0f}° towards {azimuth:03.0f}°",
             dip=float(measured.dip[index]),
             azimuth=float(measured.azimuth[index]),
         )
     ]
     if name:
-        lines.append(message("dips.of-horizon", "horizon {name}", name=name))
+        lines.append(message("project.dips-of-horizon", "horizon {name}", name=name))
     if file:
-        lines.append(message("dips.from-file", "{file}, row {row}", file=file, row=int(measured.row[index])))
+        lines.append(message("project.dips-from-file", "{file}, row {row}", file=file, row=int(measured.row[index])))
     return tuple(lines)

@@ -409,7 +409,7 @@ class Document:
     def _given(self, name: str) -> PointSet:
         horizons = self._site.horizons
         if name not in horizons:
-            names = ", ".join(horizons) or message("site.none", "none")
+            names = ", ".join(horizons) or message("data.none", "none")
             raise DocumentError(
                 message(
                     "project.site-no-horizon",

@@ -21,7 +21,7 @@ from geofit.site.throw import FaultCut
 if TYPE_CHECKING:
     from geofit.site.fault_blocks import BlockMembers
 
-__all__ = ["Blocks", "SplitHorizon", "measured", "same_side", "site_fit", "site_with_blocks", "split_at_faults"]
+__all__ = ["Blocks", "SplitHorizon", "cuts_measured", "same_side", "site_fit", "site_with_blocks", "split_at_faults"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +125,7 @@ def same_side(parts: Mapping[str, Part], one: str, other: str) -> bool:
     return all(of_first[fault] == of_second[fault] for fault in of_first.keys() & of_second.keys())
 
 
-def measured(blocks: Blocks, *, progress: Progress | None) -> tuple[FaultCut, ...]:
+def cuts_measured(blocks: Blocks, *, progress: Progress | None) -> tuple[FaultCut, ...]:
     """Measure how far faults displace the horizons that surfaces are blocks of."""
     import shapely
 
@@ -155,7 +155,7 @@ def site_fit(surfaces: Mapping[str, HorizonFit], blocks: Blocks, progress: Progr
         dict(surfaces),
         {name: whole.get(name, name) for name in surfaces},
         faults={provenance.horizon: surface for provenance, surface in faults.items()},
-        cuts=measured(blocks, progress=progress),
+        cuts=cuts_measured(blocks, progress=progress),
     )
 
 

@@ -23,7 +23,7 @@ class TakeFit(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.take-fit", "Take another fit of {name}", name=self.provenance.horizon)
+        return message("project.step-take-fit", "Take another fit of {name}", name=self.provenance.horizon)
 
     def on(self, state: State) -> State:  # noqa: D102
         one = self.provenance

@@ -35,23 +35,25 @@ def title_of(provenance: Provenance, number: int) -> Message:
     """Return the name of a fit in a list: its number, what differs from the defaults, exclusions and manual edits."""
     settings, plain = provenance.settings, FitSettings()
     parts: list[Message] = [
-        message("fits.setting", "{label} {value}", label=SETTINGS[f.name].label, value=_value(f.name, settings))
+        message("project.fits-setting", "{label} {value}", label=SETTINGS[f.name].label, value=_value(f.name, settings))
         for f in fields(settings)
         if getattr(settings, f.name) != getattr(plain, f.name)
     ]
     if provenance.excluded:
         parts.append(
             plural_message(
-                "fits.out", "{count} point left out", "{count} points left out", count=len(provenance.excluded)
+                "project.fits-out", "{count} point left out", "{count} points left out", count=len(provenance.excluded)
             )
         )
     if provenance.edits:
         parts.append(
-            plural_message("fits.edits", "{count} manual edit", "{count} manual edits", count=len(provenance.edits))
+            plural_message(
+                "project.fits-edits", "{count} manual edit", "{count} manual edits", count=len(provenance.edits)
+            )
         )
     if not parts:
-        return message("fits.plain", "Fit {number}: default settings", number=number)
-    return message("fits.title", "Fit {number}: {parts}", number=number, parts=tuple(parts))
+        return message("project.fits-plain", "Fit {number}: default settings", number=number)
+    return message("project.fits-title", "Fit {number}: {parts}", number=number, parts=tuple(parts))
 
 
 def fit_figures(
@@ -67,15 +69,22 @@ def fit_figures(
         if getattr(first.settings, f.name) != getattr(second.settings, f.name)
     ]
     lines += [
-        _line(message("fits.sigma", "σ, m"), [_number(one.accuracy.sigma if one.accuracy else None) for one in both]),
         _line(
-            message("fits.max", "Largest |d|, m"), [_number(a.max_abs if (a := one.accuracy) else None) for one in both]
+            message("project.fits-sigma", "σ, m"),
+            [_number(one.accuracy.sigma if one.accuracy else None) for one in both],
         ),
-        _line(message("fits.points", "Points"), [_count(len(one.points)) for one in both]),
-        _line(message("fits.core", "Points of the core"), [_count(int(np.sum(one.core))) for one in both]),
-        _line(message("fits.control", "Control points"), [_count(one.control_points) for one in both]),
-        _line(message("fits.failed", "Checks that failed"), [_count(_failed(one)) for one in both]),
-        _line(message("fits.left-out", "RMS of points left out, m"), [_number(_left_out(one)) for one in predictions]),
+        _line(
+            message("project.fits-max", "Largest |d|, m"),
+            [_number(a.max_abs if (a := one.accuracy) else None) for one in both],
+        ),
+        _line(message("project.fits-points", "Points"), [_count(len(one.points)) for one in both]),
+        _line(message("project.fits-core", "Points of the core"), [_count(int(np.sum(one.core))) for one in both]),
+        _line(message("data.control-points", "Control points"), [_count(one.control_points) for one in both]),
+        _line(message("project.fits-failed", "Checks that failed"), [_count(_failed(one)) for one in both]),
+        _line(
+            message("project.fits-left-out", "RMS of points left out, m"),
+            [_number(_left_out(one)) for one in predictions],
+        ),
     ]
     return tuple(lines)
 
@@ -84,9 +93,9 @@ def apart(first: HorizonFit, second: HorizonFit) -> tuple[HorizonChange, Message
     """Return how far the second surface lies above the first, and that in words."""
     change = horizon_change(first, second)
     if not change.area > 0:
-        return change, message("fits.nowhere", "The two surfaces have no area in common.")
+        return change, message("project.fits-nowhere", "The two surfaces have no area in common.")
     return change, message(
-        "fits.apart",
+        "project.fits-apart",
         "B minus A: mean {mean:+.3g} m, rms {rms:.3g} m, largest {largest:+.3g} m at {x:.0f} / {y:.0f}; they differ by "
         "more than ε = {epsilon:g} m on {share:.0f} % of the area",
         mean=change.mean,
@@ -107,19 +116,19 @@ def _value(name: str, settings: FitSettings) -> Message:
     value = getattr(settings, name)
     choices = SETTINGS[name].choices
     if isinstance(value, tuple):
-        return message("fits.drawn", "drawn")
+        return message("project.fits-drawn", "drawn")
     found = next((text for choice, text in choices.items() if choice == value and type(choice) is type(value)), None)
-    return found if found is not None else message("fits.value", "{value}", value=Untranslated(f"{value:g}"))
+    return found if found is not None else message("project.fits-value", "{value}", value=Untranslated(f"{value:g}"))
 
 
 def _number(value: float | None) -> Message:
     if value is None or not np.isfinite(value):
-        return message("fits.unknown", "not examined")
-    return message("fits.value", "{value}", value=Untranslated(f"{value:.3g}"))
+        return message("project.fits-unknown", "not examined")
+    return message("project.fits-value", "{value}", value=Untranslated(f"{value:.3g}"))
 
 
 def _count(value: int) -> Message:
-    return message("fits.value", "{value}", value=Untranslated(str(value)))
+    return message("project.fits-value", "{value}", value=Untranslated(str(value)))
 
 
 def _failed(fit: HorizonFit) -> int:

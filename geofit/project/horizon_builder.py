@@ -19,7 +19,7 @@ from geofit.io.contacts import load_rule
 from geofit.io.journal import Journal
 from geofit.io.source import Source
 
-__all__ = ["Code", "Picks", "codes_of", "horizon_table", "picks_of"]
+__all__ = ["Code", "RulePicks", "codes_of", "horizon_table", "picks_of"]
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ class Code:
 
 
 @dataclass(frozen=True, eq=False)
-class Picks:
+class RulePicks:
     """What a rule picks: points, holes that carry the codes, and holes without a certain contact."""
 
     points: PointSet
@@ -63,7 +63,7 @@ def codes_of(site: Site) -> tuple[Code, ...]:
     return tuple(sorted(found, key=lambda one: (-one.elevation, one.code)))
 
 
-def picks_of(site: Site, rule: ContactRule) -> Picks:
+def picks_of(site: Site, rule: ContactRule) -> RulePicks:
     """Return what a rule picks of the interval logs of a site.
 
     Raises
@@ -79,11 +79,11 @@ def picks_of(site: Site, rule: ContactRule) -> Picks:
                 carrying |= set(log.hole[np.isin(log.code, rule.codes)].tolist())
     if not sets:
         raise InputError(
-            message("import.no-code-of-rule", "No interval has the code {code}", code=rule.label),
-            message("import.name-one", "Name one of them."),
+            message("project.no-code-of-rule", "No interval has the code {code}", code=rule.label),
+            message("data.name-one", "Name one of them."),
         )
     points = PointSet.concatenate(sets)
-    return Picks(points, len(carrying), len(carrying - set(points.hole.tolist())))
+    return RulePicks(points, len(carrying), len(carrying - set(points.hole.tolist())))
 
 
 def horizon_table(name: str, rule: ContactRule, site_file: Path, site: Site, added: Sequence[str]) -> str:

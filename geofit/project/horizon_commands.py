@@ -27,7 +27,7 @@ class RenameHorizon(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.rename-horizon", "Rename {old} to {new}", old=self.horizon, new=self.name)
+        return message("project.step-rename-horizon", "Rename {old} to {new}", old=self.horizon, new=self.name)
 
     def on(self, state: State) -> State:  # noqa: D102
         old, new = self.horizon, self.name
@@ -63,7 +63,7 @@ class RemoveHorizons(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.remove-horizons", "Remove {names}", names=", ".join(self.horizons))
+        return message("project.step-remove-horizons", "Remove {names}", names=", ".join(self.horizons))
 
     def on(self, state: State) -> State:  # noqa: D102
         _free(state, self.horizons)
@@ -89,7 +89,9 @@ class MergeHorizons(Command):
 
     @property
     def text(self) -> Message:  # noqa: D102
-        return message("step.merge-horizons", "Merge {names} to {new}", names=", ".join(self.horizons), new=self.name)
+        return message(
+            "project.step-merge-horizons", "Merge {names} to {new}", names=", ".join(self.horizons), new=self.name
+        )
 
     def on(self, state: State) -> State:  # noqa: D102
         _free(state, self.horizons)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from geofit.fitting.horizon_fit import HorizonFit
     from geofit.report.profile import Profile
 
-__all__ = ["Made", "compared", "section_profiles", "write_horizon"]
+__all__ = ["Made", "section_profiles", "storage_compared", "write_horizon"]
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def _written(
 ) -> Made:  # fmt: skip
     from geofit.cad.step import write_step
     from geofit.prediction.examine import examine
-    from geofit.report.pictures import draw, write_picture
+    from geofit.report.pictures import draw_pictures, write_picture
     from geofit.report.schema import horizon_document, write_json
     from geofit.report.tables import write_residuals
 
@@ -101,11 +101,11 @@ def _written(
     warnings = _write_bands(surface, prediction, stem) if bands else ()
     clock.stop("STEP and read-back")
     progress("pictures", 0.7)
-    storage, missing = compared(surface)
+    storage, missing = storage_compared(surface)
     result = HorizonResult(surface, site, back, storage, path.stat().st_size, prediction=prediction)
     profiles, uncut = section_profiles(result, sections)
     result = replace(result, profiles=profiles)
-    pictures = draw(result, t)
+    pictures = draw_pictures(result, t)
     write_picture(result, pictures, stem.with_name(stem.name + ".png"), t)
     clock.stop("pictures")
     result = replace(result, seconds=clock.seconds)
@@ -127,7 +127,7 @@ def section_profiles(
         nothing,
         lambda reason: missing.append(
             message(
-                "run.sections-not-cut",
+                "project.sections-not-cut",
                 "{name} is missing from the geological sections: {reason}",
                 name=result.name,
                 reason=reason,
@@ -137,7 +137,7 @@ def section_profiles(
     return found, tuple(missing)
 
 
-def compared(surface: HorizonFit) -> tuple[Storage | None, tuple[Message, ...]]:
+def storage_compared(surface: HorizonFit) -> tuple[Storage | None, tuple[Message, ...]]:
     """Compare the storage of a surface with that of a TIN and a grid; say why where that fails."""
     from geofit.checks.storage import equal_accuracy
 
@@ -147,7 +147,7 @@ def compared(surface: HorizonFit) -> tuple[Storage | None, tuple[Message, ...]]:
         None,
         lambda reason: missing.append(
             message(
-                "run.storage-not-compared",
+                "project.storage-not-compared",
                 "{name}: its storage was not compared: {reason}",
                 name=surface.name,
                 reason=reason,
@@ -165,7 +165,7 @@ def _write_bands(surface: HorizonFit, prediction: PredictionResult, stem: Path) 
     if prediction.uncertainty is None:
         return (
             message(
-                "run.no-90-surfaces-standard",
+                "project.no-band-without-deviation",
                 "{name}: no 90 % surfaces, its standard deviation is not known",
                 name=surface.name,
             ),
@@ -175,7 +175,7 @@ def _write_bands(surface: HorizonFit, prediction: PredictionResult, stem: Path) 
     def without(reason: Message) -> None:
         missing.append(
             message(
-                "run.no-90-surface", "{name}: a 90 % surface is missing: {reason}", name=surface.name, reason=reason
+                "project.band-missing", "{name}: a 90 % surface is missing: {reason}", name=surface.name, reason=reason
             )
         )
 

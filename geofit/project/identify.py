@@ -25,15 +25,22 @@ def point_lines(
     """Return what is known of a data point: source, file and row, elevation, residual (m)."""
     x, y, z = points.xyz[index].tolist()
     lines = [
-        message("identify.point", "{horizon}: {point}", horizon=Untranslated(horizon), point=points.describe(index)),
-        message("identify.place", "E {x:.2f}  N {y:.2f}  Z {z:.2f} m", x=x, y=y, z=z),
+        message(
+            "project.identified-point",
+            "{horizon}: {point}",
+            horizon=Untranslated(horizon),
+            point=points.describe(index),
+        ),
+        message("project.identified-place", "E {x:.2f}  N {y:.2f}  Z {z:.2f} m", x=x, y=y, z=z),
     ]
     if excluded:
-        lines.append(message("identify.excluded", "excluded from the fit"))
+        lines.append(message("project.identified-excluded", "excluded from the fit"))
     elif residual is not None and np.isfinite(residual):
-        lines.append(message("identify.residual", "residual {d:+.3f} m", d=residual))
+        lines.append(message("project.identified-residual", "residual {d:+.3f} m", d=residual))
     if np.isfinite(points.accuracy[index]):
-        lines.append(message("identify.accuracy", "stated accuracy {value:g} m", value=float(points.accuracy[index])))
+        lines.append(
+            message("project.identified-accuracy", "stated accuracy {value:g} m", value=float(points.accuracy[index]))
+        )
     return tuple(lines)
 
 
@@ -44,26 +51,28 @@ def hole_lines(site: Site, name: str, xyz: Floats | None = None) -> tuple[Messag
         return ()
     length = float(hole.depth[-1])
     lines = [
-        message("identify.hole", "{kind} {name}, {length:.1f} m", kind=hole.kind, name=Untranslated(name),
+        message("project.identified-hole", "{kind} {name}, {length:.1f} m", kind=hole.kind, name=Untranslated(name),
                 length=length),
-        message("identify.collar", "from E {x:.2f}  N {y:.2f}  Z {z:.2f} m", x=float(hole.xyz[0, 0]),
+        message("project.identified-collar", "from E {x:.2f}  N {y:.2f}  Z {z:.2f} m", x=float(hole.xyz[0, 0]),
                 y=float(hole.xyz[0, 1]), z=float(hole.xyz[0, 2])),
     ]  # fmt: skip
     if xyz is not None:
         depth = _depth(hole, xyz)
-        lines.append(message("identify.depth", "here {depth:.1f} m along it", depth=depth))
+        lines.append(message("project.identified-depth", "here {depth:.1f} m along it", depth=depth))
         for campaign in site.boreholes:
             for log in campaign.logs:
                 here = (log.hole == name) & (log.top <= depth) & (log.base > depth)
                 if here.any():
                     code = str(log.code[here][0])
                     lines.append(
-                        message("identify.logged", "{code} in {file}", code=Untranslated(code),
+                        message("project.identified-logged", "{code} in {file}", code=Untranslated(code),
                                 file=Untranslated(log.file))
                     )  # fmt: skip
     contacts = [horizon for horizon, points in site.horizons.items() if (points.hole == name).any()]
     if contacts:
-        lines.append(message("identify.contacts", "contacts of {names}", names=tuple(map(Untranslated, contacts))))
+        lines.append(
+            message("project.identified-contacts", "contacts of {names}", names=tuple(map(Untranslated, contacts)))
+        )
     return tuple(lines)
 
 
@@ -71,8 +80,8 @@ def surface_lines(surface: HorizonFit, xyz: Floats, uncertainty: Uncertainty | N
     """Return what is known of a surface at a place on it: elevation, dip, 90 % band where it was examined."""
     x, y, z = (float(value) for value in xyz)
     lines = [
-        message("identify.surface", "{name}: surface", name=Untranslated(surface.name)),
-        message("identify.place", "E {x:.2f}  N {y:.2f}  Z {z:.2f} m", x=x, y=y, z=z),
+        message("project.identified-surface", "{name}: surface", name=Untranslated(surface.name)),
+        message("project.identified-place", "E {x:.2f}  N {y:.2f}  Z {z:.2f} m", x=x, y=y, z=z),
     ]
     if surface.frame in ("map", ""):
         east, west, north, south = surface.elevation(
@@ -82,12 +91,16 @@ def surface_lines(surface: HorizonFit, xyz: Floats, uncertainty: Uncertainty | N
         if np.isfinite(slope).all():
             dip = float(np.degrees(np.arctan(np.hypot(*slope))))
             azimuth = float(np.degrees(np.arctan2(-slope[0], -slope[1]))) % 360
-            lines.append(message("identify.dip", "dip {dip:.0f}° towards {azimuth:03.0f}°", dip=dip, azimuth=azimuth))
+            lines.append(
+                message("project.dip-towards", "dip {dip:.0f}° towards {azimuth:03.0f}°", dip=dip, azimuth=azimuth)
+            )
         if uncertainty is not None and uncertainty.frame == "map":
             i, j = (int(np.abs(axis - value).argmin()) for axis, value in ((uncertainty.x, x), (uncertainty.y, y)))
             half = WIDTH * float(np.hypot(uncertainty.sd[j, i], uncertainty.noise))
             if np.isfinite(half):
-                lines.append(message("identify.band", "a new hole meets it within ± {half:.2f} m (90 %)", half=half))
+                lines.append(
+                    message("project.identified-band", "a new hole meets it within ± {half:.2f} m (90 %)", half=half)
+                )
     return tuple(lines)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from geofit.io.import_plan import Part, Plan, campaigns
+from geofit.io.import_plan import ImportPlan, TablePart, campaigns
 
 __all__ = ["Tables", "site_tables"]
 
@@ -16,7 +16,7 @@ _STATED = ("encoding", "sep", "decimal", "unit", "measure", "crs")
 
 
 def site_tables(
-    plan: Plan,
+    plan: ImportPlan,
     label: Mapping[str, Any],
     horizons: Sequence[Mapping[str, Any]],
     *,
@@ -29,11 +29,11 @@ def site_tables(
     no mapping file does.
     """
 
-    def as_value(part: Part) -> str | dict[str, Any]:
+    def as_value(part: TablePart) -> str | dict[str, Any]:
         keys = as_keys(part)
         return part.name if list(keys) == ["file"] else keys
 
-    def as_keys(part: Part) -> dict[str, Any]:
+    def as_keys(part: TablePart) -> dict[str, Any]:
         return _as_read(part) if stated else _named(part)
 
     blocks: Tables = [("[site]", dict(label))] if label else []
@@ -67,12 +67,12 @@ def site_tables(
     return blocks
 
 
-def _named(part: Part) -> dict[str, Any]:
+def _named(part: TablePart) -> dict[str, Any]:
     """Return a part as keys of its own table."""
     return {"file": part.name, **({"table": part.preview.table} if part.preview.table else {})}
 
 
-def _as_read(part: Part) -> dict[str, Any]:
+def _as_read(part: TablePart) -> dict[str, Any]:
     """Return a part as keys of its own table, with what its mapping states."""
     keys = {**_named(part), **{key: value for key in _STATED if (value := getattr(part.mapping, key)) is not None}}
     if part.mapping.horizons:

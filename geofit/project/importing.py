@@ -22,7 +22,7 @@ from geofit.io.columns import SCHEMAS
 from geofit.io.contacts import load_contacts
 from geofit.io.grid import load_ground
 from geofit.io.guess import taken_as
-from geofit.io.import_plan import Part, Plan, campaigns, complete, look_at
+from geofit.io.import_plan import ImportPlan, TablePart, campaigns, complete, look_at
 from geofit.io.journal import Journal
 from geofit.io.mapping import ColumnMapping, save_mappings
 from geofit.io.site_file import build_site
@@ -98,21 +98,21 @@ def import_files(
     site_file = Path(site_file)
     if not files:
         raise InputError(
-            message("import.no-file-given", "No file is given"),
-            message("import.name-tables-drawings-maps", "Name the tables, drawings, maps and grids of the site."),
+            message("project.no-file-given", "No file is given"),
+            message("project.name-files", "Name the tables, drawings, maps and grids of the site."),
         )
     if legible(site_file.name) != site_file.name:
         raise InputError(
             message(
-                "import.site-file-name-not-utf8",
+                "project.site-file-name-not-utf8",
                 "The name of the site file is not UTF-8, and its mapping file cannot name it",
             ),
-            message("import.choose-another-name", "Choose another name."),
+            message("data.choose-another-name", "Choose another name."),
             file=legible(str(site_file)),
         )
     folder = site_file.parent
     folder.mkdir(parents=True, exist_ok=True)
-    plan = Plan()
+    plan = ImportPlan()
     for i, file in enumerate(files):
         tell(progress, "inspect files", 0.3 * i / len(files))
         look_at(Path(file), folder, mappings, crs, plan)
@@ -142,23 +142,23 @@ def import_files(
     return Import(site, site_file, mapping_file, issue_file, issues, counts)
 
 
-def _guesses(plan: Plan) -> list[ImportIssue]:
+def _guesses(plan: ImportPlan) -> list[ImportIssue]:
     """Return a note for each guess that the mapping file now states."""
     notes = []
     for part in (part for parts in plan.parts.values() for part in parts):
         preview, name = part.preview, part.source.name
         others = tuple(
-            message("import.kind-merit", "{kind} {merit:.2f}", kind=kind, merit=merit)
+            message("project.kind-merit", "{kind} {merit:.2f}", kind=kind, merit=merit)
             for kind, merit in list(preview.kinds.items())[1:4]
         )
         reason = message(
-            "import.taken-confidence",
+            "project.kind-taken",
             "Taken as {kind}, confidence {confidence:.2f}",
             kind=preview.kind,
             confidence=preview.confidence,
         )
         if others:
-            reason = message("import.table-alternatives", "{text}; else {others}", text=reason, others=others)
+            reason = message("project.table-alternatives", "{text}; else {others}", text=reason, others=others)
         notes.append(
             ImportIssue(
                 name,
@@ -167,20 +167,20 @@ def _guesses(plan: Plan) -> list[ImportIssue]:
                 "",
                 "note",
                 reason,
-                message("import.state-kind-mapping-file", "State another kind in the mapping file."),
+                message("project.state-kind-in-mapping", "State another kind in the mapping file."),
             )
         )
         for guess in preview.roles:
             if guess.stated:
                 continue
-            remedy = message("import.name-column-mapping-file", "Name another column in the mapping file.")
+            remedy = message("project.name-column-in-mapping", "Name another column in the mapping file.")
             severity: Literal["note", "warning"] = "warning" if guess.basis == "values" else "note"
             notes.append(ImportIssue(name, 0, guess.column, "", severity, taken_as(guess), remedy))
     return notes
 
 
 def _horizons(
-    plan: Plan,
+    plan: ImportPlan,
     site_file: Path,
     mapping_file: Path,
     crs: str,
@@ -207,7 +207,7 @@ def _horizons(
     return limits + [{"name": name} for name in others if name.casefold() not in limited]
 
 
-def _ground(plan: Plan) -> Ground | None:
+def _ground(plan: ImportPlan) -> Ground | None:
     for part in plan.of("ground")[:1]:
         try:
             return load_ground(part.mapping.fill(part.source), Journal())
@@ -216,7 +216,7 @@ def _ground(plan: Plan) -> Ground | None:
     return None
 
 
-def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[str, Any]]:
+def _limits(plan: ImportPlan, base: Sequence[str], top: Sequence[str]) -> list[dict[str, Any]]:
     """Return the limits that are asked for, or the base of each code with enough contacts, the highest first."""
     pairs = [*(("base", code) for code in base), *(("top", code) for code in top)]
     asked = [{"name": _name(limit, code), limit: code} for limit, code in pairs]
@@ -251,14 +251,14 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
             "",
             "note",
             message(
-                "import.base-codes-fewer-contacts",
+                "project.codes-without-horizon",
                 "The base of {count} codes has fewer than {least} contacts and gives no horizon: {names}",
                 count=len(few),
                 least=FEWEST_CONTACTS,
                 names=names,
             ),
             message(
-                "import.add-horizon-site-file",
+                "project.add-horizon-to-site-file",
                 "Add a [[horizon]] to the site file where needed (--base, --top).",
             ),
         )
@@ -270,8 +270,8 @@ def _limits(plan: Plan, base: Sequence[str], top: Sequence[str]) -> list[dict[st
 
 def _name(limit: str, code: str) -> Message:
     if limit == "top":
-        return message("import.top-of-stratum", "top of {code}", code=Untranslated(code))
-    return message("import.base-of-stratum", "base of {code}", code=Untranslated(code))
+        return message("project.top-of-stratum", "top of {code}", code=Untranslated(code))
+    return message("project.base-of-stratum", "base of {code}", code=Untranslated(code))
 
 
 def _label(site_file: Path, mapping_file: Path, crs: str) -> dict[str, Any]:
@@ -279,11 +279,11 @@ def _label(site_file: Path, mapping_file: Path, crs: str) -> dict[str, Any]:
     return {"name": site_file.stem, **({"crs": crs} if crs else {}), "mapping": mapping_file.name}
 
 
-def _parts(plan: Plan) -> list[Part]:
+def _parts(plan: ImportPlan) -> list[TablePart]:
     return [part for parts in plan.parts.values() for part in parts if part.preview.kind in SCHEMAS]
 
 
-def _read(tables: Tables, plan: Plan, site_file: Path) -> Site:
+def _read(tables: Tables, plan: ImportPlan, site_file: Path) -> Site:
     """Read the site that the tables describe, before anything is written."""
     top: dict[str, Any] = {}
     for head, table in tables:
@@ -294,7 +294,7 @@ def _read(tables: Tables, plan: Plan, site_file: Path) -> Site:
     return build_site(top, site_file, Journal(), mappings=[part.mapping for part in _parts(plan)])
 
 
-def _write(tables: Tables, plan: Plan, site_file: Path, mapping_file: Path) -> None:
+def _write(tables: Tables, plan: ImportPlan, site_file: Path, mapping_file: Path) -> None:
     """Write the mapping and the site file that refers to it."""
     parts = _parts(plan)
     remarks = {

@@ -38,14 +38,14 @@ def interventions_of(site: Site, provenance: Provenance) -> tuple[PointSet | Non
 def _in_words(edit: ManualEdit | SeparationEdit) -> Message:
     if isinstance(edit, SeparationEdit):
         return message(
-            "edit.separated",
+            "project.separated",
             "separated from {others} to at least {minimum:g} m",
             others=tuple(edit.sequence),
             minimum=edit.minimum,
         )
     if isinstance(edit, Move):
         return message(
-            "edit.moved",
+            "project.moved",
             "control point ({i}, {j}) of patch {patch} moved by {dz:+.3f} m",
             i=edit.i,
             j=edit.j,
@@ -54,13 +54,13 @@ def _in_words(edit: ManualEdit | SeparationEdit) -> Message:
         )
     if isinstance(edit, MoveToPointEdit):
         return message(
-            "edit.pulled",
+            "project.moved-towards-point",
             "pulled towards point {number} by {share:.0f} % of its residual",
             number=edit.index + 1,
             share=100 * edit.share,
         )
     return message(
-        "edit.weighed",
+        "project.weighed",
         "control point ({i}, {j}) of patch {patch} given the weight {weight:g}",
         i=edit.i,
         j=edit.j,

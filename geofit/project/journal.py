@@ -34,7 +34,7 @@ from geofit.project.commands import Command, command_from
 from geofit.project.saving import earlier_data, saved_data
 from geofit.project.state import State
 
-__all__ = ["Journal", "Unfinished", "unfinished"]
+__all__ = ["SessionJournal", "Unfinished", "unfinished"]
 
 FORMAT, VERSION = "geofit journal", 1
 _SUFFIX, _KEPT = ".journal", ".unreadable"
@@ -42,7 +42,7 @@ _SUFFIX, _KEPT = ".journal", ".unreadable"
 _LOG = logging.getLogger(__name__)
 
 
-class Journal:
+class SessionJournal:
     """The journal of this session; ``folder`` is created if missing."""
 
     def __init__(self, folder: Path, state: State, site_file: Path | None, project_file: Path | None) -> None:

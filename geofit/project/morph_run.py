@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from geofit.geometry.mesh import Mesh
     from geofit.implicit.mesh import TriangleMesh
     from geofit.morphing.sequence import Morph
-    from geofit.morphing.table import Row
+    from geofit.morphing.table import FrameRow
 
 __all__ = ["FRAME_FORMATS", "MorphRun", "run_morph", "stratum_volumes"]
 
@@ -40,7 +40,7 @@ class MorphRun:
     """A metamorphosis, its table, the STEP file of one frame as read back, and all files that were written."""
 
     morph: Morph
-    rows: tuple[Row, ...]
+    rows: tuple[FrameRow, ...]
     read_back: SolidReadBack | None
     files: tuple[Path, ...]
     strata: tuple[Mapping[str, float], ...] = ()
@@ -231,7 +231,7 @@ _WRITERS: dict[str, Callable[[Sequence[MorphBody], Sequence[Mesh], Path], list[P
 }  # fmt: skip
 
 
-def _table(rows: Sequence[Row], path: Path) -> Path:
+def _table(rows: Sequence[FrameRow], path: Path) -> Path:
     with replacing(path) as part, part.open("w", encoding="utf-8-sig", newline="") as stream:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(COLUMNS)

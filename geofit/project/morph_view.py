@@ -11,13 +11,13 @@ from typing import TYPE_CHECKING, Any
 from geofit.bodies.settings import BodySettings
 from geofit.data.progress import Progress, tell
 from geofit.project.body_building import BodyResult, MeshBody
-from geofit.project.body_record import BodyProvenance, Frame
+from geofit.project.body_record import BodyProvenance, MorphFrame
 from geofit.project.morph_run import MorphRun, run_morph
 
 if TYPE_CHECKING:
     from geofit.morphing.body import MorphBody
     from geofit.morphing.sequence import Morph
-    from geofit.morphing.table import Event, Row
+    from geofit.morphing.table import Event, FrameRow
 
 __all__ = [
     "FULL",
@@ -26,9 +26,9 @@ __all__ = [
     "end_shape",
     "export_frames",
     "finished",
+    "frame_as_body",
     "frame_body",
     "previewed",
-    "taken",
     "way_of",
 ]
 
@@ -49,9 +49,9 @@ class MorphWay:
     dates: tuple[str, ...] = ()
     seeds: bool = False
 
-    def frame(self, tau: float) -> Frame:
+    def frame(self, tau: float) -> MorphFrame:
         """Return the source of a frame as a body of its own."""
-        return Frame(self.ends, self.names, self.mode, self.pace, self.dates, FULL, tau, self.seeds)
+        return MorphFrame(self.ends, self.names, self.mode, self.pace, self.dates, FULL, tau, self.seeds)
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class MorphView:
     preview: Morph
     events: tuple[Event, ...]
     full: Morph | None = None
-    rows: tuple[Row, ...] = ()
+    rows: tuple[FrameRow, ...] = ()
 
 
 def end_shape(result: BodyResult) -> Any:
@@ -111,7 +111,7 @@ def frame_body(full: Morph, tau: float, *, progress: Progress) -> MorphBody:
     return body
 
 
-def taken(view: MorphView, tau: float, name: str, given: Sequence[str]) -> tuple[BodyProvenance, BodyResult]:
+def frame_as_body(view: MorphView, tau: float, name: str, given: Sequence[str]) -> tuple[BodyProvenance, BodyResult]:
     """Return a frame as a body of the document; ``given`` are the hashes of the data of its ends."""
     assert view.full is not None
     body = replace(view.full(tau), name=name)

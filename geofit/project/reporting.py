@@ -76,10 +76,10 @@ def _parts(
         body, volumes = result.fitted, result.volumes
         if body is None or volumes is None:
             continue
-        tell(progress, message("run.stage-of", "{name}: {stage}", name=name, stage="body"), 0.0)
+        tell(progress, message("data.stage-of-name", "{name}: {stage}", name=name, stage="body"), 0.0)
         part = body_part(replace(body, name=name), volumes, None, horizons, language(code))
         if isinstance(part, Message):
-            failed.append(message("run.body-unreported", "Body {name}: {reason}", name=name, reason=part))
+            failed.append(message("project.body-unreported", "Body {name}: {reason}", name=name, reason=part))
         else:
             parts.append(part)
     return parts, failed

@@ -43,7 +43,7 @@ class ExcludeRows(_RowCommand):
     def text(self) -> Message:  # noqa: D102
         first = self.rows[0]
         return plural_message(
-            "step.exclude",
+            "project.step-exclude",
             "Exclude {file} row {row} from {name}",
             "Exclude {count} rows from {name}, the first {file} row {row}",
             count=len(self.rows),
@@ -78,7 +78,7 @@ class IncludeRows(_RowCommand):
     def text(self) -> Message:  # noqa: D102
         first = self.rows[0]
         return plural_message(
-            "step.include",
+            "project.step-include",
             "Include {file} row {row} in {name}",
             "Include {count} rows in {name}, the first {file} row {row}",
             count=len(self.rows),

@@ -15,7 +15,7 @@ from geofit.data.languages import EN, Language
 from geofit.data.messages import EMPTY, Message, message
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Section, Site
-from geofit.project.horizon_files import Made, compared, section_profiles, write_horizon
+from geofit.project.horizon_files import Made, section_profiles, storage_compared, write_horizon
 from geofit.project.side_by_side import Crew, crew
 from geofit.project.single_reports import BodyPart, write_body_part
 from geofit.report.result import HorizonResult
@@ -300,7 +300,7 @@ def write_reports(
     """
     from geofit.prediction.examine import examine
     from geofit.report.gather import accuracy_report
-    from geofit.report.pictures import Pictures, draw, draw_sections, draw_site
+    from geofit.report.pictures import Pictures, draw_pictures, draw_sections, draw_site
     from geofit.report.profile import report_sections
     from geofit.site.fit_site import SiteFit
 
@@ -321,7 +321,7 @@ def write_reports(
         if examined and result.prediction is None:
             result = replace(result, prediction=examine(result.surface, _within(progress, low, 0.6 * high + 0.4 * low)))
         if result.storage is None:
-            storage, missing = compared(result.surface)
+            storage, missing = storage_compared(result.surface)
             result = replace(result, storage=storage)
             warnings += missing
         profiles, uncut = section_profiles(result, sections)
@@ -329,7 +329,7 @@ def write_reports(
         warnings += uncut
         if pictured:
             part("pictures", 0.6)
-            images |= draw(result, language).images
+            images |= draw_pictures(result, language).images
         made.append(result)
     tell(progress, "report", 0.9)
     if fits is None:
@@ -353,7 +353,7 @@ def _within(progress: Progress | None, low: float, high: float, name: str = "") 
     def listen(stage: str | Message, fraction: float, /) -> None:
         tell(
             progress,
-            message("run.stage-of", "{name}: {stage}", name=name, stage=stage) if name else stage,
+            message("data.stage-of-name", "{name}: {stage}", name=name, stage=stage) if name else stage,
             low + (high - low) * fraction,
         )
 
@@ -362,17 +362,17 @@ def _within(progress: Progress | None, low: float, high: float, name: str = "") 
 
 def _orders(site: Site, fits: SiteFit) -> tuple[tuple[Order, ...] | None, Message]:
     """Compare the horizons of the site's order that were fitted; None and the reason where that is not possible."""
-    from geofit.site.fit_site import compare
+    from geofit.site.fit_site import compare_in_order
 
     if site.order and len([name for name in site.order if name in fits.horizon.values()]) < 2:
         return None, EMPTY
     missing: list[Message] = []
     compared = guarded(
-        lambda: compare(site, fits),
+        lambda: compare_in_order(site, fits),
         None,
         lambda reason: missing.append(
             message(
-                "run.order-horizons-not-examined",
+                "project.order-not-examined",
                 "The order of the horizons was not examined: {reason}",
                 reason=reason,
             )
@@ -436,8 +436,8 @@ def _chosen(site: Site, horizons: Sequence[str]) -> list[str]:
     unknown = [name for name in horizons if name not in site.horizons]
     if unknown:
         raise InputError(
-            message("run.no-horizon", "There is no horizon '{name}'", name=unknown[0]),
-            message("run.known-horizons", "The horizons are: {names}.", names=", ".join(site.horizons)),
+            message("data.horizon-unknown", "There is no horizon '{name}'", name=unknown[0]),
+            message("data.known-horizons", "The horizons are: {names}.", names=", ".join(site.horizons)),
             file=site.name,
         )
     return [name for name in site.horizons if not horizons or name in horizons]
@@ -448,7 +448,7 @@ def _make(out: Path) -> None:
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(
-            message("run.folder-cannot", "The folder cannot be made: {error}", error=error.strerror or str(error)),
-            message("run.name-other-folder", "Name another one with --out."),
+            message("data.folder-not-made", "The folder cannot be made: {error}", error=error.strerror or str(error)),
+            message("project.name-other-folder", "Name another one with --out."),
             file=str(out),
         ) from None

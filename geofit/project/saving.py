@@ -37,7 +37,7 @@ __all__ = [
     "project_of",
     "read_again",
     "read_project",
-    "read_surfaces",
+    "read_saved_surfaces",
     "save_state",
     "saved_data",
     "state_of",
@@ -76,15 +76,15 @@ def read_project(path: Path, progress: Progress | None = None) -> Opened:
     source = next((source for source in project.sources if source.role == _SITE), None)
     if source is None:
         raise InputError(
-            message("project.project-names-no-site", "The project names no site file"),
-            message("project.open-site-file-site", "Open the site file (site.toml) instead."),
+            message("project.no-site-file", "The project names no site file"),
+            message("project.open-site-file", "Open the site file (site.toml) instead."),
             file=str(path),
         )
     site_file = (path.parent / source.path).resolve()
     if not site_file.is_file():
         raise InputError(
-            message("project.project-site-file-not", "The project's site file is not there any more"),
-            message("project.put-back-open-site", "Put it back, or open the site file where it is now."),
+            message("project.site-file-gone", "The project's site file is not there any more"),
+            message("project.put-site-file-back", "Put it back, or open the site file where it is now."),
             file=str(site_file),
         )
     site = read_site(site_file, progress, added=_added(project))
@@ -144,7 +144,9 @@ def save_state(
     return Written(path, state, write_project(project, path, new_surfaces(project, surfaces), meshes))
 
 
-def read_surfaces(project: Project, folder: Path, site: Site, *, progress: Progress) -> dict[Provenance, HorizonFit]:
+def read_saved_surfaces(
+    project: Project, folder: Path, site: Site, *, progress: Progress
+) -> dict[Provenance, HorizonFit]:
     """Read and check the surfaces of a project whose horizons the site still has."""
     tell(progress, "read STEP", 0.0)
     found = saved_surfaces(project, folder)

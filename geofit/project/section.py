@@ -43,12 +43,12 @@ def section(
     if not any(cuts.values()):
         raise InputError(
             message(
-                "export.section-line-meets-no",
+                "project.section-line-off-horizons",
                 "The section line from {first} to {last} meets no horizon",
                 first=corners[0].tolist(),
                 last=corners[-1].tolist(),
             ),
-            message("export.give-surfaces-map-coordinates", "Give it in the surfaces' map coordinates, metres."),
+            message("project.give-map-coordinates", "Give it in the surfaces' map coordinates, metres."),
         )
     out.mkdir(parents=True, exist_ok=True)
     files = [out / name for name in ("section.dxf", "section_3d.dxf", "section.csv", "section.png")]
@@ -74,10 +74,8 @@ def read_line(text: str) -> Floats:
         return _line_file(Path(text))
     if len(values) < 4 or len(values) % 2 or not all(map(math.isfinite, values)):
         raise InputError(
-            message(
-                "export.numbers-given-section-line", "Numbers given for the section line: {count}", count=len(values)
-            ),
-            message("export.give-x0-y0-x1", "Give x0,y0,x1,y1, metres; further corners add two numbers each."),
+            message("project.section-line-numbers", "Numbers given for the section line: {count}", count=len(values)),
+            message("project.give-two-corners", "Give x0,y0,x1,y1, metres; further corners add two numbers each."),
             value=text,
         )
     return np.array(values).reshape(-1, 2)
@@ -91,8 +89,8 @@ def _line_file(path: Path) -> Floats:
 
     if not path.is_file():
         raise InputError(
-            message("import.file-missing", "There is no such file"),
-            message("export.give-file-columns-x0", "Give a file with columns x and y, or x0,y0,x1,y1."),
+            message("data.file-missing", "There is no such file"),
+            message("project.give-line-or-file", "Give a file with columns x and y, or x0,y0,x1,y1."),
             file=str(path),
         )
     journal = Journal()

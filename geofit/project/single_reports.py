@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from geofit.project.body_run import BodyRun
     from geofit.project.pores_run import PoresRun
     from geofit.report.body_chapter import BodyFindings
-    from geofit.report.document import Chapter, Document
+    from geofit.report.document import Chapter, ReportDocument
 
 __all__ = [
     "BodyPart",
@@ -77,7 +77,7 @@ def _findings(
     progress: Progress | None = None,
 ) -> tuple[BodyFindings, dict[str, bytes]]:
     from geofit.bodies.crossval import leave_one_hole_out
-    from geofit.bodies.drilling import suggest_holes
+    from geofit.bodies.drilling import suggest_body_holes
     from geofit.bodies.strata import strata_table
     from geofit.report.body_chapter import BodyFindings
     from geofit.report.body_pictures import draw_body
@@ -87,7 +87,7 @@ def _findings(
     def tried(work: Callable[[], T], instead: T, what: Message) -> T:
         def failed(reason: Message) -> None:
             missing.append(
-                message("run.not-examined", "{what} could not be examined: {reason}", what=what, reason=reason)
+                message("project.not-examined", "{what} could not be examined: {reason}", what=what, reason=reason)
             )
 
         return guarded(work, instead, failed)
@@ -99,15 +99,17 @@ def _findings(
         over = reaching(body, horizons)
         if over:
             strata = tried(
-                lambda: strata_table(body, over), strata, message("run.what-strata", "the volume in each stratum")
+                lambda: strata_table(body, over), strata, message("project.task-strata", "the volume in each stratum")
             )
     tell(progress, "holes left out", 0.2)
     left_out = tried(
-        lambda: leave_one_hole_out(body, LEFT_OUT), None, message("run.what-left-out", "the error at holes left out")
+        lambda: leave_one_hole_out(body, LEFT_OUT),
+        None,
+        message("project.task-left-out", "the error at holes left out"),
     )
     tell(progress, "suggested boreholes", 0.7)
     suggested = tried(
-        lambda: suggest_holes(body, SUGGESTED), none, message("run.what-suggested", "where to drill next")
+        lambda: suggest_body_holes(body, SUGGESTED), none, message("project.task-suggested", "where to drill next")
     )
     tell(progress, "pictures", 0.8)
     images, no_space = draw_body(body, t)
@@ -225,7 +227,7 @@ def write_pores_report(
     if run.balls is None or run.surface is None or run.table is None or not isinstance(run.volume, RockVolume):
         raise SettingsError(
             message(
-                "run.pores-report-slabs",
+                "project.pores-report-needs-memory",
                 "The report of a rock volume shows its surface, which needs all voxels at once. Leave out --slabs, or "
                 "--report.",
             )
@@ -242,7 +244,7 @@ def write_pores_report(
     return _written(document, images, out, name)
 
 
-def _written(document: Document, images: Mapping[str, bytes], out: Path, name: str) -> tuple[Path, Path]:
+def _written(document: ReportDocument, images: Mapping[str, bytes], out: Path, name: str) -> tuple[Path, Path]:
     from geofit.data.files import file_stems
     from geofit.report.html import write_html
     from geofit.report.pdf import write_pdf

@@ -79,8 +79,8 @@ def write_report(
             given = list(fits)
     if not given:
         raise InputError(
-            message("run.no-fit", "There is no fit to report"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("project.nothing-to-report", "There is no fit to report"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(folder),
         )
     place = site or Site(name=", ".join(fit.name for fit in given), horizons={fit.name: fit.points for fit in given})

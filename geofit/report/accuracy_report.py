@@ -22,9 +22,9 @@ __all__ = [
     "ConflictLine",
     "ContactLine",
     "ContradictionLine",
-    "CutLine",
     "CutPlace",
     "DipLine",
+    "FaultCutLine",
     "FileCheck",
     "GroupLine",
     "HorizonReport",
@@ -244,7 +244,7 @@ class CutPlace:
 
 
 @dataclass(frozen=True)
-class CutLine:
+class FaultCutLine:
     """The displacement of a horizon along a fault, between the block ``up`` and the block ``down``; metres.
 
     ``places`` follow the trace, ``length`` is the distance from the first to the last.
@@ -479,7 +479,7 @@ class AccuracyReport:
     failures: Mapping[str, Message]
     orders: tuple[OrderLine, ...] | None
     contradictions: tuple[ContradictionLine, ...]
-    cuts: tuple[CutLine, ...]
+    cuts: tuple[FaultCutLine, ...]
     inputs: tuple[InputFile, ...]
     issues: Mapping[str, int]
     rejected: tuple[RejectedRow, ...]

@@ -13,7 +13,7 @@ from geofit.data.setting_texts import SETTINGS
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport
 from geofit.report.checks_table import check_table
-from geofit.report.document import Block, Chapter, Column, Heading, Mark, Paragraph, Table
+from geofit.report.document import Block, Chapter, CheckMark, Column, Heading, Paragraph, ReportTable
 from geofit.report.group_tables import doubled, group_blocks
 from geofit.report.point_table import point_cells, point_columns
 
@@ -22,14 +22,14 @@ __all__ = ["horizon_annex", "inputs_annex"]
 #: Rows of a list in the document; the JSON and the CSV hold all of them.
 LONGEST = 40
 _FIT = {
-    "control_points": message("report.control-points", "Control points"),
+    "control_points": message("data.control-points", "Control points"),
     "energy": message("report.bending-energy", "Bending energy"),
     "iterations": message("report.iterations", "Iterations"),
     "order": message("report.derivative-energy", "Derivative in the energy"),
     "noise": message("report.noise", "Noise, m"),
     "spacing": message("report.spacing", "Spacing, m"),
     "noise_limit": message("report.noise-limit", "Largest noise that a point may have, m"),
-    "by_hand": message("report.by-hand", "Changes by hand"),
+    "by_hand": message("report.manual-edits", "Changes by hand"),
 }
 
 
@@ -49,7 +49,7 @@ def horizon_annex(report: AccuracyReport, t: Language) -> Chapter:
 
 
 def _dense(blocks: Iterable[Block]) -> tuple[Block, ...]:
-    return tuple(replace(block, dense=True) if isinstance(block, Table) else block for block in blocks)
+    return tuple(replace(block, dense=True) if isinstance(block, ReportTable) else block for block in blocks)
 
 
 def more(total: int, shown: int, where: str, t: Language) -> list[Block]:
@@ -64,7 +64,7 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
     blocks: list[Block] = [
         Heading(t("Files")),
         Paragraph(t("Rows read = rows used + rows listed. SHA-256 shows whether a file is the one that was read.")),
-        Table(
+        ReportTable(
             (
                 Column(t("File"), "wide"),
                 Column(t("Rows read"), "number"),
@@ -91,7 +91,7 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
     if report.rejected:
         rows = tuple(
             (
-                Mark(False, t("not used")) if r.severity == "error" else Mark(None, t("warning")),
+                CheckMark(False, t("not used")) if r.severity == "error" else CheckMark(None, t("warning")),
                 r.file,
                 str(r.row) if r.row else "–",
                 r.column or "–",
@@ -108,10 +108,10 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
             Column(t("Value")),
             Column(t("Reason and remedy"), "wide"),
         )
-        blocks.append(Table(columns, rows))
+        blocks.append(ReportTable(columns, rows))
         blocks += more(len(report.rejected), LONGEST, "import_issues.csv", t)
     blocks.append(Heading(t("Versions")))
-    blocks.append(Table((Column(t("Program")), Column(t("Version"))), tuple(report.versions.items())))
+    blocks.append(ReportTable((Column(t("Program")), Column(t("Version"))), tuple(report.versions.items())))
     blocks.append(
         Paragraph(
             t(
@@ -127,14 +127,14 @@ def _inputs(report: AccuracyReport, t: Language) -> list[Block]:
 def _worst(h: HorizonReport, t: Language) -> list[Block]:
     columns = (*point_columns(t), Column(t("Patch")), Column(t("d, m"), "number"))
     rows = tuple((*point_cells(p, t), translate(p.patch, t), digits.metres(p.residual)) for p in h.worst)
-    return [Heading(t("The {count} largest residuals", count=len(h.worst)), 3), Table(columns, rows)]
+    return [Heading(t("The {count} largest residuals", count=len(h.worst)), 3), ReportTable(columns, rows)]
 
 
 def _seams(h: HorizonReport, t: Language) -> list[Block]:
     return [Heading(t("Seams"), 3), _seam_table(h, t) if h.seams else Paragraph(t("One patch: no seams."))]
 
 
-def _seam_table(h: HorizonReport, t: Language) -> Table:
+def _seam_table(h: HorizonReport, t: Language) -> ReportTable:
     """Lay out the seams of the surface, and beside them what the reader found in the file."""
     seams = {(s.first, s.second): s for s in h.seams}
     back = {(s.first, s.second): s for s in (h.read_back.seams if h.read_back else ())}
@@ -150,7 +150,7 @@ def _seam_table(h: HorizonReport, t: Language) -> Table:
         found = (seams.get((a, b)), back.get((a, b)) or back.get((b, a)))
         figures = [value for seam in found for value in ((seam.gap, seam.angle) if seam else (None, None))]
         rows.append((f"{translate(a, t)} – {translate(b, t)}", *(digits.metres(value) for value in figures)))
-    return Table(columns, tuple(rows))
+    return ReportTable(columns, tuple(rows))
 
 
 def _read_back(h: HorizonReport, t: Language) -> list[Block]:
@@ -194,7 +194,7 @@ def _made(h: HorizonReport, t: Language) -> list[Block]:
     )
     blocks: list[Block] = [
         Heading(t("Settings and figures of the fit"), 3),
-        Table(
+        ReportTable(
             (
                 Column(t("Setting")),
                 Column(t("Value"), "wide"),
@@ -216,5 +216,7 @@ def _made(h: HorizonReport, t: Language) -> list[Block]:
             control=digits.count(storage.control_points),
         )
         blocks.append(Paragraph(text))
-    table = Table((Column(t("Patch")), Column(t("Degree"), "number"), Column(t("Control points"), "number")), patches)
+    table = ReportTable(
+        (Column(t("Patch")), Column(t("Degree"), "number"), Column(t("Control points"), "number")), patches
+    )
     return [*blocks, doubled(table) if len(patches) > 2 else table]

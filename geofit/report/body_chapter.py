@@ -15,14 +15,14 @@ from geofit.report.document import (
     Block,
     Cell,
     Chapter,
+    CheckMark,
     Column,
     Facts,
     Heading,
-    Mark,
     Paragraph,
     Picture,
-    Table,
-    Verdict,
+    ReportTable,
+    VerdictMark,
 )
 from geofit.report.gather import check_lines
 
@@ -84,7 +84,9 @@ def body_chapter(found: BodyFindings, t: Language) -> Chapter:
     blocks += _pictures(found, t)
     blocks += [*_volumes(found, t), *_logged(a, t), *_checks(found, t), *_left_out(found, t), *_holes(found, t)]
     blocks += _issues(found, t)
-    return Chapter(t("Body {name}", name=name), tuple(blocks), Verdict(a.passed, t("PASS") if a.passed else t("FAIL")))
+    return Chapter(
+        t("Body {name}", name=name), tuple(blocks), VerdictMark(a.passed, t("PASS") if a.passed else t("FAIL"))
+    )
 
 
 def _sentence(a: BodyAccuracy, t: Language) -> str:
@@ -153,7 +155,7 @@ def _volumes(found: BodyFindings, t: Language) -> list[Block]:
         "Percentiles are over conditional simulations that honour every contact and sample: in 10 % of them the volume "
         "is below P10, in 90 % below P90."
     )
-    return [Heading(t("Volume")), Table(head, tuple(rows)), Paragraph(text, "quiet")]
+    return [Heading(t("Volume")), ReportTable(head, tuple(rows)), Paragraph(text, "quiet")]
 
 
 def _percentiles(v: BodyVolumes) -> tuple[str, ...]:
@@ -172,7 +174,7 @@ def _logged(a: BodyAccuracy, t: Language) -> list[Block]:
         )
     )
     sides = t("Samples on the wrong side: {count}.", count=a.wrong_side)
-    return [Heading(t("Violations"), 3), Table(head, rows), Paragraph(sides)]
+    return [Heading(t("Violations"), 3), ReportTable(head, rows), Paragraph(sides)]
 
 
 def _checks(found: BodyFindings, t: Language) -> list[Block]:
@@ -222,7 +224,7 @@ def _left_out(found: BodyFindings, t: Language) -> list[Block]:
         )
         for name, score in found.left_out.methods.items()
     )
-    blocks.append(Table(head, rows))
+    blocks.append(ReportTable(head, rows))
     worst = found.left_out.methods.get("body")
     if worst is not None:
         blocks += _worst_holes(worst.holes, t)
@@ -241,7 +243,7 @@ def _worst_holes(holes: Sequence[object], t: Language) -> list[Block]:
         return []
     head = (Column(t("Hole")), Column(t("Wrong side, m"), "number"), Column(t("Logged, m"), "number"))
     rows = tuple((one.hole, digits.place(one.misclassified), digits.place(one.logged)) for one in scores[:5])
-    return [Heading(t("Holes that are predicted worst"), 3), Table(head, rows)]
+    return [Heading(t("Holes that are predicted worst"), 3), ReportTable(head, rows)]
 
 
 def _holes(found: BodyFindings, t: Language) -> list[Block]:
@@ -272,13 +274,13 @@ def _holes(found: BodyFindings, t: Language) -> list[Block]:
                 f"{digits.count(one.sd_before)} → {digits.count(one.sd_after)}",
             )
         )
-    return [*blocks, Table(head, tuple(rows))]
+    return [*blocks, ReportTable(head, tuple(rows))]
 
 
 def _band(band: object) -> str:
-    from geofit.bodies.planned import Band
+    from geofit.bodies.planned import PercentileBand
 
-    return f"{band.p50:.1f} ({band.p10:.1f}–{band.p90:.1f})" if isinstance(band, Band) else "–"
+    return f"{band.p50:.1f} ({band.p10:.1f}–{band.p90:.1f})" if isinstance(band, PercentileBand) else "–"
 
 
 def _issues(found: BodyFindings, t: Language) -> list[Block]:
@@ -286,12 +288,12 @@ def _issues(found: BodyFindings, t: Language) -> list[Block]:
     if not issues:
         return []
     rows: list[tuple[Cell, ...]] = [
-        (Mark(None, t("used")) if one.used else Mark(False, t("not used")), sentence(one.text, t))
+        (CheckMark(None, t("used")) if one.used else CheckMark(False, t("not used")), sentence(one.text, t))
         for one in issues[:LONGEST]
     ]
     blocks: list[Block] = [
         Heading(t("Data to look at")),
-        Table((Column(t("What")), Column(t("Finding"), "wide")), tuple(rows)),
+        ReportTable((Column(t("What")), Column(t("Finding"), "wide")), tuple(rows)),
     ]
     if len(issues) > LONGEST:
         text = t("{file} lists {count} more.", count=len(issues) - LONGEST, file=f"{found.body.name}.json")

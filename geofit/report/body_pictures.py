@@ -14,7 +14,7 @@ from geofit.report.body_chapter import body_picture
 from geofit.report.box import draw_boxed
 from geofit.report.pictures import DOTS, TYPE, WIDTH, png
 from geofit.report.scene import mesh_scene
-from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing, quiet
+from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing, quiet_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -90,7 +90,7 @@ def _sections(body: BodyFit, t: Language) -> bytes:
 def _section(axes: Axes, body: BodyFit, ways: tuple[int, int, int], low: Floats, high: Floats, middle: Floats) -> None:
     from matplotlib.ticker import MaxNLocator
 
-    from geofit.bodies.posterior import Posterior
+    from geofit.bodies.posterior import BodyPosterior
 
     across, along, up = ways
     step = float((high - low)[[along, up]].max()) / NODES
@@ -98,7 +98,7 @@ def _section(axes: Axes, body: BodyFit, ways: tuple[int, int, int], low: Floats,
     places = np.empty((len(z), len(s), 3))
     places[..., along], places[..., up], places[..., across] = s, z[:, None], middle[across]
     flat = places.reshape(-1, 3)
-    chance = Posterior(body).probability(flat).reshape(places.shape[:2])
+    chance = BodyPosterior(body).probability(flat).reshape(places.shape[:2])
     value = body.value(flat).reshape(places.shape[:2])
     axes.contourf(s, z, chance, levels=[0.1, 0.5, 0.9, 1.0001], colors=SHADES, zorder=0)
     if value.min() < 0 < value.max():
@@ -115,4 +115,4 @@ def _section(axes: Axes, body: BodyFit, ways: tuple[int, int, int], low: Floats,
     axes.ticklabel_format(useOffset=False, style="plain")
     axes.grid(color=LINE, lw=0.4, zorder=0)
     axes.set_axisbelow(True)
-    quiet(axes)
+    quiet_axes(axes)

@@ -12,15 +12,15 @@ from geofit.report.document import (
     Block,
     Cell,
     Chapter,
+    CheckMark,
     Column,
-    Document,
     Fields,
     Heading,
-    Mark,
     Paragraph,
+    ReportDocument,
+    ReportTable,
     Signatures,
-    Table,
-    Verdict,
+    VerdictMark,
 )
 from geofit.report.gather import today, versions
 from geofit.report.pdf import write_pdf
@@ -44,7 +44,7 @@ def certificate(
     author: str = "",
     organisation: str = "",
     date: str = "",
-) -> Document:
+) -> ReportDocument:
     """Lay out the certificate of a file that was read back.
 
     Parameters
@@ -70,7 +70,7 @@ def certificate(
         Fields(
             (
                 (t("File"), file.name),
-                (t("Size"), digits.size(file.stat().st_size)),
+                (t("Size"), digits.kilobytes(file.stat().st_size)),
                 ("SHA-256", first.sha256[:32]),
                 ("", first.sha256[32:]),
                 (t("Format"), "ISO 10303-242 (AP242)"),
@@ -98,9 +98,9 @@ def certificate(
         Signatures((t("Role"), t("Name"), t("Signature"), t("Date")), ((t("Prepared"), author), (t("Checked"), ""))),
     ]
     title = t("Certificate of a STEP file")
-    badge = Verdict(passed, t("PASS") if passed else t("FAIL"))
+    badge = VerdictMark(passed, t("PASS") if passed else t("FAIL"))
     page = Chapter(title, tuple(blocks), badge)
-    return Document(title, file.name, file.name, day, t.html, f"{program} · {day}", (page,))
+    return ReportDocument(title, file.name, file.name, day, t.html, f"{program} · {day}", (page,))
 
 
 def write_certificate(
@@ -123,7 +123,7 @@ def write_certificate(
     write_pdf(certificate(file, found, epsilon, t, author=author, organisation=organisation), {}, path)
 
 
-def _horizons(found: Mapping[str, ReadBack], epsilon: Mapping[str, float], t: Language) -> Table:
+def _horizons(found: Mapping[str, ReadBack], epsilon: Mapping[str, float], t: Language) -> ReportTable:
     columns = (
         Column(t("Horizon"), "wide"),
         Column(t("Result")),
@@ -136,7 +136,7 @@ def _horizons(found: Mapping[str, ReadBack], epsilon: Mapping[str, float], t: La
     rows: list[tuple[Cell, ...]] = [
         (
             name,
-            Verdict(back.passed, t("PASS") if back.passed else t("FAIL")),
+            VerdictMark(back.passed, t("PASS") if back.passed else t("FAIL")),
             str(back.faces),
             digits.metres(back.sigma),
             digits.given(epsilon[name]),
@@ -148,7 +148,7 @@ def _horizons(found: Mapping[str, ReadBack], epsilon: Mapping[str, float], t: La
     ]
     if len(found) > MOST_HORIZONS:
         rows.append((t("and {count} more", count=len(found) - MOST_HORIZONS), *[""] * 6))
-    return Table(columns, tuple(rows), dense=True)
+    return ReportTable(columns, tuple(rows), dense=True)
 
 
 def _checks(found: Mapping[str, ReadBack], t: Language) -> list[Block]:
@@ -171,10 +171,10 @@ def _checks(found: Mapping[str, ReadBack], t: Language) -> list[Block]:
         (
             name,
             translate(check.name, t),
-            Mark(check.passed, words[check.passed]),
+            CheckMark(check.passed, words[check.passed]),
             digits.measured(check.value, translate(check.unit, t)),
             digits.measured(check.limit, translate(check.unit, t)),
         )
         for name, check in listed
     )
-    return [Table(columns, rows, dense=True)]
+    return [ReportTable(columns, rows, dense=True)]

@@ -8,7 +8,7 @@ from geofit.data.languages import Language, sentence
 from geofit.data.messages import Message, message
 from geofit.report import digits
 from geofit.report.accuracy_report import ChangeReport
-from geofit.report.document import Block, Cell, Column, Facts, Heading, Mark, Paragraph, Picture, Table
+from geofit.report.document import Block, Cell, CheckMark, Column, Facts, Heading, Paragraph, Picture, ReportTable
 from geofit.site.new_contacts import BlindTest
 
 __all__ = ["change_blocks", "contact_rows"]
@@ -16,11 +16,11 @@ __all__ = ["change_blocks", "contact_rows"]
 #: Contacts that a report lists.
 MOST_ROWS = 40
 _HEADER = (
-    message("change.hole", "Hole"), message("change.kind", "Kind"), message("change.easting", "Easting, m"),
-    message("change.northing", "Northing, m"), message("change.found", "Observed, m"),
-    message("change.predicted", "Predicted, m"), message("change.low", "90 % low, m"),
-    message("change.high", "90 % high, m"), message("change.residual", "Residual, m"),
-    message("change.inside", "Inside"),
+    message("report.hole", "Hole"), message("report.heading-kind", "Kind"), message("report.easting", "Easting, m"),
+    message("report.northing", "Northing, m"), message("report.heading-found", "Observed, m"),
+    message("report.heading-predicted", "Predicted, m"), message("report.heading-low", "90 % low, m"),
+    message("report.heading-high", "90 % high, m"), message("report.heading-residual", "Residual, m"),
+    message("report.heading-inside", "Inside"),
 )  # fmt: skip
 
 
@@ -75,7 +75,7 @@ def change_blocks(change: ChangeReport | None, picture: str, t: Language) -> lis
              digits.metres(one.mean))
             for one in change.areas
         )  # fmt: skip
-        blocks += [Heading(t("Where it moved"), 3), Table(columns, rows)]
+        blocks += [Heading(t("Where it moved"), 3), ReportTable(columns, rows)]
     if change.contacts:
         blocks += [Heading(t("New contacts, before they were known"), 3), _contacts(change, t)]
         if len(change.contacts) > MOST_ROWS:
@@ -84,7 +84,7 @@ def change_blocks(change: ChangeReport | None, picture: str, t: Language) -> lis
     return blocks
 
 
-def _contacts(change: ChangeReport, t: Language) -> Table:
+def _contacts(change: ChangeReport, t: Language) -> ReportTable:
     columns = (
         Column(t("Hole")), Column(t("Observed, m"), "number"), Column(t("Predicted, m"), "number"),
         Column(t("90 % band, m"), "number"), Column(t("Residual, m"), "number"), Column(t("Inside")),
@@ -93,7 +93,7 @@ def _contacts(change: ChangeReport, t: Language) -> Table:
     # Those that were missed come first.
     for one in sorted(change.contacts, key=lambda one: (one.inside is not False, one.group))[:MOST_ROWS]:
         band = "–" if one.low is None else f"{digits.metres(one.low)} … {digits.metres(one.high)}"
-        mark = "–" if one.inside is None else Mark(one.inside, t("yes") if one.inside else t("no"))
+        mark = "–" if one.inside is None else CheckMark(one.inside, t("yes") if one.inside else t("no"))
         rows.append((one.group, digits.metres(one.z), digits.metres(one.predicted), band, digits.metres(one.residual),
                      mark))  # fmt: skip
-    return Table(columns, tuple(rows))
+    return ReportTable(columns, tuple(rows))

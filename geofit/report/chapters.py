@@ -15,13 +15,13 @@ from geofit.report.document import (
     Block,
     Cell,
     Chapter,
+    CheckMark,
     Column,
-    Document,
     Heading,
-    Mark,
     Paragraph,
     Picture,
-    Table,
+    ReportDocument,
+    ReportTable,
 )
 from geofit.report.drawings_chapter import sections_chapter
 from geofit.report.horizon_chapter import horizon_chapter, verdict_badge
@@ -39,7 +39,7 @@ def document(
     missing_picture: Message | None = None,
     warning: Message | None = None,
     bodies: Sequence[Chapter] = (),
-) -> Document:
+) -> ReportDocument:
     """Lay an accuracy report out as chapters.
 
     Parameters
@@ -73,7 +73,7 @@ def document(
         *annexes,
     ]
     unlisted = frozenset(block.text for one in annexes for block in one.blocks if isinstance(block, Heading))
-    return Document(
+    return ReportDocument(
         title=site,
         subject=t("Accuracy report of the geological surfaces"),
         site=site,
@@ -99,7 +99,7 @@ def _summary(report: AccuracyReport, t: Language) -> Chapter:
         Column(t("Checks"), "wide"),
         Column(t("Away from the data"), "wide"),
     )
-    blocks.append(Table(columns, tuple(_verdict_row(horizon, t) for horizon in report.horizons)))
+    blocks.append(ReportTable(columns, tuple(_verdict_row(horizon, t) for horizon in report.horizons)))
     blocks.append(
         Paragraph(
             t(
@@ -132,6 +132,6 @@ def _verdict_row(horizon: HorizonReport, t: Language) -> tuple[Cell, ...]:
     )
 
 
-def _mark(lamp: Lamp, t: Language) -> Mark:
+def _mark(lamp: Lamp, t: Language) -> CheckMark:
     text = translate(lamp.text, t)
-    return Mark({"pass": True, "fail": False}.get(lamp.level), f"! {text}" if lamp.level == "warning" else text)
+    return CheckMark({"pass": True, "fail": False}.get(lamp.level), f"! {text}" if lamp.level == "warning" else text)

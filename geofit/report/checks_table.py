@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from geofit.data.languages import Language, sentence, together, translate
 from geofit.report import digits
 from geofit.report.accuracy_report import CheckLine
-from geofit.report.document import Column, Mark, Table
+from geofit.report.document import CheckMark, Column, ReportTable
 
 __all__ = ["check_table"]
 
@@ -15,7 +15,7 @@ __all__ = ["check_table"]
 MOST_PLACES = 3
 
 
-def check_table(checks: Sequence[CheckLine], t: Language) -> Table:
+def check_table(checks: Sequence[CheckLine], t: Language) -> ReportTable:
     """Lay out checks of a surface, a body or a file."""
     columns = (
         Column(t("Question")),
@@ -28,14 +28,14 @@ def check_table(checks: Sequence[CheckLine], t: Language) -> Table:
     rows = tuple(
         (
             translate(c.name, t),
-            Mark(c.passed, words[c.passed]),
+            CheckMark(c.passed, words[c.passed]),
             digits.measured(c.value, translate(c.unit, t)),
             digits.measured(c.limit, translate(c.unit, t)),
             _detail(c, t),
         )
         for c in checks
     )
-    return Table(columns, rows)
+    return ReportTable(columns, rows)
 
 
 def _detail(check: CheckLine, t: Language) -> str:

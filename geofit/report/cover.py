@@ -5,7 +5,7 @@ from __future__ import annotations
 from geofit.data.languages import Language, translate
 from geofit.data.messages import Message, message
 from geofit.data.title_block import TitleBlock
-from geofit.report.document import Block, Chapter, Column, Fields, Heading, Paragraph, Picture, Signatures, Table
+from geofit.report.document import Block, Chapter, Column, Fields, Heading, Paragraph, Picture, ReportTable, Signatures
 
 __all__ = ["cover", "reference"]
 
@@ -13,14 +13,14 @@ __all__ = ["cover", "reference"]
 _ROLES = {
     "en": (
         (message("report.prepared", "Prepared"), "author"),
-        (message("report.checked", "Checked"), "checker"),
+        (message("data.checked", "Checked"), "checker"),
         (message("report.approved", "Approved"), "approver"),
     ),
     "zh": (
         (message("report.authorised", "Authorised"), ""),
         (message("report.approved", "Approved"), "approver"),
         (message("report.reviewed", "Reviewed"), ""),
-        (message("report.checked", "Checked"), "checker"),
+        (message("data.checked", "Checked"), "checker"),
         (message("report.prepared", "Prepared"), "author"),
     ),
 }
@@ -92,7 +92,7 @@ def reference(title: TitleBlock, t: Language) -> str:
     return " · ".join(part for part in parts if part)
 
 
-def _revisions(title: TitleBlock, t: Language) -> Table:
+def _revisions(title: TitleBlock, t: Language) -> ReportTable:
     columns = (Column(t("Rev.")), Column(t("Date")), Column(t("Change"), "wide"), Column(t("By")))
     rows = tuple((one.mark, one.date or "–", one.text or "–", one.author or "–") for one in title.revisions)
-    return Table(columns, rows)
+    return ReportTable(columns, rows)

@@ -10,12 +10,12 @@ __all__ = [
     "degrees",
     "equals",
     "given",
+    "kilobytes",
     "length",
     "measured",
     "metres",
     "place",
     "share",
-    "size",
     "volume",
 ]
 
@@ -156,7 +156,7 @@ def share(value: float | None) -> str:
     return NOTHING if value is None or not math.isfinite(value) else f"{100 * value:.1f}{_GAP}%"
 
 
-def size(value: float) -> str:
+def kilobytes(value: float) -> str:
     """Write bytes as kilobytes."""
     return f"{count(value / 1024)}{_GAP}kB"
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from geofit.data.languages import Language
 from geofit.report import digits
 from geofit.report.accuracy_report import DipLine, HorizonReport
-from geofit.report.document import Block, Cell, Column, Heading, Paragraph, Picture, Table
+from geofit.report.document import Block, Cell, Column, Heading, Paragraph, Picture, ReportTable
 
 __all__ = ["dip_blocks"]
 
@@ -39,7 +39,7 @@ def dip_blocks(h: HorizonReport, t: Language) -> list[Block]:
         Heading(t("Measured dips")),
         Paragraph(t("{count} dips were measured on this horizon.", count=len(h.dips)) + " " + use),
         Picture(h.pictures["dips"], caption),
-        Table(columns, tuple(_row(one) for one in worst)),
+        ReportTable(columns, tuple(_row(one) for one in worst)),
     ]
     if len(h.dips) > MOST_ROWS:
         more = t("{count} more are not listed; the JSON has them.", count=len(h.dips) - MOST_ROWS)

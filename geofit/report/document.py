@@ -9,22 +9,22 @@ __all__ = [
     "Block",
     "Cell",
     "Chapter",
+    "CheckMark",
     "Column",
-    "Document",
     "Facts",
     "Fields",
     "Heading",
-    "Mark",
     "Paragraph",
     "Picture",
+    "ReportDocument",
+    "ReportTable",
     "Signatures",
-    "Table",
-    "Verdict",
+    "VerdictMark",
 ]
 
 
 @dataclass(frozen=True)
-class Mark:
+class CheckMark:
     """A word with a shape that a black-and-white print keeps: ✓ for True, ✗ for False, none for None."""
 
     passed: bool | None
@@ -37,7 +37,7 @@ class Mark:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class VerdictMark:
     """PASS, FAIL or WARNING as a badge: filled for True, a heavy frame for False, a plain frame for None."""
 
     passed: bool | None
@@ -49,7 +49,7 @@ class Verdict:
         return {True: "✓ ", False: "✗ ", None: "! "}[self.passed] + self.word
 
 
-Cell = str | Mark | Verdict
+Cell = str | CheckMark | VerdictMark
 
 
 @dataclass(frozen=True)
@@ -77,7 +77,7 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Table:
+class ReportTable:
     """A table; a row has a cell for each column. A ``dense`` one, of an annex, has less room between its rows."""
 
     columns: tuple[Column, ...]
@@ -116,7 +116,7 @@ class Signatures:
     roles: tuple[tuple[str, str], ...]
 
 
-Block = Heading | Paragraph | Table | Facts | Fields | Picture | Signatures
+Block = Heading | Paragraph | ReportTable | Facts | Fields | Picture | Signatures
 
 
 @dataclass(frozen=True)
@@ -128,12 +128,12 @@ class Chapter:
 
     title: str
     blocks: tuple[Block, ...]
-    verdict: Verdict | None = None
+    verdict: VerdictMark | None = None
     follows: bool = False
 
 
 @dataclass(frozen=True)
-class Document:
+class ReportDocument:
     """A whole report in one language: the first chapter is the cover, ``contents`` titles the list of the others.
 
     ``reference`` is in the running head: document number and revision. ``unlisted`` are headings that the contents

@@ -16,7 +16,7 @@ from geofit.data.errors import MissingDependencyError, SettingsError
 from geofit.data.files import replacing
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
-from geofit.report.scene import require_opengl
+from geofit.report.scene import require_rendering
 
 if TYPE_CHECKING:
     from geofit.morphing.body import MorphBody
@@ -93,7 +93,7 @@ def body_pictures(
     MissingDependencyError
         If there is no OpenGL library.
     """
-    require_opengl()
+    require_rendering()
     import pyvista as pv
 
     full = [mesh for mesh in meshes if len(mesh.vertices)]

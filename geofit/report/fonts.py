@@ -22,12 +22,12 @@ CHINESE = (
     "SimHei", "SimSun", "Droid Sans Fallback", "Arial Unicode MS", "Noto Serif CJK SC", "AR PL UMing CN",
 )  # fmt: skip
 _INSTALL = message(
-    "report.install-debian-ubuntu-apt",
+    "report.install-font",
     "Install one (Debian and Ubuntu: apt-get install fonts-noto-cjk; Windows has Microsoft YaHei among its optional "
     "features) and run again.",
 )
 NO_CHINESE_FONT = message(
-    "report.chinese-report-needs-font",
+    "report.chinese-font-missing",
     "A Chinese report needs a font with Chinese characters, and this machine has none. {install}",
     install=_INSTALL,
 )
@@ -64,7 +64,7 @@ def missing_font(texts: Iterable[str]) -> Message | None:
     if wide is None or _chinese() is not None:
         return None
     return message(
-        "report.no-font-machine-characters",
+        "report.characters-missing",
         "No font on this machine has the characters of '{text}': pictures and PDF show boxes in their place. {install} "
         "Tables and text of the HTML and the JSON are complete.",
         text=wide,

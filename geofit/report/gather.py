@@ -27,9 +27,9 @@ from geofit.report.accuracy_report import (
     ConflictLine,
     ContactLine,
     ContradictionLine,
-    CutLine,
     CutPlace,
     DipLine,
+    FaultCutLine,
     FileCheck,
     GroupLine,
     HorizonReport,
@@ -380,7 +380,7 @@ def _order(order: Order) -> OrderLine:
     )  # fmt: skip
 
 
-def _cut(cut: FaultCut) -> CutLine:
+def _cut(cut: FaultCut) -> FaultCutLine:
     rows = np.column_stack([cut.distance, cut.trace, cut.throw]).tolist()
     places = [
         CutPlace(distance, x, y, z, throw, _finite(heave))
@@ -388,7 +388,7 @@ def _cut(cut: FaultCut) -> CutLine:
     ]
     throws = (float(cut.throw.min()), float(cut.throw.mean()), float(cut.throw.max()))
     length = float(cut.distance[-1])
-    return CutLine(cut.fault, cut.horizon, cut.up, cut.down, length, *throws, cut.text, tuple(places))
+    return FaultCutLine(cut.fault, cut.horizon, cut.up, cut.down, length, *throws, cut.text, tuple(places))
 
 
 def inputs_of(site: Site) -> tuple[InputFile, ...]:

@@ -9,7 +9,7 @@ from geofit.data.languages import Language, translate
 from geofit.data.messages import message
 from geofit.report import digits
 from geofit.report.accuracy_report import GroupLine, HorizonReport
-from geofit.report.document import Block, Cell, Column, Heading, Paragraph, Table
+from geofit.report.document import Block, Cell, Column, Heading, Paragraph, ReportTable
 
 __all__ = ["doubled", "group_blocks"]
 
@@ -43,7 +43,7 @@ def group_blocks(h: HorizonReport, by_what: Sequence[str], t: Language) -> list[
             Column(t("Largest |d|, m"), "number"),
             Column(t("Mean d, m"), "number"),
         )
-        table = Table(columns, tuple(_group_row(group, t) for group in shown))
+        table = ReportTable(columns, tuple(_group_row(group, t) for group in shown))
         blocks += [Heading(translate(title, t), 3), doubled(table) if len(shown) > LONGEST_SINGLE else table]
         if len(rows) > LONGEST_GROUPS:
             text = t(
@@ -55,12 +55,12 @@ def group_blocks(h: HorizonReport, by_what: Sequence[str], t: Language) -> list[
     return blocks
 
 
-def doubled(table: Table) -> Table:
+def doubled(table: ReportTable) -> ReportTable:
     """Put the second half of a long, narrow table beside its first."""
     half = (len(table.rows) + 1) // 2
     empty = ("",) * len(table.columns)
     rows = zip_longest(table.rows[:half], table.rows[half:], fillvalue=empty)
-    return Table((*table.columns, Column(""), *table.columns), tuple((*a, "", *b) for a, b in rows))
+    return ReportTable((*table.columns, Column(""), *table.columns), tuple((*a, "", *b) for a, b in rows))
 
 
 def _group_row(group: GroupLine, t: Language) -> tuple[Cell, ...]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from geofit.data.languages import EN, Language
 from geofit.report.result import HorizonResult
-from geofit.report.style import CORE, FAIL, LINE, MUTED, PAPER, TEXT, quiet
+from geofit.report.style import CORE, FAIL, LINE, MUTED, PAPER, TEXT, quiet_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -58,7 +58,7 @@ def histogram(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
     axes.set_ylabel(t("points"))
     axes.grid(axis="y", color=LINE, lw=0.6, zorder=0)
     axes.set_axisbelow(True)
-    quiet(axes)
+    quiet_axes(axes)
     axes.legend(loc="upper left", bbox_to_anchor=(0, -0.3), borderaxespad=0, labelcolor=TEXT)
 
 
@@ -78,7 +78,7 @@ def normal_plot(axes: Axes, result: HorizonResult, t: Language = EN) -> None:
     axes.set_ylabel(t("d, m"))
     axes.grid(color=LINE, lw=0.6, zorder=0)
     axes.set_axisbelow(True)
-    quiet(axes)
+    quiet_axes(axes)
     axes.legend(loc="upper left", bbox_to_anchor=(0, -0.3), borderaxespad=0, labelcolor=TEXT, ncols=2)
 
 

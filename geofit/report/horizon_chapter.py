@@ -20,8 +20,8 @@ from geofit.report.document import (
     Heading,
     Paragraph,
     Picture,
-    Table,
-    Verdict,
+    ReportTable,
+    VerdictMark,
 )
 from geofit.report.group_tables import group_blocks
 from geofit.report.prediction_blocks import prediction_blocks
@@ -48,10 +48,10 @@ def horizon_chapter(h: HorizonReport, t: Language, missing_picture: Message | No
     return Chapter(t("Horizon {name}", name=h.name), tuple(blocks), verdict_badge(h, t))
 
 
-def verdict_badge(h: HorizonReport, t: Language) -> Verdict:
+def verdict_badge(h: HorizonReport, t: Language) -> VerdictMark:
     """Return the badge of a horizon's verdict."""
     words = {"PASS": t("PASS"), "WARNING": t("WARNING"), "FAIL": t("FAIL")}
-    return Verdict({"PASS": True, "FAIL": False}.get(h.verdict), words[h.verdict])
+    return VerdictMark({"PASS": True, "FAIL": False}.get(h.verdict), words[h.verdict])
 
 
 def _sentence(h: HorizonReport, t: Language) -> str:
@@ -125,7 +125,7 @@ def _deviations(h: HorizonReport, t: Language) -> list[Block]:
     return [
         Heading(t("Residuals at the data")),
         Picture(pictures["deviation"], bands),
-        Table((Column(t("Points beyond")), Column(t("Count"), "number"), Column(t("Share"), "number")), rows),
+        ReportTable((Column(t("Points beyond")), Column(t("Count"), "number"), Column(t("Share"), "number")), rows),
         *([Picture(pictures["residuals"], law)] if "residuals" in pictures else []),
     ]
 
@@ -155,7 +155,7 @@ def _read_back(back: FileCheck | None, t: Language) -> list[Block]:
         (t("Core, largest |d|"), digits.length(back.core_max_abs), t("by projection")),
         (t("Free edges"), digits.count(back.free_edges), free),
         (t("Edge tolerance"), digits.length(back.edge_tolerance), ""),
-        (t("Self-intersection"), crossing, digits.size(back.bytes) if back.bytes else ""),
+        (t("Self-intersection"), crossing, digits.kilobytes(back.bytes) if back.bytes else ""),
     )
     text = t("{file} was read back by OpenCASCADE and measured again.", file=back.file)
     failed = [check for check in back.checks if check.passed is False]

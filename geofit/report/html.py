@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from geofit.data.files import replacing
-from geofit.report.document import Document
+from geofit.report.document import ReportDocument
 from geofit.report.fonts import families
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ __all__ = ["write_html"]
 BEHIND = ("Helvetica Neue", "Arial", "Microsoft YaHei", "PingFang SC", "sans-serif")
 
 
-def write_html(document: Document, images: Mapping[str, bytes], path: Path) -> None:
+def write_html(document: ReportDocument, images: Mapping[str, bytes], path: Path) -> None:
     """Write a document as HTML with its pictures inside.
 
     Parameters

@@ -5,7 +5,7 @@ from __future__ import annotations
 from geofit.data.languages import Language, sentence, translate
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport, PredictionReport
-from geofit.report.document import Block, Cell, Chapter, Column, Heading, Paragraph, Table
+from geofit.report.document import Block, Cell, Chapter, Column, Heading, Paragraph, ReportTable
 from geofit.report.point_table import point_cells, point_columns
 
 __all__ = ["interventions"]
@@ -37,7 +37,7 @@ def _excluded(h: HorizonReport, t: Language) -> list[Block]:
     if not h.excluded:
         return []
     rows = tuple(point_cells(p, t) for p in h.excluded[:LONGEST])
-    return [Table(point_columns(t), rows), *_more(len(h.excluded), t)]
+    return [ReportTable(point_columns(t), rows), *_more(len(h.excluded), t)]
 
 
 def _edits(h: HorizonReport, t: Language) -> list[Block]:
@@ -57,7 +57,7 @@ def _conflicts(h: HorizonReport, t: Language) -> list[Block]:
         (translate(c.kept, t), translate(c.dropped, t), digits.metres(c.difference), translate(c.text, t))
         for c in h.conflicts[:LONGEST]
     )
-    return [Table(columns, rows), *_more(len(h.conflicts), t)]
+    return [ReportTable(columns, rows), *_more(len(h.conflicts), t)]
 
 
 def _outliers(h: HorizonReport, t: Language) -> list[Block]:
@@ -75,7 +75,7 @@ def _outliers(h: HorizonReport, t: Language) -> list[Block]:
         for o in found[:LONGEST]
     )
     text = t("Points that their neighbours contradict. They were used all the same: check them.")
-    return [Paragraph(text, "quiet"), Table(columns, rows), *_more(len(found), t)]
+    return [Paragraph(text, "quiet"), ReportTable(columns, rows), *_more(len(found), t)]
 
 
 def _suggestions(h: HorizonReport, t: Language) -> list[Block]:
@@ -92,7 +92,7 @@ def _suggestions(h: HorizonReport, t: Language) -> list[Block]:
         Column(t("Largest afterwards, m"), "number"),
         Column(t("Mean lower by"), "number"),
     )
-    return [Table(columns, tuple(_suggestion(i, off, t) for i in range(len(off.suggestions))))]
+    return [ReportTable(columns, tuple(_suggestion(i, off, t) for i in range(len(off.suggestions))))]
 
 
 def _suggestion(i: int, off: PredictionReport, t: Language) -> tuple[Cell, ...]:

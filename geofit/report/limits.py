@@ -5,7 +5,7 @@ from __future__ import annotations
 from geofit.data.languages import Language
 from geofit.report import digits
 from geofit.report.accuracy_report import AccuracyReport, HorizonReport, PredictionReport
-from geofit.report.document import Block, Column, Heading, Paragraph, Table
+from geofit.report.document import Block, Column, Heading, Paragraph, ReportTable
 
 __all__ = ["away_from_data", "limits_of_use"]
 
@@ -30,7 +30,7 @@ def away_from_data(report: AccuracyReport, t: Language) -> list[Block]:
     )
     rows = tuple((name, *_expected(off)) for name, off in known)
     text = t("± half the width of the 90 % band of the surface over the study area; a dash means that it is unknown.")
-    return [Heading(t("Away from the data")), Table(columns, rows), Paragraph(text, "quiet")]
+    return [Heading(t("Away from the data")), ReportTable(columns, rows), Paragraph(text, "quiet")]
 
 
 def _expected(off: PredictionReport) -> tuple[str, ...]:

@@ -15,15 +15,15 @@ from geofit.data.files import replacing
 from geofit.report.document import (
     Block,
     Chapter,
-    Document,
     Facts,
     Fields,
     Heading,
     Paragraph,
     Picture,
+    ReportDocument,
+    ReportTable,
     Signatures,
-    Table,
-    Verdict,
+    VerdictMark,
 )
 from geofit.report.fonts import pdf_fonts
 from geofit.report.pdf_table import draw_table, table_height
@@ -48,7 +48,7 @@ LEAST_START = 90.0
 WHOLE = 1 / 3
 
 
-def write_pdf(document: Document, images: Mapping[str, bytes], path: Path) -> None:
+def write_pdf(document: ReportDocument, images: Mapping[str, bytes], path: Path) -> None:
     """Write a document as PDF.
 
     Parameters
@@ -78,7 +78,7 @@ def write_pdf(document: Document, images: Mapping[str, bytes], path: Path) -> No
 class _Pages(FPDF):
     """A4 pages with a running head and numbers."""
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: ReportDocument) -> None:
         super().__init__(format="A4")
         # Each font that is asked for a character it lacks would report it, though the next one has it.
         logging.getLogger("fpdf").setLevel(logging.ERROR)
@@ -165,7 +165,7 @@ class _Pages(FPDF):
         for block in cover.blocks:
             if isinstance(block, Fields):
                 height += FIELD * ((len(block.items) + 1) // 2) + 2.5
-            elif isinstance(block, Table):
+            elif isinstance(block, ReportTable):
                 height += table_height(block, self.epw, self.type) + 2.5
             elif isinstance(block, Signatures):
                 height += 5 + SIGNED * len(block.roles)
@@ -200,7 +200,7 @@ class _Pages(FPDF):
         self._rule(self.y + 1)
         self.set_xy(SIDE, self.y + 5)
 
-    def _title(self, text: str, verdict: Verdict | None) -> None:
+    def _title(self, text: str, verdict: VerdictMark | None) -> None:
         top = self.y
         pen = Pen(15, TEXT, bold=True)
         for k, line in enumerate(self.type.lines(text, self.epw - 36, pen)):
@@ -222,7 +222,7 @@ class _Pages(FPDF):
             self._heading(block)
         elif isinstance(block, Paragraph):
             self._paragraph(block)
-        elif isinstance(block, Table):
+        elif isinstance(block, ReportTable):
             draw_table(self, self.type, block, lambda: self.foot, self.add_page, self.empty_page)
             self.set_y(self.y + 2.5)
         elif isinstance(block, Facts):
@@ -353,7 +353,7 @@ class _Pages(FPDF):
                 if block.name in images:
                     tall = _size(images[block.name], self.epw, self.highest, to_scale=block.to_scale)[1]
                 return height + tall + 10
-            elif isinstance(block, Table):
+            elif isinstance(block, ReportTable):
                 whole = table_height(block, self.epw, self.type)
                 return height + (whole if whole <= WHOLE * self.empty_page else 38.0)
             elif isinstance(block, Signatures):

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 from fpdf import FPDF
 
-from geofit.report.document import Cell, Column, Mark, Table, Verdict
+from geofit.report.document import Cell, CheckMark, Column, ReportTable, VerdictMark
 from geofit.report.pdf_text import Pen, Typesetter, rgb
 from geofit.report.style import FAIL, MUTED, PASS, WARNING
 
@@ -37,7 +37,7 @@ def plain_text(cell: Cell) -> str:
 class _Laid:
     """A table whose cells are broken into lines: widths of the columns, lines and height of each row."""
 
-    def __init__(self, table: Table, room: float, type_: Typesetter) -> None:
+    def __init__(self, table: ReportTable, room: float, type_: Typesetter) -> None:
         self.table = table
         self.widths = _widths(table, room, type_)
         inner = [width - 2 * PADDING[0] for width in self.widths]
@@ -56,14 +56,14 @@ class _Laid:
         self.heights = [_height(row, self.padding) for row in self.rows]
 
 
-def table_height(table: Table, room: float, type_: Typesetter) -> float:
+def table_height(table: ReportTable, room: float, type_: Typesetter) -> float:
     """Return the height of a table over a width, mm."""
     laid = _Laid(table, room, type_)
     return laid.head_height + sum(laid.heights)
 
 
 def draw_table(
-    pdf: FPDF, type_: Typesetter, table: Table, bottom: Callable[[], float], turn: Callable[[], None], page: float
+    pdf: FPDF, type_: Typesetter, table: ReportTable, bottom: Callable[[], float], turn: Callable[[], None], page: float
 ) -> None:
     """Draw a table from where the page stands.
 
@@ -131,7 +131,7 @@ def _draw_part(pdf: FPDF, type_: Typesetter, laid: _Laid, first: int, last: int)
     for k in range(first, last):
         cells, height = laid.table.rows[k], laid.heights[k]
         for i, cell in enumerate(cells):
-            if isinstance(cell, Verdict):
+            if isinstance(cell, VerdictMark):
                 _badge(pdf, cell, x + sum(laid.widths[:i]), y, laid.widths[i], height)
         pens = [_pen(column, cell) for column, cell in zip(columns, cells, strict=True)]
         _draw_row(type_, x, y, laid, laid.rows[k], pens, height)
@@ -154,7 +154,7 @@ def _draw_row(
         x += wide
 
 
-def _badge(pdf: FPDF, verdict: Verdict, x: float, y: float, wide: float, height: float) -> None:
+def _badge(pdf: FPDF, verdict: VerdictMark, x: float, y: float, wide: float, height: float) -> None:
     pdf.set_fill_color(*rgb(PASS))
     pdf.set_draw_color(*rgb(WARNING if verdict.passed is None else FAIL))
     pdf.set_line_width(0.4)
@@ -182,14 +182,14 @@ _MARKS = {True: Pen(SIZE, PASS), False: Pen(SIZE, FAIL, bold=True), None: Pen(SI
 
 
 def _pen(column: Column, cell: Cell) -> Pen:
-    if isinstance(cell, Verdict):
+    if isinstance(cell, VerdictMark):
         return _BADGES[cell.passed]
-    if isinstance(cell, Mark):
+    if isinstance(cell, CheckMark):
         return _MARKS[cell.passed]
     return _HASH if column.kind == "hash" else _PLAIN
 
 
-def _widths(table: Table, room: float, type_: Typesetter) -> tuple[float, ...]:
+def _widths(table: ReportTable, room: float, type_: Typesetter) -> tuple[float, ...]:
     """Share the page's width: numbers and words get what they need, wide columns the rest."""
     need = [_need(i, table, type_) for i in range(len(table.columns))]
     wide = [i for i, column in enumerate(table.columns) if column.kind == "wide"]
@@ -218,7 +218,7 @@ def _shared(room: float, need: Sequence[tuple[float, float]]) -> list[float]:
     return [b + (room - sum(natural)) * b / sum(natural) for b in natural]
 
 
-def _need(index: int, table: Table, type_: Typesetter) -> tuple[float, float]:
+def _need(index: int, table: ReportTable, type_: Typesetter) -> tuple[float, float]:
     """Return the least and the natural width of a column, mm."""
     column = table.columns[index]
     cells = [(plain_text(row[index]), _pen(column, row[index])) for row in table.rows]
@@ -228,7 +228,7 @@ def _need(index: int, table: Table, type_: Typesetter) -> tuple[float, float]:
         return natural, natural
     head = max(type_.width(word, _HEAD) for word in _words(_title(column))) + spare
     longest = max((type_.width(word, pen) for text, pen in cells for word in _words(text)), default=0.0) + spare
-    if any(isinstance(row[index], Verdict) for row in table.rows):
+    if any(isinstance(row[index], VerdictMark) for row in table.rows):
         return max(head, natural + 2), max(head, natural + 2)
     if column.kind == "wide":
         return max(head, min(longest, WIDEST), NARROWEST), max(natural, head)

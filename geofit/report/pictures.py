@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from geofit.report.scene import Scene
     from geofit.site.states import Comparison
 
-__all__ = ["Pictures", "draw", "draw_change", "draw_sections", "draw_site", "png", "write_picture"]
+__all__ = ["Pictures", "draw_change", "draw_pictures", "draw_sections", "draw_site", "png", "write_picture"]
 
 #: Width of the report's pictures, inches: what an A4 page has between its margins; their dots an inch; height of the
 #: picture of the cover, inches.
@@ -54,7 +54,7 @@ class Pictures:
     missing: Message | None
 
 
-def draw(result: HorizonResult, t: Language = EN) -> Pictures:
+def draw_pictures(result: HorizonResult, t: Language = EN) -> Pictures:
     """Draw all pictures of a horizon, with words in a language."""
     try:
         view: Scene | None = scene.horizon_scene(result)

@@ -38,7 +38,7 @@ def plan_scale(results: Sequence[HorizonResult], paper: str, scale: int | None =
     if folded or not results or paper not in PAPERS:
         raise SettingsError(
             message(
-                "plan.settings",
+                "report.plan-settings-unusable",
                 "A plan needs paper of {papers} and a surface that is not folded over; given: {paper}, {name}.",
                 papers=", ".join(PAPERS), paper=paper, name=folded[0] if folded else "-",
             )
@@ -49,13 +49,13 @@ def plan_scale(results: Sequence[HorizonResult], paper: str, scale: int | None =
     fitting = [s for s in SCALES if all(x / s <= room[0] and y / s <= room[1] for x, y in sizes)]
     if not fitting:
         raise SettingsError(
-            message("plan.no-scale", "No scale up to 1:{scale} brings the plan onto {paper}. Choose larger paper.",
+            message("report.plan-without-scale", "No scale up to 1:{scale} brings the plan onto {paper}. Choose larger paper.",
                     scale=SCALES[-1], paper=paper)
         )  # fmt: skip
     if scale is not None and scale < fitting[0]:
         raise SettingsError(
             message(
-                "plan.scale-too-large",
+                "report.plan-scale-too-large",
                 "At 1:{scale} the plan is larger than {paper}. Choose 1:{least} or larger paper.",
                 scale=scale, paper=paper, least=fitting[0],
             )
@@ -77,7 +77,7 @@ def interval_of(result: HorizonResult, interval: float | None) -> float:
         return sheet.interval
     if not is_finite(interval) or interval <= 0:
         raise SettingsError(
-            message("geometry.contour-interval-give-metres", "The contour interval is {step}; give metres above 0.",
+            message("data.contour-interval-not-positive", "The contour interval is {step}; give metres above 0.",
                     step=shown(interval))
         )  # fmt: skip
     return interval

@@ -12,7 +12,7 @@ from geofit.data.languages import EN, Language, translate
 from geofit.data.site import Hole
 from geofit.report.histogram import histogram
 from geofit.report.result import HorizonResult
-from geofit.report.style import CORE, LINE, MUTED, TEXT, bands, kind_style, quiet
+from geofit.report.style import CORE, LINE, MUTED, TEXT, bands, kind_style, quiet_axes
 from geofit.report.view import choose_view, rims, trimmed
 
 if TYPE_CHECKING:
@@ -192,7 +192,7 @@ def map_axes(axes: Axes, xlabel: str, ylabel: str) -> None:
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}".replace(",", " ")))
     axes.set_xlabel(xlabel)
     axes.set_ylabel(ylabel)
-    quiet(axes)
+    quiet_axes(axes)
 
 
 def legend(axes: Axes) -> None:

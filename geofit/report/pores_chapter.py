@@ -11,7 +11,18 @@ from numpy.typing import NDArray
 from geofit.data.languages import Language, sentence, translate
 from geofit.data.messages import message
 from geofit.report import digits
-from geofit.report.document import Block, Cell, Chapter, Column, Facts, Heading, Mark, Paragraph, Picture, Table
+from geofit.report.document import (
+    Block,
+    Cell,
+    Chapter,
+    CheckMark,
+    Column,
+    Facts,
+    Heading,
+    Paragraph,
+    Picture,
+    ReportTable,
+)
 
 if TYPE_CHECKING:
     from geofit.pores.network import PoreNetwork
@@ -107,7 +118,7 @@ def _table(found: PoresFindings, t: Language) -> list[Block]:
         dropped=digits.share(found.table.dropped),
         smoothing=digits.share(found.table.smoothing),
     )
-    return [Heading(t("Before and after")), Table(head, rows), Paragraph(note, "quiet")]
+    return [Heading(t("Before and after")), ReportTable(head, rows), Paragraph(note, "quiet")]
 
 
 def _column(figures: PoreFigures, t: Language) -> dict[str, tuple[str, float | None]]:
@@ -147,7 +158,7 @@ def _percolation(found: PoresFindings, t: Language) -> list[Block]:
     before, after = found.table.before.connectivity.percolates, found.table.after.connectivity.percolates
     columns = (before, found.network.percolates, after)
     rows: tuple[tuple[Cell, ...], ...] = tuple(
-        (str(axis), *(Mark(along[axis], words[along[axis]]) for along in columns)) for axis in range(3)
+        (str(axis), *(CheckMark(along[axis], words[along[axis]]) for along in columns)) for axis in range(3)
     )
     c = found.table.before.connectivity
     text = t(
@@ -159,7 +170,7 @@ def _percolation(found: PoresFindings, t: Language) -> list[Block]:
     notes = permeability.messages if permeability is not None else ()
     return [
         Heading(t("Percolation")),
-        Table(head, rows),
+        ReportTable(head, rows),
         Paragraph(text),
         *(Paragraph(sentence(note, t), "quiet") for note in notes),
     ]
@@ -184,7 +195,7 @@ def _sizes(found: PoresFindings, t: Language) -> list[Block]:
         (word, *_spread(np.asarray(radius, float) * unit))
         for word, radius in ((t("pores"), network.pores.inscribed), (t("throats"), network.throats.inscribed))
     )
-    return [*blocks, Table(head, rows)]
+    return [*blocks, ReportTable(head, rows)]
 
 
 def _spread(radius: NDArray[np.float64]) -> tuple[str, ...]:
@@ -225,7 +236,7 @@ def _made(found: PoresFindings, t: Language) -> list[Block]:
     rows = [(names[key], _setting(value, t)) for key, value in found.network.settings.items() if key in names]
     edges = " × ".join(f"{edge * 1e6:.4g}" for edge in found.volume.voxel)
     rows.append((t("voxel, µm"), edges))
-    return [Heading(t("Settings")), Table((Column(t("Setting")), Column(t("Value"))), tuple(rows))]
+    return [Heading(t("Settings")), ReportTable((Column(t("Setting")), Column(t("Value"))), tuple(rows))]
 
 
 def _setting(value: object, t: Language) -> str:

@@ -12,7 +12,7 @@ from geofit.data.languages import EN, Language
 from geofit.report.pictures import DOTS, TYPE, WIDTH, png
 from geofit.report.pores_chapter import PoresFindings, pores_picture
 from geofit.report.scene import mesh_scene, network_scene
-from geofit.report.style import CORE, LINE, MUTED, WARNING, drawing, quiet
+from geofit.report.style import CORE, LINE, MUTED, WARNING, drawing, quiet_axes
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,7 +61,7 @@ def _slices(found: PoresFindings, t: Language) -> Figure:
         axes.set_xlabel(t("axis {axis}, mm", axis=along))
         axes.set_ylabel(t("axis {axis}, mm", axis=across))
         axes.locator_params(nbins=4)
-        quiet(axes)
+        quiet_axes(axes)
     return figure
 
 
@@ -80,7 +80,7 @@ def _settling(found: PoresFindings, t: Language) -> Figure:
     axes.set_ylim(bottom=0)
     axes.grid(color=LINE, lw=0.5)
     axes.set_axisbelow(True)
-    quiet(axes)
+    quiet_axes(axes)
     axes.legend(loc="upper left", bbox_to_anchor=(1.03, 1.0), borderaxespad=0)
     return figure
 
@@ -112,7 +112,7 @@ def _sizes(found: PoresFindings, t: Language) -> Figure:
         axes.set_xlabel(t("Radius, µm"))
         axes.grid(axis="y", color=LINE, lw=0.5)
         axes.set_axisbelow(True)
-        quiet(axes)
+        quiet_axes(axes)
     return figure
 
 

@@ -7,14 +7,14 @@ from geofit.data.messages import message
 from geofit.data.verdict import LEAST_INSIDE
 from geofit.report import digits
 from geofit.report.accuracy_report import HorizonReport, LeftOutLine, PredictionReport
-from geofit.report.document import Block, Cell, Column, Facts, Heading, Mark, Paragraph, Picture, Table
+from geofit.report.document import Block, Cell, CheckMark, Column, Facts, Heading, Paragraph, Picture, ReportTable
 
 __all__ = ["prediction_blocks"]
 
 _SCHEMES = {
-    "hole": message("report.hole-time", "one hole at a time"),
-    "section": message("report.section-time", "one section at a time"),
-    "block": message("report.block-time", "one block at a time"),
+    "hole": message("report.scheme-holes", "one hole at a time"),
+    "section": message("report.scheme-sections", "one section at a time"),
+    "block": message("report.scheme-blocks", "one block at a time"),
 }
 #: Methods beside ours, in the order of their columns.
 _REFERENCES = ("thin plate", "kriging")
@@ -57,7 +57,7 @@ def _left_out(off: PredictionReport, t: Language) -> list[Block]:
     )
     return [
         Heading(t("Cross-validation and calibration"), 3),
-        Table(columns, tuple(_scheme_row(scheme, t) for scheme in off.left_out)),
+        ReportTable(columns, tuple(_scheme_row(scheme, t) for scheme in off.left_out)),
         Paragraph(t("Errors are root mean squares; the least of the three methods is marked *."), "quiet"),
     ]
 
@@ -69,10 +69,10 @@ def _scheme_row(scheme: LeftOutLine, t: Language) -> tuple[Cell, ...]:
     least = min(known, default=None)
     cells = [digits.metres(e) + (" *" if e is not None and e == least and len(known) > 1 else "") for e in errors]
     if scheme.inside is None:
-        calibrated = Mark(None, t("not examined"))
+        calibrated = CheckMark(None, t("not examined"))
     else:
         good = round(scheme.inside, 2) >= LEAST_INSIDE
-        calibrated = Mark(True, t("passes")) if good else Mark(None, "! " + t("below {share}", share="85 %"))
+        calibrated = CheckMark(True, t("passes")) if good else CheckMark(None, "! " + t("below {share}", share="85 %"))
     return (
         translate(_SCHEMES.get(scheme.scheme, scheme.scheme), t),
         digits.count(scheme.groups),

@@ -17,7 +17,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.prediction.bands import prediction_sd
 from geofit.sampling.cut import CutLine, cut_section
 
-__all__ = ["Profile", "along", "profiles", "report_sections"]
+__all__ = ["Profile", "along_polyline", "profiles", "report_sections"]
 
 Floats = NDArray[np.float64]
 
@@ -67,7 +67,7 @@ def profiles(
     }
 
 
-def along(line: Floats, xy: Floats) -> tuple[Floats, Floats]:
+def along_polyline(line: Floats, xy: Floats) -> tuple[Floats, Floats]:
     """Return distance along a polyline and distance from it of (n, 2) places, metres."""
     best, where = np.full(len(xy), np.inf), np.zeros(len(xy))
     start_at = 0.0

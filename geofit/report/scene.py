@@ -30,14 +30,14 @@ __all__ = [
     "horizon_scene",
     "mesh_scene",
     "network_scene",
-    "require_opengl",
+    "require_rendering",
     "site_scene",
 ]
 
 Floats = NDArray[np.float64]
 
 NO_OPENGL = message(
-    "report.3d-picture-missing-machine",
+    "report.picture-without-opengl",
     "The 3D picture is missing: this machine has no OpenGL library. "
     "Install one (Debian and Ubuntu: apt-get install libgl1 libegl1 libxrender1) and run again.",
 )
@@ -77,10 +77,8 @@ class Scene:
     def caption(self) -> Message:
         """Direction and scale in words."""
         if self.raised == 1:
-            return message("report.seen-south-west-true", "Seen from the south-west, true scale.")
-        return message(
-            "report.seen-south-west-heights", "Seen from the south-west, heights × {times}.", times=self.raised
-        )
+            return message("report.seen-true-scale", "Seen from the south-west, true scale.")
+        return message("report.seen-exaggerated", "Seen from the south-west, heights × {times}.", times=self.raised)
 
 
 def horizon_scene(result: HorizonResult, size: tuple[int, int] = (1600, 1100)) -> Scene:
@@ -235,7 +233,7 @@ def _raised(surfaces: Sequence[HorizonFit]) -> int:
 
 
 def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
-    require_opengl()
+    require_rendering()
     import pyvista
 
     plotter = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="none")
@@ -246,7 +244,7 @@ def _plotter(size: tuple[int, int]) -> pyvista.Plotter:
     return plotter
 
 
-def require_opengl() -> None:
+def require_rendering() -> None:
     """Raise a :class:`MissingDependencyError` if there is no OpenGL library; choose EGL where there is no screen."""
     if not _opengl():
         raise MissingDependencyError(NO_OPENGL)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geofit.data.files import replacing
-from geofit.report.style import LINE, MUTED, TEXT, drawing, horizon_colours, quiet
+from geofit.report.style import LINE, MUTED, TEXT, drawing, horizon_colours, quiet_axes
 from geofit.sampling.cut import CutLine
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def write_section_picture(
         axes.set_xlabel("Distance along the section, m")
         axes.set_ylabel("Elevation, m")
         axes.yaxis.grid(True, color=LINE, lw=0.6)
-        quiet(axes)
+        quiet_axes(axes)
         if axes.lines:
             axes.legend(loc="upper left", bbox_to_anchor=(0, -0.55 / (height - 1.9)), ncols=6, borderaxespad=0)
         start, end = (f"({x:.1f}, {y:.1f})" for x, y in (corners[0], corners[-1]))

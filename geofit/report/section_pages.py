@@ -62,7 +62,7 @@ def fitting_scale(views: Sequence[SectionView], paper: str, exaggeration: float 
             return scale
     raise SettingsError(
         message(
-            "section.no-scale",
+            "report.section-without-scale",
             "No scale up to 1:{scale} brings the sections onto {paper}. Choose larger paper or shorter sections.",
             scale=SCALES[-1],
             paper=paper,
@@ -141,7 +141,7 @@ def _checked(views: Sequence[SectionView], paper: str, scale: int | None, exagge
     if paper not in PAPERS or not exaggeration > 0 or not views:
         raise SettingsError(
             message(
-                "section.sheet-settings",
+                "report.sheet-settings-unusable",
                 "A sheet needs a section, paper of {papers}, and an exaggeration above 0; given: {paper}, {factor:g}.",
                 papers=", ".join(PAPERS),
                 paper=paper,
@@ -152,7 +152,7 @@ def _checked(views: Sequence[SectionView], paper: str, scale: int | None, exagge
     if scale is not None and scale < least:
         raise SettingsError(
             message(
-                "section.scale-too-large",
+                "report.section-scale-too-large",
                 "At 1:{scale} the sections are larger than {paper}. Choose 1:{least}, larger paper, or shorter "
                 "sections.",
                 scale=scale,

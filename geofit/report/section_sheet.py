@@ -13,7 +13,7 @@ from geofit.data.points import PointSet
 from geofit.data.site import Ground, Section, Site
 from geofit.report.accuracy_report import SectionSheet
 from geofit.report.furniture import exaggeration_for, scale_bar, scale_for, scale_text
-from geofit.report.profile import THICKNESS, Profile, along
+from geofit.report.profile import THICKNESS, Profile, along_polyline
 from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing, horizon_colours, kind_style
 
 if TYPE_CHECKING:
@@ -173,8 +173,8 @@ def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[
     named: list[float] = []
     low, high = limits
     length = axes.get_xlim()[1]
-    for hole in sorted(site.holes, key=lambda one: float(along(section.line, one.xyz[:1, :2])[0][0])):
-        s, off = along(section.line, hole.xyz[:, :2])
+    for hole in sorted(site.holes, key=lambda one: float(along_polyline(section.line, one.xyz[:1, :2])[0][0])):
+        s, off = along_polyline(section.line, hole.xyz[:, :2])
         if off[0] > near:
             continue
         z = hole.xyz[:, 2]
@@ -192,7 +192,7 @@ def _holes(axes: Axes, section: Section, site: Site, near: float, limits: tuple[
 
 
 def _contacts(axes: Axes, section: Section, points: PointSet, near: float, colour: str) -> None:
-    s, off = along(section.line, points.xyz[:, :2])
+    s, off = along_polyline(section.line, points.xyz[:, :2])
     of = off <= near
     axes.plot(s[of], points.xyz[of, 2], "o", ms=2.6, mfc=PAPER, mec=colour, mew=0.8, zorder=6)
 

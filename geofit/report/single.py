@@ -6,7 +6,7 @@ from geofit.data.languages import Language
 from geofit.data.messages import Message
 from geofit.data.title_block import TitleBlock
 from geofit.report.cover import cover, reference
-from geofit.report.document import Chapter, Document, Picture
+from geofit.report.document import Chapter, Picture, ReportDocument
 from geofit.report.gather import today, versions
 
 __all__ = ["single_document"]
@@ -15,7 +15,7 @@ __all__ = ["single_document"]
 def single_document(
     name: str, subject: str, chapter: Chapter, picture: str, t: Language, *, title: TitleBlock | None = None,
     date: str = "", warning: Message | None = None,
-) -> Document:  # fmt: skip
+) -> ReportDocument:  # fmt: skip
     """Lay out a report with one chapter.
 
     Parameters
@@ -41,6 +41,6 @@ def single_document(
     version = "geofit " + versions()["geofit"]
     facts = ((t("Program"), version),)
     front = cover(block, facts, Picture(picture, "") if picture else None, day, t, warning)
-    return Document(
+    return ReportDocument(
         name, subject, name, day, t.html, f"{version} · {day}", (front, chapter), reference=reference(block, t)
     )

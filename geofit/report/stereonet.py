@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from geofit.data.languages import EN, Language
 from geofit.geometry.attitudes import great_circle, mean_plane, poles
-from geofit.report.style import FAIL, LINE, MUTED, PAPER, TEXT, quiet
+from geofit.report.style import FAIL, LINE, MUTED, PAPER, TEXT, quiet_axes
 from geofit.site.dips import LIMIT
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ def angles(axes: Axes, angle: Floats, t: Language = EN) -> None:
     axes.set_ylabel(t("dips"))
     axes.grid(axis="y", color=LINE, lw=0.6)
     axes.set_axisbelow(True)
-    quiet(axes)
+    quiet_axes(axes)
     axes.legend(loc="upper right")
 
 

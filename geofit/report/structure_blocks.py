@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from geofit.data.languages import Language, sentence, translate
 from geofit.report import digits
-from geofit.report.accuracy_report import AccuracyReport, CutLine, OrderLine
-from geofit.report.document import Block, Cell, Column, Heading, Mark, Paragraph, Table
+from geofit.report.accuracy_report import AccuracyReport, FaultCutLine, OrderLine
+from geofit.report.document import Block, Cell, CheckMark, Column, Heading, Paragraph, ReportTable
 
 __all__ = ["structure_blocks"]
 
@@ -44,7 +44,7 @@ def _order(report: AccuracyReport, t: Language) -> list[Block]:
                 "quiet",
             )
         )
-        blocks.append(Table(columns, tuple(_order_row(order, t) for order in report.orders)))
+        blocks.append(ReportTable(columns, tuple(_order_row(order, t) for order in report.orders)))
         blocks += [Paragraph(sentence(order.text, t), "quiet") for order in report.orders]
     return blocks
 
@@ -55,7 +55,7 @@ def _order_row(order: OrderLine, t: Language) -> tuple[Cell, ...]:
     return (
         order.upper,
         order.lower,
-        Mark(order.passed, words[order.passed]),
+        CheckMark(order.passed, words[order.passed]),
         digits.metres(order.minimum),
         digits.metres(order.mean),
         digits.count(order.crossing_area),
@@ -93,7 +93,7 @@ def _contradictions(report: AccuracyReport, t: Language) -> list[Block]:
         "The horizons were separated as far as their exact points allow. Here these points "
         "contradict each other: check their rows."
     )
-    return [Heading(t("Crossings fixed by exact points"), 3), Paragraph(text, "warning"), Table(columns, rows)]
+    return [Heading(t("Crossings fixed by exact points"), 3), Paragraph(text, "warning"), ReportTable(columns, rows)]
 
 
 def _faults(report: AccuracyReport, t: Language) -> list[Block]:
@@ -127,13 +127,13 @@ def _faults(report: AccuracyReport, t: Language) -> list[Block]:
         "distance between the blocks midway between their ends, negative where the fault's "
         "sense is reversed; heave is the horizontal one, negative where they overlap."
     )
-    blocks: list[Block] = [Heading(t("Faults")), Paragraph(text, "quiet"), Table(columns, rows)]
+    blocks: list[Block] = [Heading(t("Faults")), Paragraph(text, "quiet"), ReportTable(columns, rows)]
     for cut in report.cuts:
         blocks += [Heading(f"{cut.fault} – {cut.horizon}: {cut.up} / {cut.down}", 3), _along(cut, t)]
     return blocks
 
 
-def _along(cut: CutLine, t: Language) -> Table:
+def _along(cut: FaultCutLine, t: Language) -> ReportTable:
     """Lay out throw and heave at places spread evenly along the trace, both ends included."""
     columns = (
         Column(t("Along the fault, m"), "number"),
@@ -156,4 +156,4 @@ def _along(cut: CutLine, t: Language) -> Table:
         )
         for p in (cut.places[k] for k in chosen)
     )
-    return Table(columns, rows)
+    return ReportTable(columns, rows)

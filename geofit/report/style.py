@@ -31,7 +31,7 @@ __all__ = [
     "drawing",
     "horizon_colours",
     "kind_style",
-    "quiet",
+    "quiet_axes",
 ]  # fmt: skip
 
 TEXT, MUTED, LINE, PAPER = "#1c2733", "#5d6b7a", "#d4dae1", "#ffffff"
@@ -141,7 +141,7 @@ def drawing(size: float = 9.0) -> Iterator[None]:
         yield
 
 
-def quiet(axes: Axes) -> None:
+def quiet_axes(axes: Axes) -> None:
     """Leave only the axes that carry numbers."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.tick_params(length=3, width=0.8)

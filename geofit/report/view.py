@@ -56,7 +56,7 @@ def choose_view(surface: HorizonFit) -> View:
         strike * along.min(),
         (
             message(
-                "report.along-strike-towards-mean",
+                "report.axis-along-strike",
                 "Along strike towards {azimuth:03.0f}°, m (mean dip {dip:.0f}°)",
                 azimuth=float(azimuth),
                 dip=float(dip),

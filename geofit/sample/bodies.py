@@ -152,7 +152,7 @@ def body_truth(name: str) -> BodyTruth:
     if name not in _TRUTHS:
         raise SettingsError(
             message(
-                "sample.sample-site-no-body",
+                "sample.body-unknown",
                 "The sample site has no body {name!r}; choose one of {names}.",
                 name=name,
                 names=", ".join(BODIES),

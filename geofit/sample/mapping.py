@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from geofit.data.site import Ground
 from geofit.sample.observations import Observations, errors_of
 from geofit.sample.paths import zero_between
-from geofit.sample.truth import CORE, MapTruth, PlaneTruth, horizon_truth, inside, river, to_map, to_site
+from geofit.sample.truth import CORE, MapTruth, PlaneTruth, horizon_truth, in_study_area, river, to_map, to_site
 from geofit.sample.truth import ground as true_ground
 
 __all__ = ["map_outcrops", "pick_lines"]
@@ -52,7 +52,7 @@ def map_outcrops(horizon: str, spacing: float, ground: Ground, observations: Obs
     for x, y in candidates:
         xyz = np.array([x, y, float(ground.elevation(np.array(x), np.array(y)))])
         s, _ = to_site(x, y)
-        if _outside_core(s) and inside(x, y) and observations.is_clear(horizon, xyz):
+        if _outside_core(s) and in_study_area(x, y) and observations.is_clear(horizon, xyz):
             observations.add(horizon, "outcrop", xyz)
             found.append((x, y))
     return np.array(found)
@@ -105,7 +105,7 @@ def pick_lines(horizon: str, n: int, observations: Observations) -> Floats:
     assert isinstance(truth, MapTruth)
     s, t = (grid.ravel() for grid in np.meshgrid(_LINES, np.arange(-640.0, 641.0, 4.0), indexing="ij"))
     x, y = to_map(s, t)
-    rim = [inside(*to_map(s + a, t + b)) for a in (-30.0, 30.0) for b in (-30.0, 30.0)]
+    rim = [in_study_area(*to_map(s + a, t + b)) for a in (-30.0, 30.0) for b in (-30.0, 30.0)]
     reached = np.all(rim, axis=0) & (truth.height(x, y) < true_ground(x, y) - 8.0)
     s, t = s[reached], t[reached]
     found: list[Floats] = []

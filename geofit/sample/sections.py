@@ -21,7 +21,7 @@ from geofit.sample.truth import (
     to_site,
 )
 
-__all__ = ["CROSS_SECTIONS", "Drawing", "draw", "section_lines"]
+__all__ = ["CROSS_SECTIONS", "SampleDrawing", "draw_points", "empty_drawings"]
 
 Floats = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ _Trace = tuple[Floats, Floats, Callable[[float, float], Floats]]
 
 
 @dataclass(frozen=True)
-class Drawing:
+class SampleDrawing:
     """A section: its (k, 2) line in plan, and per horizon lines of (m, 2) (distance, elevation), in order."""
 
     name: str
@@ -62,17 +62,19 @@ class Drawing:
         return float(np.linalg.norm(np.diff(self.line, axis=0), axis=1).sum())
 
 
-def section_lines() -> list[Drawing]:
+def empty_drawings() -> list[SampleDrawing]:
     """Return the empty drawings: cross sections from right to left bank, and longitudinal ones."""
     nodes = {f"C{i + 1}": ((s, -_HALF), (s, _HALF)) for i, s in enumerate(CROSS_SECTIONS)} | _LONGITUDINAL
     drawings = []
     for name, corners in nodes.items():
         s, t = np.array(corners, float).T
-        drawings.append(Drawing(name, np.column_stack(to_map(s, t)).round(3)))
+        drawings.append(SampleDrawing(name, np.column_stack(to_map(s, t)).round(3)))
     return drawings
 
 
-def draw(drawing: Drawing, horizon: str, n: int, observations: Observations, rng: np.random.Generator) -> None:
+def draw_points(
+    drawing: SampleDrawing, horizon: str, n: int, observations: Observations, rng: np.random.Generator
+) -> None:
     """Draw n points of a horizon on a section, none where it is eroded, and enter them in the observations."""
     truth = horizon_truth(horizon)
     if isinstance(truth, MapTruth):
@@ -97,7 +99,12 @@ def draw(drawing: Drawing, horizon: str, n: int, observations: Observations, rng
 
 
 def _spread(
-    drawing: Drawing, horizon: str, trace: _Trace, error: Floats, observations: Observations, rng: np.random.Generator
+    drawing: SampleDrawing,
+    horizon: str,
+    trace: _Trace,
+    error: Floats,
+    observations: Observations,
+    rng: np.random.Generator,
 ) -> Floats | None:
     """Return (n, 2) points of a trace, about one in each n-th part of it; None if one found no room."""
     places, weight, locate = trace
@@ -125,7 +132,7 @@ def _spread(
     return np.array(picked)
 
 
-def _map_trace(drawing: Drawing, truth: MapTruth) -> _Trace:
+def _map_trace(drawing: SampleDrawing, truth: MapTruth) -> _Trace:
     margin = 16.0 if drawing.name.startswith("C") else 32.0
     distance = np.arange(margin, drawing.length - margin, 1.0)
     x, y = drawing.plan(distance)
@@ -141,7 +148,7 @@ def _map_trace(drawing: Drawing, truth: MapTruth) -> _Trace:
     return distance, weight, locate
 
 
-def _plane_trace(drawing: Drawing, truth: PlaneTruth) -> _Trace:
+def _plane_trace(drawing: SampleDrawing, truth: PlaneTruth) -> _Trace:
     start, end = drawing.line[0], drawing.line[-1]
     along = (end - start) / np.linalg.norm(end - start)
     across = np.array([-along[1], along[0], 0.0])
@@ -164,7 +171,7 @@ def _plane_trace(drawing: Drawing, truth: PlaneTruth) -> _Trace:
     return -v[::-1], drawn[::-1].astype(float), lambda place, error: locate(-place, error)
 
 
-def _fold_trace(drawing: Drawing, truth: FoldTruth) -> _Trace:
+def _fold_trace(drawing: SampleDrawing, truth: FoldTruth) -> _Trace:
     start, end = drawing.line[0], drawing.line[-1]
     along = (end - start) / np.linalg.norm(end - start)
     s = float(to_site(*start)[0])
@@ -184,7 +191,7 @@ def _fold_trace(drawing: Drawing, truth: FoldTruth) -> _Trace:
     return p, length, locate
 
 
-def _parts(points: Floats, horizon: str, drawing: Drawing) -> list[Floats]:
+def _parts(points: Floats, horizon: str, drawing: SampleDrawing) -> list[Floats]:
     """Split a drawn line where the horizon is eroded between two of its points."""
     truth = horizon_truth(horizon)
     if not isinstance(truth, MapTruth):

@@ -15,7 +15,7 @@ from geofit.sample.body_holes import write_bodies
 from geofit.sample.holes import Adit, Borehole, drill_adits, drill_boreholes
 from geofit.sample.mapping import map_outcrops, pick_lines
 from geofit.sample.observations import Observations
-from geofit.sample.sections import CROSS_SECTIONS, Drawing, draw, section_lines
+from geofit.sample.sections import CROSS_SECTIONS, SampleDrawing, draw_points, empty_drawings
 from geofit.sample.truth import BOUNDARY, HORIZONS
 from geofit.sample.truth import ground as true_ground
 
@@ -41,7 +41,7 @@ class Campaign:
     ground: Ground
     boreholes: list[Borehole]
     adits: list[Adit]
-    drawings: list[Drawing]
+    drawings: list[SampleDrawing]
     outcrops: dict[str, Floats]
     picks: dict[str, Floats]
     observations: Observations
@@ -59,7 +59,7 @@ def observe() -> Campaign:
     boreholes = drill_boreholes(ground, CROSS_SECTIONS, observations)
     outside = {hole.name for hole in boreholes if hole.name[2] in "WE"}
     adits = drill_adits(ground, observations)
-    drawings = section_lines()
+    drawings = empty_drawings()
     outcrops = {name: map_outcrops(name, gap, ground, observations) for name, gap in _OUTCROP_SPACING.items()}
 
     peripheral = sum(len(h.contacts.get("T2-T1", ())) for h in boreholes if h.name in outside)
@@ -73,7 +73,7 @@ def observe() -> Campaign:
             shares[: len(CROSS_SECTIONS)] = [(rest + i) // len(CROSS_SECTIONS) for i in range(len(CROSS_SECTIONS))]
         for drawing, n in zip(drawings, shares, strict=True):
             if n:
-                draw(drawing, name, n, observations, rng)
+                draw_points(drawing, name, n, observations, rng)
     counts = _PICKS | {"T2-T1": POINTS - CORE_POINTS - peripheral - len(outcrops["T2-T1"])}
     picks = {name: pick_lines(name, counts[name], observations) for name in HORIZONS if name in counts}
     if observations.count("T2-T1") != POINTS:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from geofit.data.files import replacing
 from geofit.data.site import Ground
 from geofit.sample.holes import Adit, Borehole
-from geofit.sample.sections import Drawing
+from geofit.sample.sections import SampleDrawing
 from geofit.sample.truth import BOUNDARY
 
 __all__ = [
@@ -142,12 +142,12 @@ def write_adits(folder: Path, adits: list[Adit]) -> None:
     write(folder / "adit_contacts.csv", table(("adit", "chainage", "horizon"), contacts))
 
 
-def section_file(drawing: Drawing) -> str:
+def section_file(drawing: SampleDrawing) -> str:
     """Return the name of a section's file, relative to the site's folder."""
     return f"sections/{drawing.name}.{'csv' if drawing.name in _AS_CSV else 'dxf'}"
 
 
-def write_section(path: Path, drawing: Drawing) -> None:
+def write_section(path: Path, drawing: SampleDrawing) -> None:
     """Write a drawing: distance along the section line against elevation, a layer or a name per horizon."""
     if path.suffix == ".csv":
         rows = (
@@ -278,7 +278,7 @@ epsilon = 0.5
 _ACCURACY = "accuracy = { borehole = 0.03, adit = 0.03, section = 0.03, outcrop = 0.1, geophysics = 0.1 }"
 
 
-def write_site_file(path: Path, drawings: list[Drawing]) -> None:
+def write_site_file(path: Path, drawings: list[SampleDrawing]) -> None:
     """Write the file that binds the others."""
     sections = "\n".join(
         f'[[section]]\nname = "{drawing.name}"\n'

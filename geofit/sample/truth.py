@@ -29,7 +29,7 @@ __all__ = [
     "fault_at",
     "ground",
     "horizon_truth",
-    "inside",
+    "in_study_area",
     "to_map",
     "to_site",
 ]
@@ -66,7 +66,7 @@ _CORNERS = np.array(
 BOUNDARY: Floats = np.column_stack(to_map(_CORNERS[:, 0], _CORNERS[:, 1])).round(1)
 
 
-def inside(x: Floats | float, y: Floats | float) -> NDArray[np.bool_]:
+def in_study_area(x: Floats | float, y: Floats | float) -> NDArray[np.bool_]:
     """Tell which map places lie in the study area (crossing-number rule)."""
     x, y = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float))
     odd = np.zeros(x.shape, bool)
@@ -183,7 +183,7 @@ class MapTruth:
         while len(found) < n:
             x, y = to_map(rng.uniform(s0, s1, 2 * n), rng.uniform(t0, t1, 2 * n))
             z = self.height(x, y)
-            keep = inside(x, y) & (z < ground(x, y))
+            keep = in_study_area(x, y) & (z < ground(x, y))
             found = np.concatenate([found, np.column_stack([x, y, z])[keep]])
         return found[:n]
 
@@ -367,7 +367,7 @@ def horizon_truth(name: str) -> MapTruth | PlaneTruth | FoldTruth:
     if name not in _TRUTHS:
         raise SettingsError(
             message(
-                "sample.sample-site-no-horizon",
+                "sample.horizon-unknown",
                 "The sample site has no horizon {name!r}; choose one of {names}.",
                 name=name,
                 names=", ".join(HORIZONS),

@@ -15,7 +15,7 @@ from geofit.geometry.mesh import Mesh
 from geofit.sampling.isolines import plane_lines
 from geofit.surfaces.protocol import Surface
 
-__all__ = ["Contour", "contours", "interval_for"]
+__all__ = ["ContourLine", "contours", "interval_for"]
 
 Floats = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ MOST = 5_000
 
 
 @dataclass(frozen=True, eq=False)
-class Contour:
+class ContourLine:
     """One contour line: ``line`` (k, 2) map coordinates at ``elevation``, metres; ``closed``: ends where it began."""
 
     elevation: float
@@ -45,7 +45,7 @@ def contours(
     *,
     tolerance: float = 0.05,
     mesh: Mesh | None = None,
-) -> list[Contour]:
+) -> list[ContourLine]:
     """Return the contour lines of a surface, the lowest first.
 
     Parameters
@@ -80,7 +80,7 @@ def contours(
     if not is_finite(step) or step <= 0:
         raise SettingsError(
             message(
-                "geometry.contour-interval-give-metres",
+                "data.contour-interval-not-positive",
                 "The contour interval is {step}; give metres above 0.",
                 step=shown(step),
             )
@@ -89,7 +89,7 @@ def contours(
     if last - first > MOST:
         raise SettingsError(
             message(
-                "geometry.interval-contours-give-above",
+                "sampling.too-many-contours",
                 "An interval of {step:g} m makes {count} contours from {low:.1f} to {high:.1f} m; give one above "
                 "{least:.2g} m.",
                 step=step,
@@ -105,5 +105,5 @@ def contours(
         for line in plane_lines(surface, mesh, np.array([0.0, 0.0, 1.0]), elevation - surface.origin[2]):
             closed = bool(np.array_equal(line[0], line[-1]))
             if np.ptp(line, axis=0).max() > 0:
-                found.append(Contour(elevation, line[:, :2] + surface.origin[:2], closed))
+                found.append(ContourLine(elevation, line[:, :2] + surface.origin[:2], closed))
     return found

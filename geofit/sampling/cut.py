@@ -49,7 +49,7 @@ def section_line(line: ArrayLike) -> Floats:
     if corners.ndim != 2 or corners.shape[1] != 2 or not (np.abs(corners) <= LARGEST).all():
         raise SettingsError(
             message(
-                "geometry.section-line-shape-finite",
+                "sampling.section-line-wrong-shape",
                 "The section line has shape {shape}; (k, 2) finite map coordinates are needed.",
                 shape=corners.shape,
             )
@@ -58,7 +58,7 @@ def section_line(line: ArrayLike) -> Floats:
     if apart.sum() < 2:
         raise SettingsError(
             message(
-                "geometry.section-line-place-give",
+                "sampling.section-line-one-point",
                 "The section line has only one distinct point; give two different ends.",
             )
         )

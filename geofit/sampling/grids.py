@@ -74,21 +74,21 @@ def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Float
     if not (high > low).all():
         raise SettingsError(
             message(
-                "geometry.horizons-not-stand-no",
+                "sampling.horizons-not-overlapping",
                 "The horizons do not overlap in plan; there is no thickness between them.",
             )
         )
     step = interval_for(0.0, float((high - low).max()) * 20 / CELLS) if cell is None else cell
     if not is_finite(step) or step <= 0:
         raise SettingsError(
-            message("geometry.cell-size-give-metres", "The cell size is {step}; give metres above 0.", step=step)
+            message("sampling.cell-size-not-positive", "The cell size is {step}; give metres above 0.", step=step)
         )
     first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
     count = last - first + 1
     if count.min() < 2:
         raise SettingsError(
             message(
-                "geometry.cell-leaves-no-grid",
+                "sampling.cell-larger-than-surface",
                 "A cell of {step:g} m leaves no grid; the surface is {width:.1f} m wide.",
                 step=step,
                 width=(high - low).min(),
@@ -97,7 +97,7 @@ def _grid(box: tuple[Floats, Floats], cell: float | None, value: Callable[[Float
     if count.prod() > MOST_CELLS:
         raise SettingsError(
             message(
-                "geometry.cell-cells-give-larger",
+                "sampling.too-many-cells",
                 "A cell of {step:g} m makes {count:.3g} cells; give a larger one.",
                 step=step,
                 count=count.prod(),

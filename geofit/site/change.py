@@ -89,9 +89,9 @@ class HorizonChange:
     def text(self) -> Message:
         """The figures as a sentence."""
         if not self.area:
-            return message("site.change-no-area", "{name}: the two states share no area", name=self.name)
+            return message("site.states-share-no-area", "{name}: the two states share no area", name=self.name)
         return message(
-            "site.change",
+            "site.surface-moved",
             "{name} moved by {mean:+.2f} m on average and {largest:+.2f} m at most; {share:.0%} of its area moved by "
             "more than {epsilon:g} m",
             name=self.name,
@@ -145,7 +145,7 @@ def horizon_change(
     limit = after.settings.epsilon if epsilon is None else epsilon
     if not is_finite(limit) or limit <= 0:
         raise SettingsError(
-            message("site.change-epsilon", "epsilon is {value}; give metres above 0.", value=shown(limit))
+            message("site.epsilon-not-positive", "epsilon is {value}; give metres above 0.", value=shown(limit))
         )
     grid = thickness_grid(after.surface, before.surface, cell)
     d, weight = grid.z, _node_areas(np.isfinite(grid.z), grid)

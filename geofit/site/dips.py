@@ -111,14 +111,14 @@ def _check(deviations: tuple[DipDeviation, ...], orientations: Orientations) -> 
     beyond = [one for one in worst if one.angle > LIMIT]
     if not beyond:
         text = message(
-            "check.measured-dips-agree-surface",
+            "site.dips-agree-surface",
             "the measured dips ({n}) agree with the surface, the worst by {angle:.0f} degrees",
             n=len(worst),
             angle=first.angle,
         )
         return Check("dips", True, first.angle, LIMIT, "deg", text)
     text = message(
-        "check.measured-dips-contradict-surface",
+        "site.dips-contradict-surface",
         "measured dips that contradict the surface: {count} of {n}, the worst is {azimuth:.0f}/{dip:.0f} where "
         "the surface dips {surface_azimuth:.0f}/{surface_dip:.0f} ({angle:.0f} degrees between the planes); the "
         "measurement belongs to another structure, or the surface is wrong there",

@@ -16,7 +16,7 @@ from geofit.site.zero_contours import zero_contours
 if TYPE_CHECKING:
     from shapely import Polygon
 
-__all__ = ["BEYOND_TRACE", "HALVINGS", "Fault", "Height", "longer", "size"]
+__all__ = ["BEYOND_TRACE", "HALVINGS", "Fault", "Height", "longer", "longer_side"]
 
 Floats = NDArray[np.float64]
 Height = Callable[[Floats, Floats], Floats]
@@ -45,7 +45,7 @@ class Fault:
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2 or not np.isfinite(line).all():
             raise SettingsError(
                 message(
-                    "site.fault-shape-fitted-surface",
+                    "site.fault-wrong-shape",
                     "Fault {number} has shape {shape}; a fitted surface or at least two (easting, northing) corners of "
                     "its trace are needed.",
                     number=number + 1,
@@ -68,7 +68,7 @@ class Fault:
         import shapely
 
         if self._left is not None:
-            edge = shapely.intersection(self._left.exterior, shapely.buffer(area, 0.01 * size(area)))
+            edge = shapely.intersection(self._left.exterior, shapely.buffer(area, 0.01 * longer_side(area)))
             return [shapely.get_coordinates(line) for line in shapely.get_parts(shapely.line_merge(edge))]
         plan = _lattice(area)
 
@@ -90,7 +90,7 @@ def longer(line: Floats, length: float) -> Floats:
     return np.vstack([line[0] + start, line, line[-1] + end])
 
 
-def size(area: Polygon) -> float:
+def longer_side(area: Polygon) -> float:
     """Return the longer side of an area's rectangle, metres."""
     x0, y0, x1, y1 = area.bounds
     return float(max(x1 - x0, y1 - y0))

@@ -23,7 +23,7 @@ from geofit.data.site import Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
 from geofit.site.dips import within
-from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, size
+from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, longer_side
 from geofit.site.height_field import HeightField
 from geofit.site.throw import FaultCut, Sides, throws
 
@@ -81,14 +81,14 @@ def fit_faulted(site: Site, name: str, progress: Progress | None = None) -> Bloc
     """
     if name not in site.horizons:
         raise InputError(
-            message("run.no-horizon", "There is no horizon '{name}'", name=name),
-            message("run.known-horizons", "The horizons are: {names}.", names=", ".join(site.horizons)),
+            message("data.horizon-unknown", "There is no horizon '{name}'", name=name),
+            message("data.known-horizons", "The horizons are: {names}.", names=", ".join(site.horizons)),
         )
     cutting = [fault for fault, cut in site.faults.items() if name in cut]
     if not cutting:
         raise InputError(
-            message("site.no-fault-site-cuts", "No fault of the site cuts '{name}'", name=name),
-            message("site.write-f1-under-faults", 'Write F1 = ["{name}"] under [faults].', name=name),
+            message("site.horizon-not-faulted", "No fault of the site cuts '{name}'", name=name),
+            message("site.write-fault", 'Write F1 = ["{name}"] under [faults].', name=name),
         )
     faults = []
     for k, fault in enumerate(cutting):
@@ -189,7 +189,7 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
         if side.min() == side.max():
             notes.append(
                 message(
-                    "site.points-lie-side",
+                    "site.points-on-one-side",
                     "all points of {horizon} lie on one side of {fault}",
                     horizon=name,
                     fault=fault.name,
@@ -206,7 +206,7 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
         mine = np.flatnonzero(block == k)
         if len(mine) < FEWEST:
             text = message(
-                "site.too-few-points-block",
+                "site.block-too-few-points",
                 "Too few points in the block '{block}' of {horizon}: {count} ({points}); at least "
                 "{least} are needed to fit a surface. Give more points there, or leave the fault out.",
                 block=title,
@@ -219,7 +219,7 @@ def part(points: PointSet, faults: Sequence[HorizonFit | ArrayLike], area: Polyg
         if len(mine) < FEW:
             notes.append(
                 plural_message(
-                    "site.rests-points",
+                    "site.block-rests-on-points",
                     "{block} rests on {count} point only",
                     "{block} rests on {count} points only",
                     block=title,
@@ -274,7 +274,9 @@ def fit_block(
         return np.asarray(centre[2] + slope[0] * (x - centre[0]) + slope[1] * (y - centre[1]))
 
     guess = _cut(area, plane, faults, sides, name)
-    widened = _largest(shapely.intersection(shapely.buffer(guess, BEYOND * size(area), join_style="mitre"), area))
+    widened = _largest(
+        shapely.intersection(shapely.buffer(guess, BEYOND * longer_side(area), join_style="mitre"), area)
+    )
     corners = shapely.get_coordinates(widened.exterior)[:-1]
     measured = within(*dips, guess, name)
     surface = fit_horizon(points, settings, corners, progress, name=name, orientations=measured)
@@ -293,7 +295,7 @@ def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, t
     for fault, sign in zip(faults, sides, strict=True):
         pieces = [rest]
         for line in fault.traces(area, height):
-            whole = longer(line, BEYOND_TRACE * size(area))
+            whole = longer(line, BEYOND_TRACE * longer_side(area))
             cut = (one for piece in pieces for one in split(piece, shapely.LineString(whole)).geoms)
             pieces = [one for one in cut if isinstance(one, shapely.Polygon)]
         inner = shapely.get_coordinates([shapely.point_on_surface(piece) for piece in pieces])
@@ -301,7 +303,7 @@ def _cut(area: Polygon, height: Height, faults: Sequence[Fault], sides: Sides, t
         mine = [piece for piece, one in zip(pieces, side, strict=True) if one == sign]
         if not mine:
             text = message(
-                "site.block-points-side-surface",
+                "site.block-outside-surface",
                 "The block '{block}' has points on a side of {fault} where its surface has no area. "
                 "Check the points next to the fault: one on the wrong side makes a block of its own.",
                 block=title,

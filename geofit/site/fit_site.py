@@ -27,7 +27,7 @@ from geofit.site.site_checks import add_site_checks
 from geofit.site.throw import FaultCut
 from geofit.streaming.executors import run_tasks
 
-__all__ = ["SiteFit", "compare", "fit_site"]
+__all__ = ["SiteFit", "compare_in_order", "fit_site"]
 
 
 @dataclass(eq=False)
@@ -121,7 +121,7 @@ def _one_by_one(site: Site, names: Sequence[str], changes: Mapping[str, Any], pr
         def listen(stage: str | Message, fraction: float, /, name: str = name, k: int = k) -> None:
             tell(
                 progress,
-                message("run.stage-of", "{name}: {stage}", name=name, stage=stage),
+                message("data.stage-of-name", "{name}: {stage}", name=name, stage=stage),
                 (k + min(max(fraction, 0.0), 1.0)) / len(names),
             )
 
@@ -145,7 +145,7 @@ def _side_by_side(
     parts: dict[int, SiteFit] = {}
     for k, part in run_tasks(_fitted_alone, tasks, scheduler, workers):
         parts[k] = part
-        text = message("run.stage-of", "{name}: {stage}", name=names[k], stage="done")
+        text = message("data.stage-of-name", "{name}: {stage}", name=names[k], stage="done")
         tell(progress, text, len(parts) / len(names))
     found = SiteFit()
     for _, part in sorted(parts.items()):
@@ -196,7 +196,7 @@ class _Fits:
         if faults and any(title != name for title in taken):
             raise SettingsError(
                 message(
-                    "site.block-called-horizon-rename",
+                    "data.block-name-taken",
                     "A block of '{name}' is called '{block}', and so is a horizon. Rename the horizon.",
                     name=name,
                     block=taken[0],
@@ -213,7 +213,7 @@ class _Fits:
         except (FitError, PointsError) as error:
             raise FitError(
                 message(
-                    "site.fault-cannot-laid",
+                    "site.fault-not-fitted",
                     "the fault {fault} cannot be fitted: {reason}",
                     fault=name,
                     reason=error.message,
@@ -249,7 +249,7 @@ def _separate_horizons(site: Site, found: SiteFit) -> None:
     blocked = [name for name in site.order if name in found.horizon.values() and name not in found.surfaces]
     if blocked:
         text = message(
-            "site.cut-fault-not-pushed",
+            "site.faulted-not-separated",
             "{names}: cut by a fault, so not separated from other horizons",
             names=", ".join(blocked),
         )
@@ -259,7 +259,7 @@ def _separate_horizons(site: Site, found: SiteFit) -> None:
             return
         found.warnings += (
             message(
-                "site.no-repair-order-site",
+                "site.order-names-no-pair",
                 "not separated: the order of the site names no two fitted horizons without a fault",
             ).with_severity("warning"),
         )
@@ -267,13 +267,15 @@ def _separate_horizons(site: Site, found: SiteFit) -> None:
     try:
         done = separate_horizons(found.surfaces, sequence)
     except SettingsError as error:
-        found.warnings += (message("site.no-repair", "not separated: {reason}", reason=error).with_severity("warning"),)
+        found.warnings += (
+            message("site.not-separated", "not separated: {reason}", reason=error).with_severity("warning"),
+        )
         return
     found.surfaces.update(done.surfaces)
     found.moved, found.contradictions = dict(done.moved), done.contradictions
 
 
-def compare(site: Site, found: SiteFit) -> tuple[Order, ...]:
+def compare_in_order(site: Site, found: SiteFit) -> tuple[Order, ...]:
     """Compare every two horizons of the site's order; of faulted ones the blocks on the same side of their faults.
 
     Raises

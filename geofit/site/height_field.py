@@ -11,7 +11,7 @@ from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.cells import tabulate
-from geofit.geometry.elevation import RIM, Plan, plan_map
+from geofit.geometry.elevation import RIM, PlanMap, plan_map
 
 if TYPE_CHECKING:
     from shapely import Geometry
@@ -43,10 +43,10 @@ class HeightField:
     def __init__(self, surface: HorizonFit) -> None:
         self.name, self.origin, self.outline = surface.name, surface.origin, surface.outline
         mappings = [plan_map(patch) for patch in surface.patches]
-        self._mappings: list[Plan] = [one for one in mappings if one is not None]
+        self._mappings: list[PlanMap] = [one for one in mappings if one is not None]
         if not mappings or len(self._mappings) < len(mappings):
             text = message(
-                "site.no-height-field-map",
+                "site.not-a-height-field",
                 "'{name}' is not a height field over the map, so above and below are not defined for "
                 "it. Name fitted horizons only; leave out faults, overturned folds and triangles read "
                 "from files.",

@@ -95,10 +95,10 @@ class BlindTest:
     def text(self) -> Message:
         """The result as a sentence."""
         if not self.contacts:
-            return message("site.blind-none", "{name}: no new contact", name=self.name)
+            return message("site.no-new-contact", "{name}: no new contact", name=self.name)
         if not self.judged:
             return plural_message(
-                "site.blind-unjudged",
+                "site.new-contacts-beyond-band",
                 "{name}: {count} new contact, which no earlier band reaches",
                 "{name}: {count} new contacts, which no earlier band reaches",
                 count=len(self.contacts),
@@ -107,13 +107,13 @@ class BlindTest:
         figures = {"name": self.name, "inside": self.inside, "count": len(self.judged), "share": self.share}
         if self.too_narrow:
             return message(
-                "site.blind-too-narrow",
+                "site.new-contacts-outside-band",
                 "{name}: {inside} of {count} new contacts lie inside the earlier 90 % band ({share:.0%}): "
                 "it was too narrow",
                 **figures,
             )
         return message(
-            "site.blind",
+            "site.new-contacts-in-band",
             "{name}: {inside} of {count} new contacts lie inside the earlier 90 % band ({share:.0%})",
             **figures,
         )

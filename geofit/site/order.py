@@ -15,7 +15,7 @@ from geofit.data.messages import message
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.site.height_field import HeightField
-from geofit.site.overlap import Crossing, Overlap
+from geofit.site.overlap import HorizonCrossing, Overlap
 
 __all__ = ["Order", "compare_horizons", "orders", "require_sequence", "thickness"]
 
@@ -38,7 +38,7 @@ class Order:
     max: float
     thinnest: tuple[float, float]
     thickest: tuple[float, float]
-    crossings: tuple[Crossing, ...]
+    crossings: tuple[HorizonCrossing, ...]
 
     @property
     def crossed_area(self) -> float:
@@ -60,11 +60,11 @@ class Order:
                 0.0,
                 0.0,
                 "m",
-                message("site.share-no-area", "{upper} and {lower} share no area", **names),
+                message("site.horizons-share-no-area", "{upper} and {lower} share no area", **names),
             )
         if not self.crossings:
             text = message(
-                "site.above-everywhere",
+                "site.upper-above-everywhere",
                 "{upper} lies above {lower} everywhere: {low:.2f} to {high:.2f} m, {mean:.2f} m on average",
                 low=self.min,
                 high=self.max,
@@ -80,13 +80,13 @@ class Order:
         below = [crossing for crossing in self.crossings if not crossing.in_air >= 1.0]
         if not below:
             text = message(
-                "site.lies-below-above-ground",
+                "site.horizons-cross-above-ground",
                 "{upper} lies below {lower} above the ground only (places: {count}): {area:.0f} m2, {volume:.0f} m3",
                 **figures,
             )
             return Check("order", True, 0.0, 0.0, "m", text)
         text = message(
-            "site.lies-below-places-m2",
+            "site.horizons-cross",
             "{upper} lies below {lower} (places: {count}): {area:.0f} m2, {volume:.0f} m3, deepest {depth:.2f} m "
             "at ({x:.1f}, {y:.1f})",
             **figures,
@@ -172,16 +172,16 @@ def require_sequence(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str]
     missing = [name for name in sequence if name not in surfaces]
     if missing:
         text = message(
-            "site.order-names-no-surface",
+            "site.order-without-surface",
             "The order names '{name}', which has no surface; the surfaces are {names}. Fit it, or "
             "take it out of the order.",
             name=missing[0],
-            names=", ".join(surfaces) or message("site.none", "none"),
+            names=", ".join(surfaces) or message("data.none", "none"),
         )
         raise SettingsError(text)
     if len(set(sequence)) < len(sequence):
         text = message(
-            "site.order-names-horizon-twice",
+            "site.order-repeats-horizon",
             "The order names a horizon twice: {names}. Name each once, top to bottom.",
             names=", ".join(sequence),
         )

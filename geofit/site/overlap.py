@@ -22,7 +22,7 @@ from geofit.site.zero_contours import lattice_triangles, zero_contours
 if TYPE_CHECKING:
     from shapely import Geometry
 
-__all__ = ["TOUCH", "Crossing", "Overlap"]
+__all__ = ["TOUCH", "HorizonCrossing", "Overlap"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -44,7 +44,7 @@ MOST = 2_000_000
 
 
 @dataclass(frozen=True, eq=False)
-class Crossing:
+class HorizonCrossing:
     """One place where the upper horizon lies below the lower one.
 
     ``area`` (m2) and ``volume`` (m3) of the overlap; ``x``, ``y`` and ``depth`` (m) of its deepest place; ``lines``
@@ -184,7 +184,7 @@ class Overlap:
             width *= SHRINK
         return best
 
-    def crossings(self, ground: Ground | None = None) -> tuple[Crossing, ...]:
+    def crossings(self, ground: Ground | None = None) -> tuple[HorizonCrossing, ...]:
         """Return the crossings, the largest volume first; a ground shows which of them lie above it."""
         from scipy.ndimage import find_objects, label
 
@@ -221,7 +221,7 @@ class Overlap:
                 return window, pieces
             pieces *= 2
 
-    def _measured(self, window: _Window, ground: Ground | None) -> list[Crossing]:
+    def _measured(self, window: _Window, ground: Ground | None) -> list[HorizonCrossing]:
         """Return the crossings in a window: each a connected part below zero."""
         from scipy.ndimage import find_objects, label
 
@@ -238,7 +238,7 @@ class Overlap:
             value = np.where(mine, part.value + TOUCH, np.maximum(part.value + TOUCH, 0.0))
             lines = zero_contours(part.plan, value, self.over)
             found.append(
-                Crossing(
+                HorizonCrossing(
                     area=float(areas[k]),
                     volume=float(volumes[k]),
                     x=float(deep[0]),

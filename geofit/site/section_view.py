@@ -134,7 +134,11 @@ def section_view(
     """
     if not thickness > 0:
         raise SettingsError(
-            message("section.thickness", "The section's thickness is {value:g} m. Give one above 0.", value=thickness)
+            message(
+                "site.section-thickness-not-positive",
+                "The section's thickness is {value:g} m. Give one above 0.",
+                value=thickness,
+            )
         )
     corners = section_line(line)
     bends = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(corners, axis=0), axis=1))])
@@ -191,7 +195,7 @@ def parallel_lines(axis: ArrayLike, spacing: float, half: float) -> dict[str, Fl
     if not (spacing > 0 and half > 0) or start[-1] / spacing > 500:
         raise SettingsError(
             message(
-                "section.spacing",
+                "site.section-spacing-unusable",
                 "Sections every {spacing:g} m along {length:.0f} m, {half:g} m to each side: give a spacing and a "
                 "length above 0, and at most 500 sections.",
                 spacing=spacing,

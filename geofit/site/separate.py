@@ -64,7 +64,7 @@ class Contradiction:
         """What contradicts what, in words."""
         none = message("site.no-exact-point", "no exact point")
         return message(
-            "site.contradiction",
+            "site.horizons-not-separable",
             "{upper} and {lower} cannot be separated at ({x:.1f}, {y:.1f}), {lack:.3f} m are "
             "missing: {above} of {upper} contradicts {below} of {lower}",
             upper=self.upper,
@@ -118,7 +118,7 @@ def separate_horizons(surfaces: Mapping[str, HorizonFit], sequence: Sequence[str
     if not (minimum >= 0 and np.isfinite(minimum)):
         raise SettingsError(
             message(
-                "site.least-thickness-give-metres",
+                "site.least-thickness-negative",
                 "The least thickness is {value}; give metres, 0 or more.",
                 value=minimum,
             )
@@ -140,7 +140,7 @@ class _Layer:
     def __init__(self, surface: HorizonFit) -> None:
         if surface.model is None or surface.model.problem.parametrization.frame.kind != "map":
             text = message(
-                "site.no-control-net-map",
+                "site.no-control-net",
                 "'{name}' has no control net over the map: it was read from a file, or is not a height "
                 "field. Fit it again, or take it out of the order.",
                 name=surface.name,
@@ -186,7 +186,7 @@ class _Layer:
         new = self.surface.refitted(self.moved())
         assert new.accuracy is not None
         note = message(
-            "site.moved-keep-order-strata",
+            "site.moved-to-keep-order",
             "moved by up to {most:.3f} m to keep the order of strata",
             most=float(np.abs(self.change).max()),
         )

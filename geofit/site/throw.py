@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from geofit.data.messages import Message, message
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.site.fault import BEYOND_TRACE, HALVINGS, Fault, longer, size
+from geofit.site.fault import BEYOND_TRACE, HALVINGS, Fault, longer, longer_side
 from geofit.site.height_field import HeightField
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class FaultCut:
     def text(self) -> Message:
         """The throw in words."""
         return message(
-            "site.throw",
+            "site.fault-throw",
             "{fault} throws {horizon} down by {low:.2f} to {high:.2f} m, {mean:.2f} m on average over {length:.0f} m: "
             "{up} lies above {down}",
             fault=self.fault,
@@ -116,7 +116,7 @@ def _displacement(
         part
         for line in fault.traces(area, middle)
         for part in shapely.get_parts(
-            shapely.intersection(shapely.LineString(longer(line, BEYOND_TRACE * size(area))), area)
+            shapely.intersection(shapely.LineString(longer(line, BEYOND_TRACE * longer_side(area))), area)
         )
         if part.geom_type == "LineString"
     ]
@@ -135,7 +135,7 @@ def _displacement(
         return None
     trace, distance = trace[meets], distance[meets] - distance[meets][0]
     throw = one.height_field(*trace[:, :2].T) - two.height_field(*trace[:, :2].T)
-    heave = _heave(fault, number, one, two, trace[:, :2], ACROSS * size(area))
+    heave = _heave(fault, number, one, two, trace[:, :2], ACROSS * longer_side(area))
     upper, lower = (one, two) if throw.mean() >= 0 else (two, one)
     throw = throw if upper is one else -throw
     return FaultCut(fault.name, horizon, upper.name, lower.name, trace, distance, throw, heave)

@@ -64,7 +64,7 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
         worst = np.flatnonzero(wrong)[np.argsort(-height[wrong], kind="stable")]
         value = float(height[worst[0]])
         text = message(
-            "check.horizon-stands-above-ground",
+            "site.horizon-above-ground",
             "the horizon lies above the ground: by {value:.1f} m at {x:.0f}, {y:.0f}, where its "
             "own points constrain it; {points} points and {area:.0f} square metres in all are more "
             "than {tolerance:g} m above it",
@@ -79,7 +79,7 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
     if above.any():
         highest = float(height[above].max())
         text = message(
-            "check.away-points-horizon-goes",
+            "site.horizon-above-ground-away",
             "away from its points the horizon continues above the ground, up to {value:.1f} m over "
             "{area:.0f} square metres: it is eroded there, or no point constrains it",
             value=highest,
@@ -87,7 +87,7 @@ def check_ground(surface: HorizonFit, ground: Ground | None, tolerance: float) -
         )
         return Check("above ground", None, highest, tolerance, "m", text)
     text = message(
-        "check.horizon-stays-below-ground",
+        "site.horizon-below-ground",
         "the horizon stays below the ground (within {tolerance:g} m)",
         tolerance=tolerance,
     )

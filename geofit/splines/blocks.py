@@ -43,7 +43,7 @@ class BlockFactor:
         if not (band[0] > 0).all():
             raise FitError(
                 message(
-                    "splines.posterior-fit-improper-some",
+                    "splines.control-points-unconstrained",
                     "The posterior of the fit is improper: some control points are not constrained.",
                 )
             )
@@ -59,7 +59,7 @@ class BlockFactor:
                 continue
         raise FitError(
             message(
-                "splines.posterior-fit-improper-points",
+                "splines.control-points-free",
                 "The posterior of the fit is improper: points and energy leave control points free.",
             )
         )

@@ -183,7 +183,7 @@ class Factor:
         if not (diagonal > 0).all():
             raise FitError(
                 message(
-                    "splines.control-points-held-neither",
+                    "splines.control-points-without-data",
                     "Control points constrained by neither data nor energy: {count}. Use fewer knots, or a "
                     "larger smoothing.",
                     count=int((diagonal <= 0).sum()),
@@ -203,7 +203,7 @@ class Factor:
                 continue
         raise FitError(
             message(
-                "splines.system-fit-not-positive",
+                "splines.system-not-positive",
                 "The system of the fit is not positive definite: too few points, or points that contradict "
                 "each other, leave control points free. Use fewer knots, or a larger smoothing.",
             )

@@ -148,7 +148,7 @@ def _client(scheduler: str) -> tuple[Any, Any]:
     except ImportError as error:
         raise MissingDependencyError(
             message(
-                "streaming.needs-dask",
+                "streaming.dask-missing",
                 "The scheduler {scheduler} needs Dask, which cannot be imported ({error}). Install it: {install}, or "
                 "use --scheduler local.",
                 scheduler=scheduler,
@@ -159,7 +159,7 @@ def _client(scheduler: str) -> tuple[Any, Any]:
     if "://" not in scheduler and not Path(scheduler).is_file():
         raise SettingsError(
             message(
-                "streaming.unknown-scheduler",
+                "streaming.scheduler-unknown",
                 "The scheduler '{scheduler}' is neither 'local', nor an address (tcp://host:port), nor a scheduler "
                 "file that is there.",
                 scheduler=scheduler,
@@ -171,7 +171,7 @@ def _client(scheduler: str) -> tuple[Any, Any]:
     except (OSError, TimeoutError, ValueError):
         raise SchedulerError(
             message(
-                "streaming.no-scheduler",
+                "streaming.scheduler-silent",
                 "No scheduler answers at {scheduler} within {seconds} s. Check the address and that it runs.",
                 scheduler=scheduler,
                 seconds=PATIENCE,

@@ -26,9 +26,9 @@ from geofit.data.points import PointSet
 from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 from geofit.fitting.assemble import patches_of
-from geofit.fitting.field import Field, plane_trend
+from geofit.fitting.field import FieldChoice, plane_trend
 from geofit.fitting.net import Data, cap_for, choose_field, smoothed
-from geofit.fitting.parametrize import STEEP, box_of, direction_of
+from geofit.fitting.parametrize import STEEP, direction_of, plan_box
 from geofit.geometry.frame import Frame, map_frame, plane_axes
 from geofit.streaming.coincident import coincident
 from geofit.surfaces.patch_surface import PatchSurface
@@ -63,7 +63,7 @@ class CloudFit:
     settings: FitSettings
     n: int
     coincident: Ints
-    field: Field
+    field: FieldChoice
     seconds: Mapping[str, float]
 
     def __repr__(self) -> str:
@@ -191,7 +191,7 @@ def _bounds(xyz: Rows) -> tuple[Floats, Floats]:
     if xyz.ndim != 2 or xyz.shape[1] != 3 or len(xyz) < 16:
         raise PointsError(
             message(
-                "streaming.cloud-shape",
+                "streaming.cloud-wrong-shape",
                 "The cloud has shape {shape}; at least 16 points, (n, 3), are needed.",
                 shape=xyz.shape,
             )
@@ -213,7 +213,7 @@ def _bounds(xyz: Rows) -> tuple[Floats, Floats]:
     if max(np.abs(low).max(), np.abs(high).max()) > LARGEST or (low == high).all():
         raise PointsError(
             message(
-                "streaming.cloud-extent",
+                "streaming.cloud-extent-unusable",
                 "The coordinates run from {low} to {high}; they must differ, and be at most {largest:.0e} m. Check the "
                 "unit and the columns.",
                 low=low.tolist(),
@@ -233,7 +233,7 @@ def _frame(xyz: Rows, low: Floats, high: Floats, settings: FitSettings, boundary
     if kind == "sections":
         raise FitError(
             message(
-                "streaming.frame-sections",
+                "streaming.cloud-without-sections",
                 "frame='sections' needs named sections, which a cloud has not. Choose 'map' or 'best-plane'.",
             )
         )
@@ -243,12 +243,12 @@ def _frame(xyz: Rows, low: Floats, high: Floats, settings: FitSettings, boundary
 
 
 def _gather(local: LongArray, frame: Frame, boundary: Floats | None) -> Data:
-    """Return the points in units about their trend, as :func:`geofit.fitting.net.gather` does."""
+    """Return the points in units about their trend, as :func:`geofit.fitting.net.gather_points` does."""
     extents = [np.min([part.min(axis=0) for (part,) in blocks(local)], axis=0)[:2]]
     extents.append(np.max([part.max(axis=0) for (part,) in blocks(local)], axis=0)[:2])
     if boundary is not None and frame.kind == "map":
         extents.extend(frame.plan(boundary))
-    area = box_of(np.array(extents))
+    area = plan_box(np.array(extents))
     n = len(local)
     unit = math.sqrt((area[1] - area[0]) * (area[3] - area[2]) / n)
     plane = LongArray((n, 2), lambda start, stop: local[start:stop][:, :2] / unit)

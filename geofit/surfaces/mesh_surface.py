@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import measurable_places
 from geofit.geometry.mesh import Mesh
-from geofit.geometry.mesh_projection import elevation, nearest
+from geofit.geometry.mesh_projection import mesh_elevation, nearest_on_mesh
 from geofit.geometry.projection import Projection
 from geofit.geometry.trim_loops import Loops
 from geofit.splines.patch import Patch
@@ -61,11 +61,11 @@ class MeshSurface:
 
     def elevation(self, x: ArrayLike, y: ArrayLike) -> Floats:
         """Return the height at map coordinates in metres, nan outside, the highest of several; arrays broadcast."""
-        return elevation(self.mesh, x, y)
+        return mesh_elevation(self.mesh, x, y)
 
     def project(self, xyz: ArrayLike) -> Projection:
         """Return the nearest triangles of (n, 3) map coordinates; they have no parameters."""
-        return nearest(self.mesh, measurable_places(xyz) - self.origin)
+        return nearest_on_mesh(self.mesh, measurable_places(xyz) - self.origin)
 
     def distance(self, xyz: ArrayLike) -> Floats:
         """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""

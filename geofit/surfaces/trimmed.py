@@ -12,7 +12,7 @@ from geofit.geometry.elevation import elevation
 from geofit.geometry.mesh import Mesh, triangulate
 from geofit.geometry.mesh_projection import ASIDE
 from geofit.geometry.projection import Projection
-from geofit.geometry.trim_loops import Loops, nearest, trim
+from geofit.geometry.trim_loops import Loops, nearest_on_trimmed, trim
 from geofit.surfaces.patch_surface import PatchSurface
 
 __all__ = ["TrimmedSurface"]
@@ -46,7 +46,7 @@ class TrimmedSurface(PatchSurface):
         for k in [k for k, loops in enumerate(self.loops) if loops and asked[k].any()]:
             some = np.flatnonzero(asked[k])
             place = np.column_stack([plan[some], heights[k, some]]) - self.origin
-            gone = np.abs(nearest(self.patches[k : k + 1], place, self.loops[k : k + 1]).distance) > ASIDE
+            gone = np.abs(nearest_on_trimmed(self.patches[k : k + 1], place, self.loops[k : k + 1]).distance) > ASIDE
             heights[k, some[gone]] = np.nan
         height = _highest(heights)
         if self.outline is not None:  # between two faces whose common curve each follows by its own polygon
@@ -55,7 +55,7 @@ class TrimmedSurface(PatchSurface):
 
     def project(self, xyz: ArrayLike) -> Projection:
         """Return the foot points of (n, 3) map coordinates on the trimmed faces."""
-        return nearest(self.patches, measurable_places(xyz) - self.origin, self.loops)
+        return nearest_on_trimmed(self.patches, measurable_places(xyz) - self.origin, self.loops)
 
     def triangulate(self, tolerance: float = 0.05) -> Mesh:
         """Return triangles within a tolerance (m), cut along the loops."""

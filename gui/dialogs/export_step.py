@@ -36,7 +36,7 @@ from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon, level_mark, verdict_mark
-from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.theme import missing_chinese
 from geofit.gui.translate import translated, user_language
 from geofit.project.step_files import Signed, StepFile, step_paths, write_step_files
@@ -202,7 +202,7 @@ class ExportDialog(TaskDialog):
         store.setValue(_AUTHOR, self.author.text().strip())
         store.setValue(_ORGANISATION, self.organisation.text().strip())
         found = {name: back for file in files for name, back in file.read_back.items()}
-        size = digits.size(sum(file.size for file in files))
+        size = digits.kilobytes(sum(file.size for file in files))
         pages = [file.certificate for file in files if file.certificate is not None]
         names = ", ".join(str(path.resolve()) for path in (*(file.path for file in files), *pages))
         if all(back.passed for back in found.values()):
@@ -224,7 +224,7 @@ class ExportDialog(TaskDialog):
         first = Check(
             "σ", None if sigma is None else back.sigma < sigma.epsilon, back.sigma, sigma.epsilon if sigma else np.nan,
             "m", message(
-                "check.sigma-in-file", "{faces} faces; σ of all points from the surface in the file", faces=back.faces
+                "gui.sigma-in-file", "{faces} faces; σ of all points from the surface in the file", faces=back.faces
             ),
         )  # fmt: skip
         return [first, *back.checks]
@@ -238,24 +238,24 @@ class ExportDialog(TaskDialog):
 
         self.table.show_columns(
             (
-                Column(self.tr("Horizon"), texts([name for name, _ in rows])),
-                Column(
+                TableColumn(self.tr("Horizon"), texts([name for name, _ in rows])),
+                TableColumn(
                     self.tr("Check of the file"),
                     texts([translated(check.name) for _, check in rows]),
                     icons=lambda row: verdict_mark(passed[row]),
                 ),
-                Column(
+                TableColumn(
                     self.tr("Result"),
                     texts([results[value] for value in passed]),
                     order=[{False: 0, True: 1, None: 2}[value] for value in passed],
                 ),
-                Column(
+                TableColumn(
                     self.tr("Found"), texts([digits.measured(check.value, translated(check.unit)) for _, check in rows])
                 ),
-                Column(
+                TableColumn(
                     self.tr("Limit"), texts([digits.measured(check.limit, translated(check.unit)) for _, check in rows])
                 ),
-                Column(self.tr("In words"), texts([translated(check.text) for _, check in rows])),
+                TableColumn(self.tr("In words"), texts([translated(check.text) for _, check in rows])),
             )
         )
         self.table.resizeColumnsToContents()

@@ -27,7 +27,7 @@ from geofit.data.errors import GeofitError
 from geofit.data.site import Site
 from geofit.gui.translate import failure
 from geofit.io.contact_rules import ContactRule
-from geofit.project.horizon_builder import Picks, codes_of, picks_of
+from geofit.project.horizon_builder import RulePicks, codes_of, picks_of
 
 __all__ = ["HorizonBuilder"]
 
@@ -45,7 +45,7 @@ class HorizonBuilder(QDialog):
         self.setWindowTitle(self.tr("Build a horizon from lithology"))
         self._site, self._taken = site, {name.casefold() for name in taken}
         self._named = False
-        self.picks: Picks | None = None
+        self.picks: RulePicks | None = None
         self._items: list[QTableWidgetItem] = []
         self.codes = QTableWidget(0, 5)
         self.codes.setHorizontalHeaderLabels(

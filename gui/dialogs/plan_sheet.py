@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QWidget
 
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.dialogs.sheet import SheetDialog, metres
+from geofit.gui.dialogs.sheet import SheetDialog, metres_field
 from geofit.gui.translate import user_language
 from geofit.project.plan_sheet import PlanOrder, write_plan_sheet
 
@@ -43,7 +43,7 @@ class PlanSheetDialog(SheetDialog):
             self.which.addItem(words, tuple(self._surfaces))
         if chosen in self._surfaces:
             self.which.setCurrentText(chosen)
-        self.interval: QDoubleSpinBox = metres(0.0, 1000.0, 0.0)
+        self.interval: QDoubleSpinBox = metres_field(0.0, 1000.0, 0.0)
         self.interval.setSpecialValueText(self.tr("By the relief"))
         self.interval.setToolTip(self.tr("Metres between contours; 0: 1, 2 or 5 times a power of ten"))
         self.lay_out(((self.tr("&Horizon"), self.which), (self.tr("C&ontours every"), self.interval)))

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.gui.dialogs.task_dialog import TaskDialog
-from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.panels.volume_slices import VolumeSlices
 from geofit.gui.translate import translated
 from geofit.gui.view3d.pore_scene import PoreScene
@@ -195,7 +195,7 @@ class RockVolumeDialog(TaskDialog):
         self._recolour()
         names, values = zip(*self._figures(view), strict=True)
         self.table.show_columns(
-            [Column(self.tr("Figure"), np.array(names)), Column(self.tr("Value"), np.array(values))]
+            [TableColumn(self.tr("Figure"), np.array(names)), TableColumn(self.tr("Value"), np.array(values))]
         )
         messages = [translated(text) for text in view.permeability.messages]
         self.say(

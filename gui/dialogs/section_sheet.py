@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QComboBox, QWidget
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.dialogs.sheet import SheetDialog, metres
+from geofit.gui.dialogs.sheet import SheetDialog, metres_field
 from geofit.gui.translate import user_language
 from geofit.project.section_sheet import SheetOrder, write_section_sheet
 from geofit.site.section_view import parallel_lines
@@ -49,9 +49,9 @@ class SectionSheetDialog(SheetDialog):
         self.which.addItem(self.tr("Across that line, every so many metres"), "across")
         if site.sections:
             self.which.addItem(self.tr("Every section of the site ({n})").format(n=len(site.sections)), "sections")
-        self.spacing = metres(1.0, 1e5, 100.0)
-        self.half = metres(1.0, 1e5, 200.0)
-        self.thickness = metres(0.1, 1e5, thickness)
+        self.spacing = metres_field(1.0, 1e5, 100.0)
+        self.half = metres_field(1.0, 1e5, 200.0)
+        self.thickness = metres_field(0.1, 1e5, thickness)
         self.factor = QComboBox()
         for factor in _FACTORS:
             self.factor.addItem(f"× {factor:g}", factor)

@@ -30,7 +30,7 @@ from geofit.gui.translate import failure
 from geofit.project.section_sheet import SheetForm
 from geofit.report.paper import PAPERS, SCALES, SheetTitle
 
-__all__ = ["SheetDialog", "metres"]
+__all__ = ["SheetDialog", "metres_field"]
 
 #: A field with its label.
 Row = tuple[str, QWidget]
@@ -155,7 +155,7 @@ class SheetDialog(TaskDialog):
         self.say(self.tr("Wrote {names} at 1:{scale}.").format(names=names, scale=scale), "passed")
 
 
-def metres(low: float, high: float, value: float) -> QDoubleSpinBox:
+def metres_field(low: float, high: float, value: float) -> QDoubleSpinBox:
     """Return a field for metres."""
     spin = QDoubleSpinBox()
     spin.setRange(low, high)

@@ -31,7 +31,7 @@ from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.settings_form import SettingsForm, scrolling
 from geofit.gui.panels.verdict import VerdictBadge
-from geofit.project.body_record import BodyProvenance, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import BodyProvenance, ClosedMesh, Intervals, MorphFrame
 
 __all__ = ["BodiesPanel", "BodyShown"]
 
@@ -152,7 +152,7 @@ class BodiesPanel(QWidget):
         self.badge.setVisible(shown is not None and judged)
         if shown is not None:
             self.badge.show_accuracy(accuracy, shown.stale, shown.verdict, shown.waiting)
-        self.form.setVisible(judged and not isinstance(self.source.source(), ClosedMesh | Frame))
+        self.form.setVisible(judged and not isinstance(self.source.source(), ClosedMesh | MorphFrame))
         self.origin.setText("" if shown is None else shown.origin)
         self.origin.setVisible(bool(self.origin.text()))
         self._check()
@@ -236,7 +236,7 @@ class BodiesPanel(QWidget):
         title = self.title.text().strip()
         taken = self._shown is None and bool(title) and title in self._taken
         self.fit_button.setText(self.tr("Fit") if fitted else self.tr("Read"))
-        frame = isinstance(source, Frame)
+        frame = isinstance(source, MorphFrame)
         self.fit_button.setEnabled(source is not None and settings is not None and not taken and not frame)
         self.export_button.setEnabled(known is not None and not self._waiting())
         self.more.setEnabled(known is not None)

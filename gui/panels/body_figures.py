@@ -10,7 +10,7 @@ from geofit.bodies.simulate import BodyVolumes
 from geofit.bodies.violations import Violation
 from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import translated
 from geofit.project.body_building import BodyResult
 
@@ -101,9 +101,9 @@ class BodyFigures(QWidget):
         )
         self.volumes.show_columns(
             [
-                Column(self.tr("Part", "BodyFigures"), np.array([part for part, _, _ in rows])),
-                Column(self.tr("Pieces"), np.array([pieces for _, pieces, _ in rows]), 0),
-                *(Column(title, figures[:, k], 0, about) for k, (title, about) in enumerate(titles)),
+                TableColumn(self.tr("Part", "BodyFigures"), np.array([part for part, _, _ in rows])),
+                TableColumn(self.tr("Pieces"), np.array([pieces for _, pieces, _ in rows]), 0),
+                *(TableColumn(title, figures[:, k], 0, about) for k, (title, about) in enumerate(titles)),
             ]
         )
 
@@ -131,21 +131,21 @@ class BodyFigures(QWidget):
         self.violations.setVisible(bool(found))
         self.violations.show_columns(
             [
-                Column(
+                TableColumn(
                     self.tr("Kind"), np.array([kinds[one.kind] for one in found], str), icons=lambda _: icon("failed")
                 ),
-                Column(self.tr("Hole"), np.array([one.hole for one in found], str)),
-                Column(
+                TableColumn(self.tr("Hole"), np.array([one.hole for one in found], str)),
+                TableColumn(
                     self.tr("Distance, m"),
                     np.array([one.distance for one in found], float),
                     3,
                     self.tr("Signed distance from the surface: positive outside."),
                 ),
-                Column(self.tr("Length, m"), np.array([one.length for one in found], float), 2),
-                Column(self.tr("In words"), np.array([translated(one.text) for one in found], str)),
-                Column(self.tr("Easting, m"), places[:, 0], 2),
-                Column(self.tr("Northing, m"), places[:, 1], 2),
-                Column(self.tr("Elevation, m"), places[:, 2], 2),
+                TableColumn(self.tr("Length, m"), np.array([one.length for one in found], float), 2),
+                TableColumn(self.tr("In words"), np.array([translated(one.text) for one in found], str)),
+                TableColumn(self.tr("Easting, m"), places[:, 0], 2),
+                TableColumn(self.tr("Northing, m"), places[:, 1], 2),
+                TableColumn(self.tr("Elevation, m"), places[:, 2], 2),
             ]
         )
 

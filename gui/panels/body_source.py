@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from geofit.project.body_record import BodySource, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import BodySource, ClosedMesh, Intervals, MorphFrame
 
 __all__ = ["BodySourceForm"]
 
@@ -68,7 +68,7 @@ class BodySourceForm(QWidget):
         self._other: tuple[str, Mapping[str, int]] = ("", {})
         self._mesh = ""
         self._wanted: frozenset[str] = frozenset()
-        self._frame: Frame | None = None
+        self._frame: MorphFrame | None = None
         self.kind.activated.connect(lambda _: self._choose())
         self.browse.clicked.connect(lambda: self.file_wanted.emit(self.kind.currentData()))
         self.codes.itemChanged.connect(self._check)
@@ -93,7 +93,7 @@ class BodySourceForm(QWidget):
 
     def put(self, source: BodySource | None) -> None:
         """Show a source without emitting; None: intervals of the open site, none chosen."""
-        self._frame = source if isinstance(source, Frame) else None
+        self._frame = source if isinstance(source, MorphFrame) else None
         kind = OWN
         self._wanted = frozenset()
         if isinstance(source, Intervals):

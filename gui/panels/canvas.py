@@ -19,7 +19,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from geofit.gui.panels.marks import readable
 from geofit.report.style import LINE, MUTED, PAPER, TEXT, drawing
 
-__all__ = ["Canvas", "PlotColours", "place", "recolour", "wrapped"]
+__all__ = ["PlotCanvas", "PlotColours", "place_axes", "recolour", "wrapped"]
 
 #: Logical pixels of a point: a figure has 100 dots an inch.
 DOT = 100 / 72
@@ -40,7 +40,7 @@ class PlotColours:
         return readable(colour, self.palette).name()
 
 
-class Canvas(FigureCanvasQTAgg):
+class PlotCanvas(FigureCanvasQTAgg):
     """A figure that keeps its axes from one picture to the next, and lays them out only when something has changed.
 
     Matplotlib's own layouts measure every text at every drawing, and new axes make every tick anew: both cost more
@@ -173,7 +173,7 @@ def _empty(axes: Axes) -> None:
     axes.autoscale(True)
 
 
-def place(axes: Axes, left: float, top: float, width: float, height: float) -> tuple[float, float]:
+def place_axes(axes: Axes, left: float, top: float, width: float, height: float) -> tuple[float, float]:
     """Give axes with all their texts a rectangle of the canvas, logical pixels from its upper left corner.
 
     The texts are not measured but counted: a letter is at most so wide, a line so high.

@@ -13,9 +13,9 @@ from PySide6.QtWidgets import QLabel, QSplitter, QVBoxLayout, QWidget
 
 from geofit.data.languages import Language
 from geofit.data.messages import Message
-from geofit.gui.panels.canvas import Canvas, PlotColours, place, recolour
+from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes, recolour
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import translated, user_language
 from geofit.project.data_change import Arrivals
 from geofit.report.change_map import change_map
@@ -50,7 +50,7 @@ class ChangesPanel(QWidget):
             label.setWordWrap(True)
             label.setTextFormat(Qt.TextFormat.PlainText)
             label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.canvas = Canvas(self._paint, self._arrange)
+        self.canvas = PlotCanvas(self._paint, self._arrange)
         self.canvas.setAccessibleName(self.tr("Map of the difference between the two states"))
         self.table = DataTable()
         self.table.setAccessibleName(self.tr("New contacts, and what was predicted before they were known"))
@@ -144,7 +144,7 @@ class ChangesPanel(QWidget):
     def _press(self) -> None:
         self._button()
 
-    def _columns(self, comparison: Comparison) -> list[Column]:
+    def _columns(self, comparison: Comparison) -> list[TableColumn]:
         contacts = comparison.test.contacts
         words = {True: self.tr("inside"), False: self.tr("OUTSIDE"), None: "–"}
 
@@ -153,17 +153,19 @@ class ChangesPanel(QWidget):
 
         rank = np.array([{False: 0, True: 1, None: 2}[one.inside] for one in contacts], float)
         return [
-            Column(self.tr("Hole"), np.array([one.group for one in contacts], np.str_)),
-            Column(self.tr("Observed, m"), numbers("z"), 2),
-            Column(self.tr("Predicted, m"), numbers("predicted"), 2, self.tr("Elevation of the earlier surface there")),
-            Column(
+            TableColumn(self.tr("Hole"), np.array([one.group for one in contacts], np.str_)),
+            TableColumn(self.tr("Observed, m"), numbers("z"), 2),
+            TableColumn(
+                self.tr("Predicted, m"), numbers("predicted"), 2, self.tr("Elevation of the earlier surface there")
+            ),
+            TableColumn(
                 self.tr("90 % ±, m"),
                 (numbers("high") - numbers("low")) / 2,
                 2,
                 self.tr("Half the width of the earlier 90 % band there"),
             ),
-            Column(self.tr("Residual, m"), numbers("residual"), 2, self.tr("Observed minus predicted")),
-            Column(self.tr("In the band"), np.array([words[one.inside] for one in contacts], np.str_), order=rank),
+            TableColumn(self.tr("Residual, m"), numbers("residual"), 2, self.tr("Observed minus predicted")),
+            TableColumn(self.tr("In the band"), np.array([words[one.inside] for one in contacts], np.str_), order=rank),
         ]
 
     def _tell_place(self, index: int) -> None:
@@ -197,7 +199,7 @@ class ChangesPanel(QWidget):
             # A map keeps its shape, and stands in the upper left corner of its room.
             wide = max(width - BESIDE, 120)
             shape = np.ptp(axes.get_ylim()) / max(np.ptp(axes.get_xlim()), 1e-9)
-            place(axes, 0.0, 0.0, min(wide, (height - 30) / shape + 60), min(height, wide * shape + 30))
+            place_axes(axes, 0.0, 0.0, min(wide, (height - 30) / shape + 60), min(height, wide * shape + 30))
 
 
 def _translated(template: str, /, **values: Any) -> str:

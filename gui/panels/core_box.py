@@ -16,7 +16,7 @@ from geofit.fitting.parametrize import Parametrization, parametrize
 from geofit.fitting.split import split_rectangle
 from geofit.geometry.frame import Frame
 
-__all__ = ["CoreBox", "parametrization_of", "taken"]
+__all__ = ["CoreBox", "core_count", "parametrization_of"]
 
 Floats = NDArray[np.float64]
 
@@ -88,7 +88,7 @@ def parametrization_of(
         return None
 
 
-def taken(parametrization: Parametrization, box: CoreBox) -> tuple[int, bool]:
+def core_count(parametrization: Parametrization, box: CoreBox) -> tuple[int, bool]:
     """Return how many points the fit takes into the core for a rectangle, and whether it widens the rectangle.
 
     The fit moves a side to the edge of the area where next to nothing lies between them.

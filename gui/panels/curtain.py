@@ -15,7 +15,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.mesh import Mesh
 from geofit.sampling.cut import CutLine, cut_section, section_line
 
-__all__ = ["Curtain", "Traces", "extent", "trace"]
+__all__ = ["Curtain", "Traces", "site_extent", "trace"]
 
 Floats = NDArray[np.float64]
 #: Triangles of each surface that was cut already, with the surface that they belong to.
@@ -101,7 +101,7 @@ class Curtain:
         return along, np.where(np.isnan(along), np.nan, beside)
 
 
-def extent(site: Site, surfaces: Mapping[str, HorizonFit]) -> Floats:
+def site_extent(site: Site, surfaces: Mapping[str, HorizonFit]) -> Floats:
     """Return the lowest and highest easting and northing of a site, (2, 2)."""
     parts = [points.xyz[:, :2] for points in site.horizons.values() if len(points)]
     parts += [s.patches[0].control[..., :2].reshape(-1, 2) + s.origin[:2] for s in surfaces.values() if s.patches]

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from geofit.data.languages import Language
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.panels.canvas import Canvas, PlotColours, place, recolour, wrapped
+from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes, recolour, wrapped
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.translate import user_language
 from geofit.report.histogram import histogram, normal_plot
@@ -33,7 +33,7 @@ class HistogramPanel(QWidget):
         content = QWidget()
         column = QVBoxLayout(content)
         column.setContentsMargins(8, 8, 8, 8)
-        self.canvas = Canvas(self._paint, self._arrange)
+        self.canvas = PlotCanvas(self._paint, self._arrange)
         self.canvas.setAccessibleName(self.tr("Histogram and normal plot of the residuals"))
         column.addWidget(self.canvas)
         self.pages = Placeholder(content)
@@ -82,11 +82,11 @@ class HistogramPanel(QWidget):
             axes.xaxis.set_major_locator(MaxNLocator(max(2, min(9, int(wide) // 80))))
             axes.set_ylim(limits)
             corner: tuple[float, float] = (0.0, k * high) if narrow else (k * wide, 0.0)
-            inner = place(axes, *corner, wide, high)
+            inner = place_axes(axes, *corner, wide, high)
             if axes.get_legend() is not None:
                 _explain(axes, colours, limits, inner)
                 # The scale may have got longer numbers.
-                place(axes, *corner, wide, high)
+                place_axes(axes, *corner, wide, high)
 
 
 def _translated(template: str, /, **values: Any) -> str:

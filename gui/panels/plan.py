@@ -14,7 +14,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.parametrize import Parametrization
 from geofit.geometry.frame import Frame, map_frame
 from geofit.gui.panels.area_overlay import AreaOverlay
-from geofit.gui.panels.core_box import CoreBox, parametrization_of, taken
+from geofit.gui.panels.core_box import CoreBox, core_count, parametrization_of
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.plan_view import PlanData, PlanView
@@ -230,7 +230,7 @@ class PlanPanel(QWidget):
         if self._parametrization is None:
             inside, widened = int(box.holds(self.view.data.points).sum()), False
         else:
-            inside, widened = taken(self._parametrization, box)
+            inside, widened = core_count(self._parametrization, box)
         width, height = box.size
         words = self.tr("{width:.0f} m × {height:.0f} m: {inside} points inside, {outside} outside.").format(
             width=width, height=height, inside=inside, outside=total - inside

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QScrollArea, QVBoxLay
 from geofit.data.points import PointSet
 from geofit.data.prediction import LeftOut, PredictionResult
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import translated
 from geofit.project.provenance import Row
 
@@ -157,63 +157,65 @@ class PredictionPanel(QWidget):
         }  # fmt: skip
         return words.get(scheme, scheme)
 
-    def _left_out_columns(self, prediction: PredictionResult) -> list[Column]:
+    def _left_out_columns(self, prediction: PredictionResult) -> list[TableColumn]:
         left_out = prediction.left_out
         references = {"thin plate": self.tr("Thin plate, m"), "kriging": self.tr("Kriging, m")}
         found = dict.fromkeys(name for left in left_out for name in left.references)
         about = self.tr("Root mean square error of another method with the same points left out.")
         return [
-            Column(self.tr("Left out"), np.array([self._scheme(left.scheme) for left in left_out])),
-            Column(
+            TableColumn(self.tr("Left out"), np.array([self._scheme(left.scheme) for left in left_out])),
+            TableColumn(
                 self.tr("geofit, m"), _of(left_out, lambda left: left.rms), 3,
                 self.tr("Root mean square error at the points that were left out."),
             ),
             *(
-                Column(references.get(name, f"{name}, m"), _of(left_out, partial(_peer, name)), 3, about)
+                TableColumn(references.get(name, f"{name}, m"), _of(left_out, partial(_peer, name)), 3, about)
                 for name in found
             ),
-            Column(
+            TableColumn(
                 self.tr("In band, %"),
                 _of(left_out, lambda left: 100 * left.inside),
                 0,
                 self.tr("Share of the left-out points in the 90 % band."),
             ),
-            Column(self.tr("Mean |e|, m"), _of(left_out, lambda left: left.mean_abs), 3),
-            Column(self.tr("Bias, m"), _of(left_out, lambda left: left.bias), 3),
-            Column(self.tr("Largest, m"), _of(left_out, lambda left: left.max_abs), 3),
-            Column(self.tr("Groups"), np.array([left.groups for left in left_out]), 0),
+            TableColumn(self.tr("Mean |e|, m"), _of(left_out, lambda left: left.mean_abs), 3),
+            TableColumn(self.tr("Bias, m"), _of(left_out, lambda left: left.bias), 3),
+            TableColumn(self.tr("Largest, m"), _of(left_out, lambda left: left.max_abs), 3),
+            TableColumn(self.tr("Groups"), np.array([left.groups for left in left_out]), 0),
         ]  # fmt: skip
 
-    def _suggestion_columns(self, prediction: PredictionResult) -> list[Column]:
+    def _suggestion_columns(self, prediction: PredictionResult) -> list[TableColumn]:
         holes = prediction.suggestions
         return [
-            Column(self.tr("No."), np.arange(1, len(holes) + 1), 0),
-            Column(self.tr("sd, m"), _of(holes, lambda hole: hole.sd), 2, self.tr("Standard deviation there now.")),
-            Column(
+            TableColumn(self.tr("No."), np.arange(1, len(holes) + 1), 0),
+            TableColumn(self.tr("sd, m"), _of(holes, lambda hole: hole.sd), 2, self.tr("Standard deviation there now.")),
+            TableColumn(
                 self.tr("Mean after, m"), _of(holes, lambda hole: hole.mean_after), 2,
                 self.tr("Average standard deviation of the surface after this hole and those before it."),
             ),
-            Column(self.tr("Most after, m"), _of(holes, lambda hole: hole.max_after), 2),
-            Column(self.tr("Easting, m"), _of(holes, lambda hole: hole.x), 1),
-            Column(self.tr("Northing, m"), _of(holes, lambda hole: hole.y), 1),
-            Column(self.tr("Elevation, m"), _of(holes, lambda hole: hole.z), 1),
+            TableColumn(self.tr("Most after, m"), _of(holes, lambda hole: hole.max_after), 2),
+            TableColumn(self.tr("Easting, m"), _of(holes, lambda hole: hole.x), 1),
+            TableColumn(self.tr("Northing, m"), _of(holes, lambda hole: hole.y), 1),
+            TableColumn(self.tr("Elevation, m"), _of(holes, lambda hole: hole.z), 1),
         ]  # fmt: skip
 
-    def _outlier_columns(self, prediction: PredictionResult) -> list[Column]:
+    def _outlier_columns(self, prediction: PredictionResult) -> list[TableColumn]:
         outliers = prediction.outliers
         named = [
             str(o.index) if self._points is None else translated(self._points.describe(o.index)) for o in outliers
         ]  # fmt: skip
         return [
-            Column(self.tr("Point"), np.array(named)),
-            Column(
+            TableColumn(self.tr("Point"), np.array(named)),
+            TableColumn(
                 self.tr("Error, m"), _of(outliers, lambda o: o.error), 2, self.tr("Point minus the surface without it.")
             ),
-            Column(self.tr("sd, m"), _of(outliers, lambda o: o.sd), 2),
-            Column(self.tr("Ratio"), _of(outliers, lambda o: o.ratio), 1, self.tr("Error in standard deviations.")),
+            TableColumn(self.tr("sd, m"), _of(outliers, lambda o: o.sd), 2),
+            TableColumn(
+                self.tr("Ratio"), _of(outliers, lambda o: o.ratio), 1, self.tr("Error in standard deviations.")
+            ),
         ]
 
-    def _show(self, key: str, table: DataTable, columns: Sequence[Column]) -> None:
+    def _show(self, key: str, table: DataTable, columns: Sequence[TableColumn]) -> None:
         table.show_columns(columns)
         for widget in (table, self._heads[key]):
             widget.setVisible(bool(columns))

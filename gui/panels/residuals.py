@@ -15,7 +15,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.tables import Column, DataTable, translated_column
+from geofit.gui.panels.tables import DataTable, TableColumn, translated_column
 from geofit.project.listing import Listing
 from geofit.project.listing import listing as list_points
 from geofit.project.provenance import Row
@@ -171,7 +171,7 @@ class ResidualTable(QWidget):
         if self.table.current is not None:
             self.move_requested.emit(self._row(self.table.current))
 
-    def _columns(self, surface: HorizonFit, listed: Listing) -> list[Column]:
+    def _columns(self, surface: HorizonFit, listed: Listing) -> list[TableColumn]:
         points, a = listed.points, surface.accuracy
         assert a is not None
         notes = np.full(len(points), "", dtype=object)
@@ -181,25 +181,25 @@ class ResidualTable(QWidget):
         notes[listed.excluded] = self.tr("excluded")
         exact = np.where(listed.core, self.tr("exact"), "")
         return [
-            Column(
+            TableColumn(
                 self.tr("Residual, m"),
                 listed.residual,
                 4,
                 self.tr("Signed orthogonal distance: positive above the surface."),
                 _marks(surface, listed.residual, self),
             ),
-            Column(self.tr("|d|, m"), np.abs(listed.residual), 4, self.tr("Distance without its sign.")),
-            Column(self.tr("Kind"), translated_column(points.kind)),
-            Column(self.tr("Hole"), points.hole),
-            Column(self.tr("Section"), points.section),
-            Column(self.tr("Patch"), translated_column(listed.patch)),
-            Column(self.tr("Core"), exact, tooltip=self.tr("Whether the surface meets the point exactly.")),
-            Column(self.tr("Easting, m"), points.xyz[:, 0], 3),
-            Column(self.tr("Northing, m"), points.xyz[:, 1], 3),
-            Column(self.tr("Elevation, m"), points.xyz[:, 2], 3),
-            Column(self.tr("File"), points.file),
-            Column(self.tr("Row"), points.row, 0, self.tr("Line of the file, counted from 1.")),
-            Column(self.tr("Note"), notes.astype(str)),
+            TableColumn(self.tr("|d|, m"), np.abs(listed.residual), 4, self.tr("Distance without its sign.")),
+            TableColumn(self.tr("Kind"), translated_column(points.kind)),
+            TableColumn(self.tr("Hole"), points.hole),
+            TableColumn(self.tr("Section"), points.section),
+            TableColumn(self.tr("Patch"), translated_column(listed.patch)),
+            TableColumn(self.tr("Core"), exact, tooltip=self.tr("Whether the surface meets the point exactly.")),
+            TableColumn(self.tr("Easting, m"), points.xyz[:, 0], 3),
+            TableColumn(self.tr("Northing, m"), points.xyz[:, 1], 3),
+            TableColumn(self.tr("Elevation, m"), points.xyz[:, 2], 3),
+            TableColumn(self.tr("File"), points.file),
+            TableColumn(self.tr("Row"), points.row, 0, self.tr("Line of the file, counted from 1.")),
+            TableColumn(self.tr("Note"), notes.astype(str)),
         ]
 
     def _filter(self) -> None:

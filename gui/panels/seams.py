@@ -12,7 +12,7 @@ from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.panels.marks import icon, is_dark
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.tables import Column, DataTable, translated_column
+from geofit.gui.panels.tables import DataTable, TableColumn, translated_column
 from geofit.gui.view3d.colouring import seam_colours
 
 __all__ = ["SeamTable", "seam_holds"]
@@ -66,16 +66,16 @@ class SeamTable(QWidget):
         self.head.setText(words.format(n=len(seams), gap=1000 * gap, angle=ANGLE_LIMIT))
         self.table.show_columns(
             [
-                Column(self.tr("Patch"), translated_column([seam.first for seam in seams])),
-                Column(self.tr("Meets"), translated_column([seam.second for seam in seams])),
-                Column(
+                TableColumn(self.tr("Patch"), translated_column([seam.first for seam in seams])),
+                TableColumn(self.tr("Meets"), translated_column([seam.second for seam in seams])),
+                TableColumn(
                     self.tr("Gap, mm"),
                     np.array([1000 * seam.gap for seam in seams]),
                     6,
                     self.tr("Largest distance between the two edges, at 200 places."),
                     lambda i: icon(f"dot:{gaps[i]}" if held[i][0] else "failed"),
                 ),
-                Column(
+                TableColumn(
                     self.tr("Angle, °"),
                     np.array([seam.angle for seam in seams]),
                     4,

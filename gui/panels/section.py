@@ -16,16 +16,16 @@ from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QV
 from geofit.data.prediction import Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.panels.canvas import Canvas, PlotColours, place
-from geofit.gui.panels.curtain import Curtain, Meshes, Traces, extent, trace
+from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes
+from geofit.gui.panels.curtain import Curtain, Meshes, Traces, site_extent, trace
 from geofit.gui.panels.flow import FlowLayout
 from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.section_bodies import SectionBody, draw_bodies
 from geofit.gui.panels.section_painter import (
     SectionData,
-    draw_section,
     explain,
     near_points,
+    paint_section,
     seen_in,
     thin_names,
 )
@@ -79,7 +79,7 @@ class SectionPanel(QWidget):
             (self.tr("Height"), self.factor, self.tr("How much higher elevations are drawn; numbers stay true.")),
         ):  # fmt: skip
             tools.addWidget(_labelled(words, widget, about))
-        self.canvas = Canvas(self._paint, self._arrange)
+        self.canvas = PlotCanvas(self._paint, self._arrange)
         self.canvas.setAccessibleName(self.tr("Section drawing"))
         self.state = QLabel()
         self.state.setWordWrap(True)
@@ -130,7 +130,7 @@ class SectionPanel(QWidget):
             self.pages.say(self.tr("No site open: open one to cut a section through it."))
             return
         new = self._data is None or self._data.site is not site
-        box = extent(site, surfaces)
+        box = site_extent(site, surfaces)
         curtain = Curtain.straight(90.0, 0.0, box) if line is None else Curtain.along(line)
         self._moved &= self._data is not None and np.array_equal(curtain.line, self._data.curtain.line)
         self._surfaces = surfaces
@@ -181,7 +181,7 @@ class SectionPanel(QWidget):
     def _edit_line(self) -> None:
         if self._data is None:
             return
-        box = extent(self._data.site, self._surfaces)
+        box = site_extent(self._data.site, self._surfaces)
         self._take(Curtain.straight(self.azimuth.value(), self.position.value(), box))
         self.along.setCurrentIndex(0)
 
@@ -189,7 +189,7 @@ class SectionPanel(QWidget):
         if self._data is None or index == 0:
             return
         curtain = Curtain.along(self._data.site.sections[index - 1].line)
-        self._show_inputs(curtain, self._data.thickness, extent(self._data.site, self._surfaces))
+        self._show_inputs(curtain, self._data.thickness, site_extent(self._data.site, self._surfaces))
         self._take(curtain)
 
     def _rescale(self) -> None:
@@ -276,7 +276,7 @@ class SectionPanel(QWidget):
             "elevation": self.tr("Elevation, m"),
         }
         axes = self.canvas.axes(1)[0]
-        draw_section(axes, self._data, colours, words)
+        paint_section(axes, self._data, colours, words)
         draw_bodies(axes, self._bodies, self._data.curtain, self._data.thickness, colours)
 
     def _arrange(self, colours: PlotColours) -> None:
@@ -301,7 +301,7 @@ class SectionPanel(QWidget):
         """Place the drawing; where it is low, what the distances are is next to their numbers, not below."""
         low = room[3] < LOW and not self.canvas.narrow
         axes.set_xlabel("" if low else self.tr("Distance along the section, m"), ha="left" if low else "center")
-        size = place(axes, *room)
+        size = place_axes(axes, *room)
         if low:
             axes.set_xlabel(self.tr("Distance, m"), ha="left")
             axes.xaxis.set_label_coords(1 + 14 / size[0], -8 / size[1])

@@ -17,13 +17,13 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground, Site
 from geofit.gui.panels.canvas import DOT, PlotColours
 from geofit.gui.panels.curtain import Curtain, Traces
-from geofit.gui.panels.section_scale import Extent
+from geofit.gui.panels.section_scale import SectionExtent
 from geofit.report.section_pages import lithology_style
-from geofit.report.style import horizon_colours, kind_style, quiet
+from geofit.report.style import horizon_colours, kind_style, quiet_axes
 from geofit.site.hole_logs import hole_intervals, log_files
 from geofit.site.support import support_of
 
-__all__ = ["SectionData", "draw_section", "explain", "near_points", "seen_in", "thin_names"]
+__all__ = ["SectionData", "explain", "near_points", "paint_section", "seen_in", "thin_names"]
 
 Floats = NDArray[np.float64]
 
@@ -87,7 +87,7 @@ def near_points(data: SectionData, name: str) -> tuple[Floats, NDArray[np.int64]
     return np.column_stack([along[index], points.xyz[index, 2]]), index
 
 
-def draw_section(axes: Axes, data: SectionData, colours: PlotColours, words: Mapping[str, str]) -> None:
+def paint_section(axes: Axes, data: SectionData, colours: PlotColours, words: Mapping[str, str]) -> None:
     """Draw a section to scale; ``words`` holds the texts ground, band and elevation."""
     for bend in data.curtain.starts[1:-1]:
         axes.axvline(bend, color=colours.line, lw=0.9, zorder=0)
@@ -134,7 +134,7 @@ def draw_section(axes: Axes, data: SectionData, colours: PlotColours, words: Map
     axes.xaxis.set_major_locator(_Along(data.curtain.length))
     axes.yaxis.grid(True, color=colours.line, lw=0.6)
     axes.set_axisbelow(True)
-    quiet(axes)
+    quiet_axes(axes)
 
 
 def _runs(held: NDArray[np.bool_]) -> list[tuple[slice, bool]]:
@@ -201,7 +201,7 @@ def _logged(axes: Axes, data: SectionData, colours: PlotColours) -> None:
             axes.add_patch(made)
 
 
-def seen_in(axes: Axes, curtain: Curtain) -> Extent:
+def seen_in(axes: Axes, curtain: Curtain) -> SectionExtent:
     """Return what a drawing has to show: all that is drawn, and the names over the holes."""
     low, high = (float(level) for level in axes.dataLim.intervaly)
     if not np.isfinite([low, high]).all():
@@ -210,9 +210,11 @@ def seen_in(axes: Axes, curtain: Curtain) -> Extent:
         low, high = low - 1.0, high + 1.0
     names = _names(axes)
     if not names:
-        return Extent(curtain.length, low, high)
+        return SectionExtent(curtain.length, low, high)
     letters = max(sum(1.0 if c >= "\u2e80" else 0.64 for c in name.get_text()) for name in names)
-    return Extent(curtain.length, low, high, max(float(name.xy[1]) for name in names), letters * LETTERS * DOT + 8)
+    return SectionExtent(
+        curtain.length, low, high, max(float(name.xy[1]) for name in names), letters * LETTERS * DOT + 8
+    )
 
 
 def _names(axes: Axes) -> list[Annotation]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["Extent", "automatic", "grown", "window"]
+__all__ = ["SectionExtent", "automatic", "grown", "window"]
 
 Range = tuple[float, float]
 
@@ -17,7 +17,7 @@ ENDS, EDGE = 0.015, 4.0
 
 
 @dataclass(frozen=True)
-class Extent:
+class SectionExtent:
     """What a section holds: its length, lowest and highest elevation, metres; names of so many pixels over a ``head``.
 
     ``head`` is the elevation of the highest place that has a name.
@@ -42,7 +42,7 @@ class Extent:
         return max(min(wide, by_height), 1e-3 * wide)
 
 
-def automatic(seen: Extent, size: tuple[float, float]) -> float:
+def automatic(seen: SectionExtent, size: tuple[float, float]) -> float:
     """Return the largest of 1, 2, 5, 10, 20, 50, 100 with which a section still takes most of its drawing's width.
 
     Examples
@@ -55,7 +55,7 @@ def automatic(seen: Extent, size: tuple[float, float]) -> float:
     return next((factor for factor in NICE if seen.scale(size, factor) >= LEAST * widest), 1.0)
 
 
-def window(seen: Extent, size: tuple[float, float], factor: float) -> tuple[Range, Range]:
+def window(seen: SectionExtent, size: tuple[float, float], factor: float) -> tuple[Range, Range]:
     """Return the distances and elevations at the edges of a drawing, ``size`` in logical pixels, that shows it all.
 
     A metre of elevation is drawn ``factor`` times as long as a metre along the section.

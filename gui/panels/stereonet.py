@@ -13,10 +13,10 @@ from PySide6.QtGui import QIcon, QResizeEvent
 from PySide6.QtWidgets import QCheckBox, QComboBox, QHBoxLayout, QLabel, QSplitter, QVBoxLayout, QWidget
 
 from geofit.geometry.attitudes import poles
-from geofit.gui.panels.canvas import Canvas, PlotColours, recolour
+from geofit.gui.panels.canvas import PlotCanvas, PlotColours, recolour
 from geofit.gui.panels.marks import icon
 from geofit.gui.panels.placeholder import Placeholder
-from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import translated, user_language
 from geofit.project.dip_table import DipTable
 from geofit.report.stereonet import Net, stereonet
@@ -52,7 +52,7 @@ class StereonetPanel(QWidget):
         self.words = QLabel()
         self.words.setWordWrap(True)
         self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.canvas = Canvas(self._paint, self._arrange)
+        self.canvas = PlotCanvas(self._paint, self._arrange)
         self.canvas.setAccessibleName(self.tr("Stereonet of the measured dips"))
         self.table = DataTable()
         self.table.setAccessibleName(self.tr("Measured dips, and the surface at the same places"))
@@ -159,15 +159,15 @@ class StereonetPanel(QWidget):
         mark, about = _mark_of(angle), self.tr("Angle between the measured plane and the surface")
         self.table.show_columns(
             [
-                Column(self.tr("Azimuth, °"), table.azimuth, 0),
-                Column(self.tr("Dip, °"), table.dip, 0),
-                Column(self.tr("Angle, °"), angle, 1, about, mark),
-                Column(self.tr("Surface azimuth, °"), table.surface_azimuth, 0),
-                Column(self.tr("Surface dip, °"), table.surface_dip, 0),
-                Column(self.tr("Horizon"), horizon),
-                Column(self.tr("Easting, m"), xyz[:, 0], 1),
-                Column(self.tr("Northing, m"), xyz[:, 1], 1),
-                Column(self.tr("Elevation, m"), xyz[:, 2], 1),
+                TableColumn(self.tr("Azimuth, °"), table.azimuth, 0),
+                TableColumn(self.tr("Dip, °"), table.dip, 0),
+                TableColumn(self.tr("Angle, °"), angle, 1, about, mark),
+                TableColumn(self.tr("Surface azimuth, °"), table.surface_azimuth, 0),
+                TableColumn(self.tr("Surface dip, °"), table.surface_dip, 0),
+                TableColumn(self.tr("Horizon"), horizon),
+                TableColumn(self.tr("Easting, m"), xyz[:, 0], 1),
+                TableColumn(self.tr("Northing, m"), xyz[:, 1], 1),
+                TableColumn(self.tr("Elevation, m"), xyz[:, 2], 1),
             ]
         )
         self._mark()

@@ -34,7 +34,7 @@ from geofit.data.files import replacing, spreadsheet_cell
 from geofit.gui.preferences import Preferences
 from geofit.gui.translate import translated
 
-__all__ = ["ArrayModel", "Column", "DataTable", "natural", "translated_column"]
+__all__ = ["ArrayModel", "DataTable", "TableColumn", "natural", "translated_column"]
 
 #: Pixels that are put between columns where there is room.
 GAP = 12
@@ -64,7 +64,7 @@ def translated_column(values: ArrayLike) -> NDArray[np.str_]:
 
 
 @dataclass(frozen=True, eq=False)
-class Column:
+class TableColumn:
     """A column: its title, its values (n,), and with how many digits numbers are written (nan stays empty).
 
     ``icons`` returns the mark before a cell; ``order`` is what the column sorts by, where that is not the values.
@@ -108,13 +108,13 @@ class ArrayModel(QAbstractTableModel):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.columns: Sequence[Column] = ()
+        self.columns: Sequence[TableColumn] = ()
         self._order: Ints = np.zeros(0, np.int64)
         self._kept: NDArray[np.bool_] | None = None
         self._struck: NDArray[np.bool_] | None = None
         self._sorted: tuple[int, Qt.SortOrder] | None = None
 
-    def set_columns(self, columns: Sequence[Column], struck: NDArray[np.bool_] | None = None) -> None:
+    def set_columns(self, columns: Sequence[TableColumn], struck: NDArray[np.bool_] | None = None) -> None:
         """Take other data; what was filtered is shown again, and the sorting stays.
 
         Rows where ``struck`` is true are greyed and struck through.
@@ -249,7 +249,7 @@ class DataTable(QTableView):
         self._sized = self._spaced = False
         self.selectionModel().currentRowChanged.connect(self._tell)
 
-    def show_columns(self, columns: Sequence[Column], struck: NDArray[np.bool_] | None = None) -> None:
+    def show_columns(self, columns: Sequence[TableColumn], struck: NDArray[np.bool_] | None = None) -> None:
         """Take other data, keep the sorting, and fit the columns to their cells the first time."""
         self._silent = True
         self.rows.set_columns(columns, struck)

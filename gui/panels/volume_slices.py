@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
-from geofit.gui.panels.canvas import Canvas, PlotColours, recolour
+from geofit.gui.panels.canvas import PlotCanvas, PlotColours, recolour
 from geofit.project.pore_view import GreyVolume
 
 __all__ = ["VolumeSlices"]
@@ -32,7 +32,7 @@ class VolumeSlices(QWidget):
         self.axis.addItems([self.tr("across axis {number}").format(number=number) for number in range(3)])
         self.axis.setAccessibleName(self.tr("Axis across the slices"))
         self.slider.setAccessibleName(self.tr("Slice"))
-        self.canvas = Canvas(self._paint, self._arrange)
+        self.canvas = PlotCanvas(self._paint, self._arrange)
         self.canvas.setAccessibleName(self.tr("Slice of the volume and histogram of its values"))
         row = QHBoxLayout()
         row.addWidget(self.axis)

@@ -15,7 +15,7 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper
 
 from geofit.gui.view3d.colouring import Ramp, rgb
 
-__all__ = ["Part", "coloured", "dots", "lines", "poly", "ramped", "shaded", "triangles"]
+__all__ = ["ActorPart", "coloured", "dots", "lines", "poly", "ramped", "shaded", "triangles"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -32,7 +32,7 @@ WIDE, FAINT = 12.0, 0.15
 
 
 @dataclass(eq=False)
-class Part:
+class ActorPart:
     """An actor; ``detail`` shows whether it belongs to the still picture ("full"), the moving one ("coarse") or both.
 
     ``width`` and ``size`` are the widths of its lines and points in logical pixels; ``opacity`` times the layer's.

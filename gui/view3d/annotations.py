@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPalette
 from PySide6.QtWidgets import QWidget
 
-from geofit.gui.view3d.overlay import Content, Theme, draw
+from geofit.gui.view3d.overlay import Content, Theme, draw_overlay
 from geofit.gui.view3d.projector import Projector
 
 __all__ = ["Annotations", "theme_of"]
@@ -33,7 +33,7 @@ class Annotations(QWidget):
     def write(self, painter: QPainter) -> None:
         """Draw everything by a painter whose unit is a logical pixel of the widget."""
         view = self._view()
-        draw(painter, view, self._content(view), theme_of(self.palette(), self.dark), self.font())
+        draw_overlay(painter, view, self._content(view), theme_of(self.palette(), self.dark), self.font())
 
 
 def theme_of(palette: QPalette, dark: bool) -> Theme:

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.data import BodyData
-from geofit.gui.view3d.actors import Part, dots, lines, poly
-from geofit.gui.view3d.colouring import legible
+from geofit.gui.view3d.actors import ActorPart, dots, lines, poly
+from geofit.gui.view3d.colouring import legible_on
 from geofit.gui.view3d.horizon_items import shape_item
-from geofit.gui.view3d.item import Item, Look, extent
+from geofit.gui.view3d.item import Item, Look, corners_of
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import Shape, thinned
 from geofit.gui.view3d.site_items import DRILLED
@@ -126,9 +126,9 @@ class MorphScene:
 
 
 def _data_item(data: BodyData, layer: Layer, look: Look) -> Item:
-    colour = legible(layer.colour, look.dark)
+    colour = legible_on(layer.colour, look.dark)
     every = [data.contacts]
-    parts = [Part(dots(poly(data.contacts - look.origin), colour, balls=True), size=CONTACT)]
+    parts = [ActorPart(dots(poly(data.contacts - look.origin), colour, balls=True), size=CONTACT)]
     ways: list[tuple[str, Floats]] = []
     for xyz, hole, shade, width in (
         (data.outside, data.outside_hole, DRILLED[look.dark], OUTSIDE),
@@ -136,10 +136,10 @@ def _data_item(data: BodyData, layer: Layer, look: Look) -> Item:
     ):
         runs = [run for run in _holes(hole) if len(run[1]) > 1]
         if runs:
-            parts.append(Part(lines(poly(xyz - look.origin, runs=_joined(xyz, runs)), shade, 1.0), width=width))
+            parts.append(ActorPart(lines(poly(xyz - look.origin, runs=_joined(xyz, runs)), shade, 1.0), width=width))
         ways += [(name, xyz[index]) for name, index in runs]
         every.append(xyz)
-    return Item(parts, extent(np.concatenate(every)), ways=tuple(ways))
+    return Item(parts, corners_of(np.concatenate(every)), ways=tuple(ways))
 
 
 def _holes(names: NDArray[np.str_]) -> Sequence[tuple[str, NDArray[np.int64]]]:

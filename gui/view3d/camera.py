@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["VIEWS", "Viewpoint", "between", "framed"]
+__all__ = ["VIEWS", "Viewpoint", "framed", "viewpoint_between"]
 
 Floats = NDArray[np.float64]
 
@@ -98,7 +98,7 @@ def framed(viewpoint: Viewpoint, box: Floats, aspect: float) -> Viewpoint:
     return replace(viewpoint, centre=centre, distance=max(1.12 * float(needed.max()), NEAREST))
 
 
-def between(start: Viewpoint, end: Viewpoint, share: float) -> Viewpoint:
+def viewpoint_between(start: Viewpoint, end: Viewpoint, share: float) -> Viewpoint:
     """Return the viewpoint on its way from one place to another: slow, fast, slow; it turns the shorter way."""
     s = share * share * (3 - 2 * share)
     turn = (end.azimuth - start.azimuth + 180) % 360 - 180

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkRenderingCore import vtkLight
 
-from geofit.gui.view3d.camera import Viewpoint, between
+from geofit.gui.view3d.camera import Viewpoint, viewpoint_between
 from geofit.gui.view3d.mouse import Scheme, drag_of
 from geofit.gui.view3d.projector import Projector
 
@@ -197,7 +197,7 @@ class Canvas(QtInteractor):
         self._move()
         if share >= 1:
             self._fly.stop()
-        self.look(between(self._from, self._to, min(share, 1.0)), moving=True)
+        self.look(viewpoint_between(self._from, self._to, min(share, 1.0)), moving=True)
 
     def _move(self) -> None:
         if self.full:

@@ -16,7 +16,7 @@ from geofit.data.settings import FitSettings
 from geofit.gui.view3d.layers import Legend, Swatch
 from geofit.report.style import FAIL, PASS, bands, kind_style
 
-__all__ = ["SIZE", "PointColours", "Ramp", "legible", "plain_points", "points_by", "ramp", "rgb", "seam_colours"]
+__all__ = ["SIZE", "PointColours", "Ramp", "legible_on", "plain_points", "points_by", "ramp", "rgb", "seam_colours"]
 
 Floats = NDArray[np.float64]
 Bytes = NDArray[np.uint8]
@@ -64,7 +64,7 @@ def rgb(colour: str) -> tuple[int, int, int]:
     return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
 
 
-def legible(colour: str, dark: bool) -> str:
+def legible_on(colour: str, dark: bool) -> str:
     """Return a colour that stands out from a dark background: the same hue, lighter where it is too dark."""
     if not dark:
         return colour
@@ -97,7 +97,7 @@ def points_by(
     """Return the points' colours by "kind", "deviation" (fixed tolerance bands), "elevation", or one for all."""
     if by == "kind":
         kinds, of = np.unique(points.kind, return_inverse=True)
-        shades = [legible(kind_style(kind)[1], dark) for kind in kinds.tolist()]
+        shades = [legible_on(kind_style(kind)[1], dark) for kind in kinds.tolist()]
         legend = Legend("kind", "", tuple(Swatch(c, k, False) for c, k in zip(shades, kinds.tolist(), strict=True)))
         table = np.array([rgb(c) for c in shades], np.uint8).reshape(-1, 3)
         return PointColours(table[of.ravel()], np.full(len(points), SIZE), legend)
@@ -128,7 +128,7 @@ def _by_bands(d: Floats, settings: FitSettings, dark: bool) -> PointColours:
 def seam_colours(seams: Sequence[Seam], by: str, dark: bool) -> tuple[tuple[str, ...], Legend]:
     """Return the colour of each seam by its "gap" or "angle": below a tenth of the limit, below it, above it."""
     limit, unit = (GAP_LIMIT, "m") if by == "gap" else (ANGLE_LIMIT, "°")
-    shades = tuple(legible(c, dark) for c in (PASS, "#c98a12", FAIL))
+    shades = tuple(legible_on(c, dark) for c in (PASS, "#c98a12", FAIL))
     values = [seam.gap if by == "gap" else seam.angle for seam in seams]
     chosen = tuple(shades[0 if v <= limit / 10 else 1 if v <= limit else 2] for v in values)
     words = (f"≤ {limit / 10:g}", f"≤ {limit:g}", f"> {limit:g}")

@@ -11,7 +11,7 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.view3d.shape import Shape, across, sd_at, shape_of, split
+from geofit.gui.view3d.shape import Shape, sd_at, sd_direction, shape_of, split
 from geofit.prediction.bands import band, prediction_sd
 from geofit.site.support import support_of
 
@@ -79,7 +79,7 @@ def _supported(surface: HorizonFit, ground: Ground | None, shape: Shape) -> Bool
 def _lifted(
     surface: HorizonFit, uncertainty: Uncertainty, shape: Shape, fine: Floats, few: Floats, sign: float
 ) -> Shape:
-    way = sign * across(surface, uncertainty)
+    way = sign * sd_direction(surface, uncertainty)
     moved = shape.lifted(fine, way)
     coarse = (shape.coarse or shape).lifted(few, way)
     return Shape(moved.xyz, moved.triangles, moved.normals, coarse)

@@ -16,9 +16,9 @@ from geofit.data.points import PointSet
 from geofit.data.prediction import Suggestion
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.view3d.actors import Part, coloured, dots, lines, poly, ramped, shaded, triangles
+from geofit.gui.view3d.actors import ActorPart, coloured, dots, lines, poly, ramped, shaded, triangles
 from geofit.gui.view3d.colouring import SIZE, PointColours, points_by, ramp, rgb, seam_colours
-from geofit.gui.view3d.item import Item, Look, extent
+from geofit.gui.view3d.item import Item, Look, corners_of
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import Shape
 from geofit.sampling.contours import interval_for
@@ -60,11 +60,11 @@ def points_item(
     ]
     if not used.all():
         ghosts = dots(poly(points.xyz[~used] - look.origin), GHOST[look.dark], balls=not many)
-        parts.append(Part(ghosts, size=SIZE * look.points, opacity=GHOSTLY))
-    return Item(parts, extent(points.xyz), targets=points.xyz, legend=made.legend)
+        parts.append(ActorPart(ghosts, size=SIZE * look.points, opacity=GHOSTLY))
+    return Item(parts, corners_of(points.xyz), targets=points.xyz, legend=made.legend)
 
 
-def _cloud(xyz: Floats, made: PointColours, mask: NDArray[np.bool_], many: bool, look: Look) -> list[Part]:
+def _cloud(xyz: Floats, made: PointColours, mask: NDArray[np.bool_], many: bool, look: Look) -> list[ActorPart]:
     size = float(made.size[mask][0])
     chosen = np.flatnonzero(mask)
     share = min(THIN / len(mask), 1.0)
@@ -80,10 +80,10 @@ def _cloud(xyz: Floats, made: PointColours, mask: NDArray[np.bool_], many: bool,
 
 def _dots(
     xyz: Floats, made: PointColours, which: NDArray[np.int64], size: float, flat: bool, detail: str, look: Look
-) -> Part:
+) -> ActorPart:
     actor = dots(poly(xyz[which] - look.origin), "#000000", balls=not flat)
     coloured(actor, made.colour[which])
-    return Part(actor, detail, size=size * look.points)
+    return ActorPart(actor, detail, size=size * look.points)
 
 
 def shape_item(
@@ -115,13 +115,13 @@ def shape_item(
                 actor = triangles(data, layer.colour)
                 if made is not None and values is not None:
                     ramped(actor, values[k], made)
-            parts.append(Part(actor, detail, opacity=opacity))
+            parts.append(ActorPart(actor, detail, opacity=opacity))
         if layer.isolines:
             parts += _isolines(one, shape, detail, look)
-    return Item(parts, extent(shape.xyz), shape=shape, legend=made.legend if made else None)
+    return Item(parts, corners_of(shape.xyz), shape=shape, legend=made.legend if made else None)
 
 
-def _isolines(one: Shape, whole: Shape, detail: str, look: Look) -> list[Part]:
+def _isolines(one: Shape, whole: Shape, detail: str, look: Look) -> list[ActorPart]:
     low, high = float(whole.xyz[:, 2].min()), float(whole.xyz[:, 2].max())
     step = interval_for(low, high)
     numbers = np.arange(math.ceil(low / step), math.floor(high / step) + 1)
@@ -139,7 +139,7 @@ def _isolines(one: Shape, whole: Shape, detail: str, look: Look) -> list[Part]:
         for k, level in enumerate(levels.tolist()):
             cut.SetValue(k, level)
         cut.Update()
-        parts.append(Part(lines(cut.GetOutput(), "#1c2733"), detail, width=1.6 if major else 0.9, opacity=0.6))
+        parts.append(ActorPart(lines(cut.GetOutput(), "#1c2733"), detail, width=1.6 if major else 0.9, opacity=0.6))
     return parts
 
 
@@ -153,9 +153,9 @@ def seams_item(runs: Sequence[Sequence[Floats]], seams: Sequence[Seam], layer: L
             ends = np.cumsum([0] + [len(run) for run in mine])
             numbers = [np.arange(a, b) for a, b in pairwise(ends)]
             every = np.concatenate(mine)
-            parts.append(Part(lines(poly(every - look.origin, runs=numbers), colour, 4.0), width=3.5))
+            parts.append(ActorPart(lines(poly(every - look.origin, runs=numbers), colour, 4.0), width=3.5))
             boxes.append(every)
-    return Item(parts, extent(np.concatenate(boxes) if boxes else look.origin[None]), legend=legend)
+    return Item(parts, corners_of(np.concatenate(boxes) if boxes else look.origin[None]), legend=legend)
 
 
 def control_item(surface: HorizonFit, layer: Layer, look: Look) -> tuple[Item, list[tuple[str, int, int]]]:
@@ -172,10 +172,10 @@ def control_item(surface: HorizonFit, layer: Layer, look: Look) -> tuple[Item, l
     mesh = min(_spacing(patch.control) for patch in surface.patches)
     net = lines(poly(xyz - look.origin, runs=runs), look.text)
     parts = [
-        Part(net, "full", width=1.0, opacity=0.4, spacing=mesh),
-        Part(dots(poly(xyz - look.origin), look.text, balls=False), size=CONTROL, opacity=0.9, spacing=mesh),
+        ActorPart(net, "full", width=1.0, opacity=0.4, spacing=mesh),
+        ActorPart(dots(poly(xyz - look.origin), look.text, balls=False), size=CONTROL, opacity=0.9, spacing=mesh),
     ]
-    return Item(parts, extent(xyz), targets=xyz), known
+    return Item(parts, corners_of(xyz), targets=xyz), known
 
 
 def _spacing(control: Floats) -> float:
@@ -194,8 +194,8 @@ def suggestions_item(suggestions: Sequence[Suggestion], top: float, layer: Layer
     dashes = feet[:, None, None] + share[None, :, :, None] * (heads - feet)[:, None, None]
     xyz = dashes.reshape(-1, 3)
     parts = [
-        Part(lines(poly(xyz - look.origin, runs=list(np.arange(len(xyz)).reshape(-1, 2))), colour), width=2.5),
-        Part(dots(poly(feet - look.origin), colour, balls=True), size=10.0),
+        ActorPart(lines(poly(xyz - look.origin, runs=list(np.arange(len(xyz)).reshape(-1, 2))), colour), width=2.5),
+        ActorPart(dots(poly(feet - look.origin), colour, balls=True), size=10.0),
     ]
     names = [f"{k} · ± {s.sd:.2f} m" for k, s in enumerate(suggestions, 1)] if layer.labels else []
-    return Item(parts, extent(np.concatenate([feet, heads])), places=heads, names=tuple(names))
+    return Item(parts, corners_of(np.concatenate([feet, heads])), places=heads, names=tuple(names))

@@ -8,11 +8,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.gui.view3d.actors import Part
+from geofit.gui.view3d.actors import ActorPart
 from geofit.gui.view3d.layers import Legend
 from geofit.gui.view3d.shape import Shape
 
-__all__ = ["Item", "Look", "extent"]
+__all__ = ["Item", "Look", "corners_of"]
 
 Floats = NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class Item:
     ``ways``, lines with a name. ``shape`` is hit by the line of sight. ``box`` (2, 3) holds all of it.
     """
 
-    parts: list[Part]
+    parts: list[ActorPart]
     box: Floats
     places: Floats = field(default_factory=lambda: np.empty((0, 3)))
     names: Sequence[str] = ()
@@ -52,6 +52,6 @@ class Item:
     legend: Legend | None = None
 
 
-def extent(xyz: Floats) -> Floats:
+def corners_of(xyz: Floats) -> Floats:
     """Return the least and largest coordinates (2, 3)."""
     return np.stack([np.nanmin(xyz, axis=0), np.nanmax(xyz, axis=0)])

@@ -34,7 +34,7 @@ def require_opengl() -> None:
     if platform in FLAT:
         raise NoOpenGLError(
             message(
-                "window.no-display-for-3d",
+                "gui.no-display-for-3d",
                 "The 3D view needs a display; Qt runs on its '{platform}' platform, which has no OpenGL. "
                 "Start the application on a desktop (or under Xvfb), without QT_QPA_PLATFORM set.",
                 platform=platform,
@@ -47,7 +47,7 @@ def require_opengl() -> None:
         except OSError:
             raise NoOpenGLError(
                 message(
-                    "window.opengl-library-missing",
+                    "gui.opengl-library-missing",
                     "The 3D view needs OpenGL; the library {name} is missing on this machine. "
                     "Install it (Debian and Ubuntu: apt-get install libgl1 libegl1) and start again.",
                     name=name,
@@ -56,13 +56,13 @@ def require_opengl() -> None:
     found = _version()
     if found is None or found < VERSION:
         have = (
-            message("window.driver-without-opengl", "gives no OpenGL at all")
+            message("gui.driver-without-opengl", "gives no OpenGL at all")
             if found is None
-            else message("window.driver-opengl", "gives OpenGL {major}.{minor}", major=found[0], minor=found[1])
+            else message("gui.driver-opengl", "gives OpenGL {major}.{minor}", major=found[0], minor=found[1])
         )
         raise NoOpenGLError(
             message(
-                "window.opengl-too-old",
+                "gui.opengl-too-old",
                 "The 3D view needs OpenGL {major}.{minor}; the graphics driver {have}. Update the driver, or use "
                 "Mesa's software renderer (LIBGL_ALWAYS_SOFTWARE=1 on Linux).",
                 major=VERSION[0],

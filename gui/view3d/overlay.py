@@ -19,7 +19,7 @@ from geofit.gui.view3d.layer_names import word
 from geofit.gui.view3d.layers import Legend
 from geofit.gui.view3d.projector import Projector
 
-__all__ = ["Content", "Ring", "Theme", "draw", "draw_legend", "legend_size", "legend_title", "merged"]
+__all__ = ["Content", "Ring", "Theme", "draw_legend", "draw_overlay", "legend_size", "legend_title", "merged"]
 
 Floats = NDArray[np.float64]
 
@@ -65,7 +65,7 @@ class Content:
     metres: float | None = None
 
 
-def draw(painter: QPainter, view: Projector, content: Content, theme: Theme, font: QFont) -> None:
+def draw_overlay(painter: QPainter, view: Projector, content: Content, theme: Theme, font: QFont) -> None:
     """Write everything, what matters most last."""
     painter.setRenderHints(QPainter.RenderHint.Antialiasing | QPainter.RenderHint.TextAntialiasing)
     small = QFont(font)

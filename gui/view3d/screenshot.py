@@ -40,7 +40,7 @@ def write_screenshot(
     if not (scale > 0 and 0 < max(width, height) <= MOST):
         raise SettingsError(
             message(
-                "window.scale-picture-pixels-give",
+                "gui.picture-too-large",
                 "A scale of {scale:g} makes a picture of {width} × {height} pixels; give one above 0 and below "
                 "{most:.1f}.",
                 scale=scale,

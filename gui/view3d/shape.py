@@ -18,7 +18,7 @@ from geofit.geometry.mesh import Mesh
 from geofit.report.view import trimmed
 from geofit.splines.patch import Patch
 
-__all__ = ["Shape", "across", "next_below", "sd_at", "seam_lines", "shape_of", "split", "thinned"]
+__all__ = ["Shape", "next_below", "sd_at", "sd_direction", "seam_lines", "shape_of", "split", "thinned"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -161,7 +161,7 @@ def sd_at(surface: HorizonFit, uncertainty: Uncertainty, xyz: Floats) -> Floats:
     return grid.elevation(local[:, 0], local[:, 1])
 
 
-def across(surface: HorizonFit, uncertainty: Uncertainty) -> Floats:
+def sd_direction(surface: HorizonFit, uncertainty: Uncertainty) -> Floats:
     """Return the unit vector along which the standard deviation is measured: upwards, or across the best plane."""
     if uncertainty.frame == "map" or surface.model is None:
         return np.array([0.0, 0.0, 1.0])

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.site import Ground, Hole, Orientations, Section, Site
-from geofit.gui.view3d.actors import Part, dots, lines, poly, triangles
-from geofit.gui.view3d.colouring import legible
-from geofit.gui.view3d.item import Item, Look, extent
+from geofit.gui.view3d.actors import ActorPart, dots, lines, poly, triangles
+from geofit.gui.view3d.colouring import legible_on
+from geofit.gui.view3d.item import Item, Look, corners_of
 from geofit.gui.view3d.layers import Layer, Legend, Swatch
 from geofit.gui.view3d.shape import Shape
 from geofit.report.section_pages import lithology_style
@@ -41,8 +41,8 @@ def ground_item(ground: Ground, layer: Layer, look: Look) -> Item:
     parts = []
     for shape, detail in ((fine, "full"), (few, "coarse")):
         data = poly(shape.xyz - look.origin, faces=shape.triangles, normals=shape.normals)
-        parts.append(Part(triangles(data, EARTH[look.dark]), detail))
-    return Item(parts, extent(fine.xyz), shape=fine)
+        parts.append(ActorPart(triangles(data, EARTH[look.dark]), detail))
+    return Item(parts, corners_of(fine.xyz), shape=fine)
 
 
 def _grid(ground: Ground, step: int) -> Shape:
@@ -79,7 +79,7 @@ def sections_item(sections: Sequence[Section], ground: Ground | None, level: flo
 
 def _draped(plans: list[Floats], ground: Ground | None, level: float, colour: str, look: Look, width: float) -> Item:
     runs = [_on_ground(_refined(plan), ground, level) for plan in plans]
-    return Item([Part(lines(_runs(runs, look), colour), width=width)], extent(np.concatenate(runs)))
+    return Item([ActorPart(lines(_runs(runs, look), colour), width=width)], corners_of(np.concatenate(runs)))
 
 
 def _refined(plan: Floats, pieces: int = 60) -> Floats:
@@ -104,17 +104,17 @@ def holes_item(holes: Sequence[Hole], site: Site, layer: Layer, look: Look) -> I
     """Paths of boreholes or adits, their collars, and their names there; coloured by an interval table if wanted."""
     kind = holes[0].kind
     # Boreholes are grey: blue means "below" where points are coloured by their deviation.
-    colour = DRILLED[look.dark] if kind == "borehole" else legible(KIND_STYLE[kind][1], look.dark)
+    colour = DRILLED[look.dark] if kind == "borehole" else legible_on(KIND_STYLE[kind][1], look.dark)
     collars = np.array([hole.xyz[0] for hole in holes])
     tube = lines(_runs([hole.xyz for hole in holes], look), colour, 0.0)
     parts = [
-        Part(tube, width=2.5),
-        Part(dots(poly(collars - look.origin), colour, balls=True), size=6.0),
+        ActorPart(tube, width=2.5),
+        ActorPart(dots(poly(collars - look.origin), colour, balls=True), size=6.0),
     ]
     logged, legend = _logged(holes, site, layer, look)
     return Item(
         [*parts, *logged],
-        extent(np.concatenate([hole.xyz for hole in holes])),
+        corners_of(np.concatenate([hole.xyz for hole in holes])),
         places=collars,
         names=tuple(hole.name for hole in holes) if layer.labels else (),
         ways=tuple((hole.name, hole.xyz) for hole in holes),
@@ -122,7 +122,7 @@ def holes_item(holes: Sequence[Hole], site: Site, layer: Layer, look: Look) -> I
     )
 
 
-def _logged(holes: Sequence[Hole], site: Site, layer: Layer, look: Look) -> tuple[list[Part], Legend | None]:
+def _logged(holes: Sequence[Hole], site: Site, layer: Layer, look: Look) -> tuple[list[ActorPart], Legend | None]:
     """Return the intervals of the table that the layer is coloured by, a part and a swatch a code."""
     if layer.colour_by not in log_files(site):
         return [], None
@@ -134,7 +134,7 @@ def _logged(holes: Sequence[Hole], site: Site, layer: Layer, look: Look) -> tupl
     every = {str(code) for campaign in site.boreholes for log in campaign.logs for code in np.unique(log.code)}
     styles = lithology_style(sorted(every))
     parts = [
-        Part(lines(_runs(runs, look), styles[code][0], 2.0), width=LOGGED) for code, runs in sorted(pieces.items())
+        ActorPart(lines(_runs(runs, look), styles[code][0], 2.0), width=LOGGED) for code, runs in sorted(pieces.items())
     ]
     swatches = tuple(Swatch(styles[code][0], code) for code in sorted(pieces))
     return parts, Legend(layer.colour_by, "", swatches)
@@ -156,8 +156,8 @@ def dips_item(dips: Orientations, width: float, layer: Layer, look: Look) -> Ite
     ends = CORNERS * np.arange(len(dips))
     rings = [np.append(np.arange(e, e + CORNERS), e) for e in ends]
     parts = [
-        Part(triangles(poly(xyz - look.origin, faces=fan, normals=normals), colour), opacity=0.85),
-        Part(lines(poly(xyz - look.origin, runs=rings), look.text), width=1.0),
+        ActorPart(triangles(poly(xyz - look.origin, faces=fan, normals=normals), colour), opacity=0.85),
+        ActorPart(lines(poly(xyz - look.origin, runs=rings), look.text), width=1.0),
     ]
     names = [f"{azimuth:03.0f}/{dip:02.0f}" for azimuth, dip in zip(dips.azimuth, dips.dip, strict=True)]
-    return Item(parts, extent(xyz), places=dips.xyz, names=tuple(names) if layer.labels else (), targets=dips.xyz)
+    return Item(parts, corners_of(xyz), places=dips.xyz, names=tuple(names) if layer.labels else (), targets=dips.xyz)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.gui.view3d.actors import Part
+from geofit.gui.view3d.actors import ActorPart
 from geofit.gui.view3d.item import Item, Look
 from geofit.gui.view3d.layers import Layer, Layers
 
@@ -31,7 +31,7 @@ class Stage:
         self._builders: dict[str, Builder] = {}
         self._items: dict[str, Item] = {}
         self._built: dict[str, tuple[object, ...]] = {}
-        self._extras: dict[str, list[Part]] = {}
+        self._extras: dict[str, list[ActorPart]] = {}
         self._full, self._stretch, self._pixels, self._metres = True, 1.0, 1.0, 1.0
         self._end = layers.subscribe(self._changed)
 
@@ -94,7 +94,7 @@ class Stage:
         self.clip = planes
         self._apply_all()
 
-    def set_extra(self, name: str, parts: list[Part]) -> None:
+    def set_extra(self, name: str, parts: list[ActorPart]) -> None:
         """Draw something that is not a layer (axes, a tool) in place of what it was; it is never clipped."""
         self._take(self._extras.pop(name, []))
         if parts:
@@ -143,7 +143,7 @@ class Stage:
         self._built.pop(key, None)
         self._take(item.parts if item is not None else [])
 
-    def _take(self, parts: list[Part]) -> None:
+    def _take(self, parts: list[ActorPart]) -> None:
         for part in parts:
             self._renderer.RemoveActor(part.actor)
             part.actor.ReleaseGraphicsResources(self._window)
@@ -168,7 +168,7 @@ class Stage:
             else:
                 mapper.SetClippingPlanes(self.clip)
 
-    def _style(self, part: Part, opacity: float) -> None:
+    def _style(self, part: ActorPart, opacity: float) -> None:
         part.actor.GetProperty().SetOpacity(opacity * part.strength(self._metres))
         part.actor.SetScale(1.0, 1.0, self._stretch)
         part.scale(self._pixels)

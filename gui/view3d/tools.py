@@ -9,12 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from vtkmodules.vtkCommonDataModel import vtkPlane, vtkPlaneCollection
 
-from geofit.gui.view3d.actors import Part, lines, poly, triangles
+from geofit.gui.view3d.actors import ActorPart, lines, poly, triangles
 from geofit.gui.view3d.axes import grouped
 from geofit.gui.view3d.handles import Handle
 from geofit.gui.view3d.item import Look
 
-__all__ = ["ClipBox", "Measure", "SectionPlane"]
+__all__ = ["ClipBox", "Measure", "SectionTool"]
 
 Floats = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class Measure:
         )
 
 
-class SectionPlane:
+class SectionTool:
     """A vertical plane along a line of the plan, (k, 2) map coordinates, with a thickness in metres."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
@@ -65,7 +65,7 @@ class SectionPlane:
         self.thickness = 0.0
         self._changed = changed
 
-    def parts(self, box: Floats, look: Look) -> list[Part]:
+    def parts(self, box: Floats, look: Look) -> list[ActorPart]:
         """Return what is drawn: the plane, its rim, and the two sides of the slice."""
         if self.line is None:
             return []
@@ -75,8 +75,8 @@ class SectionPlane:
         parts = []
         for offset, opacity in ((0.0, 0.28), *(((s * self.thickness / 2), 0.1) for s in (-1, 1) if self.thickness)):
             xyz, faces, rim = self._wall(offset, levels)
-            parts.append(Part(triangles(poly(xyz - look.origin, faces=faces), PLANE), opacity=opacity))
-            parts.append(Part(lines(poly(xyz - look.origin, runs=[rim]), PLANE), width=2.0 if not offset else 1.0))
+            parts.append(ActorPart(triangles(poly(xyz - look.origin, faces=faces), PLANE), opacity=opacity))
+            parts.append(ActorPart(lines(poly(xyz - look.origin, runs=[rim]), PLANE), width=2.0 if not offset else 1.0))
         return parts
 
     def _wall(self, offset: float, levels: tuple[float, float]) -> tuple[Floats, NDArray[np.int64], Any]:
@@ -146,14 +146,14 @@ class ClipBox:
                 planes.AddItem(plane)
         return planes
 
-    def parts(self, look: Look) -> list[Part]:
+    def parts(self, look: Look) -> list[ActorPart]:
         """Return the edges of the box."""
         if self.box is None:
             return []
         x, y, z = self.box.T
         corners = np.array([[a, b, c] for c in z for a, b in ((x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1]))])
         runs = [np.array([0, 1, 2, 3, 0]), np.array([4, 5, 6, 7, 4]), *(np.array([k, k + 4]) for k in range(4))]
-        return [Part(lines(poly(corners - look.origin, runs=runs), PLANE), width=1.5)]
+        return [ActorPart(lines(poly(corners - look.origin, runs=runs), PLANE), width=1.5)]
 
     def handles(self) -> list[Handle]:
         """Return a handle in the middle of each side."""

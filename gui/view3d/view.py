@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.view3d.actors import Part, lines, poly
+from geofit.gui.view3d.actors import ActorPart, lines, poly
 from geofit.gui.view3d.annotations import Annotations, theme_of
 from geofit.gui.view3d.axes import floor_lines, marks, nice
 from geofit.gui.view3d.body_items import BodyScene, MorphScene
@@ -31,7 +31,7 @@ from geofit.gui.view3d.pointer import Pointer
 from geofit.gui.view3d.projector import Projector
 from geofit.gui.view3d.screenshot import write_screenshot
 from geofit.gui.view3d.stage import Stage
-from geofit.gui.view3d.tools import ClipBox, SectionPlane
+from geofit.gui.view3d.tools import ClipBox, SectionTool
 from geofit.project.listing import Listing
 from geofit.project.provenance import Row
 from geofit.sampling.cut import section_line
@@ -79,7 +79,7 @@ class SceneView(QWidget):
         self._stage = Stage(self.layers, self.canvas.renderer, self.canvas.ren_win, self._changed)
         self.contents, self.bodies = Contents(self._stage), BodyScene(self._stage)
         self.morph = MorphScene(self._stage)
-        self._section, self._clip = SectionPlane(self._section_moved), ClipBox(self._clip_moved)
+        self._section, self._clip = SectionTool(self._section_moved), ClipBox(self._clip_moved)
         self.pointer = Pointer(self.canvas, self._stage, self.contents, self._clip, self)
         self._step, self._framed, self._closed = 0.0, False, False
         self._annotations = Annotations(self, self.canvas.projector, self._content)
@@ -331,7 +331,7 @@ class SceneView(QWidget):
             if (box := self._stage.box()) is not None:
                 points, runs = floor_lines(self._padded(box), step)
                 data = poly(points - self.canvas.origin, runs=runs)
-                parts = [Part(lines(data, self._stage.look.text, 0.0), width=1.0, opacity=0.16)]
+                parts = [ActorPart(lines(data, self._stage.look.text, 0.0), width=1.0, opacity=0.16)]
             self._stage.set_extra("axes", parts)
 
     def _content(self, view: Projector) -> Content:

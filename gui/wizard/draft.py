@@ -17,7 +17,7 @@ from geofit.io.preview import TablePreview, preview_file, preview_table
 from geofit.io.source import Source
 from geofit.io.tables import parse_numbers
 
-__all__ = ["Draft", "drafts_of", "free_name", "read_again"]
+__all__ = ["Draft", "drafts_of", "free_name", "preview_again"]
 
 #: Roles that several columns may have, by what their values are.
 HORIZON_ROLES = {"elevation": "horizon elevation", "depth": "horizon depth"}
@@ -191,7 +191,7 @@ def drafts_of(
     return tuple(drafts)
 
 
-def read_again(draft: Draft, source: Source, kind: str, *, progress: Progress) -> Draft:
+def preview_again(draft: Draft, source: Source, kind: str, *, progress: Progress) -> Draft:
     """Preview a table anew, as another kind or with another encoding, separator, decimal mark or unit."""
     tell(progress, source.name, 0.0)
     if kind in PLAIN:

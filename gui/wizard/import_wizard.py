@@ -28,7 +28,7 @@ from PySide6.QtWidgets import (
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon
 from geofit.gui.translate import user_language
-from geofit.gui.wizard.draft import Draft, drafts_of, free_name, read_again
+from geofit.gui.wizard.draft import Draft, drafts_of, free_name, preview_again
 from geofit.gui.wizard.memory import Memory
 from geofit.gui.wizard.result_page import ResultPage
 from geofit.gui.wizard.table_page import TablePage
@@ -241,7 +241,7 @@ class ImportWizard(TaskDialog):
 
     def _read_again(self, source: Source, kind: str) -> None:
         draft = self._drafts[self.list.currentRow()]
-        self.begin(read_again, draft, source, kind, on_done=self._put, on_stopped=self._stopped, in_process=False)
+        self.begin(preview_again, draft, source, kind, on_done=self._put, on_stopped=self._stopped, in_process=False)
 
     def _put(self, draft: Draft) -> None:
         self._drafts[self.list.currentRow()] = draft

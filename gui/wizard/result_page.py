@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from geofit.gui.panels.marks import icon
-from geofit.gui.panels.tables import Column, DataTable
+from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import translated
 from geofit.project.importing import Import
 
@@ -72,14 +72,14 @@ class ResultPage(QWidget):
         names = list(found.site.horizons)
         sizes = np.array([len(found.site.horizons[name]) for name in names], float)
         self.horizons.show_columns(
-            (Column(self.tr("Horizon"), np.array(names, str)), Column(self.tr("Points"), sizes, 0))
+            (TableColumn(self.tr("Horizon"), np.array(names, str)), TableColumn(self.tr("Points"), sizes, 0))
         )
         counts = found.counts
         self.files.show_columns(
             (
-                Column(self.tr("File"), np.array([count.file for count in counts], str)),
+                TableColumn(self.tr("File"), np.array([count.file for count in counts], str)),
                 *(
-                    Column(title, np.array([getattr(count, key) for count in counts], float), 0)
+                    TableColumn(title, np.array([getattr(count, key) for count in counts], float), 0)
                     for title, key in (
                         (self.tr("Rows"), "read"),
                         (self.tr("Used"), "used"),
@@ -95,18 +95,18 @@ class ResultPage(QWidget):
         self._severity = np.array([_ORDER[one.severity] for one in issues], np.int64)
         self.issues.show_columns(
             (
-                Column(
+                TableColumn(
                     self.tr("Kind", "ResultPage"),
                     np.array([words[one.severity] for one in issues], str),
                     icons=lambda row: icon(_MARK[issues[row].severity]),
                     order=self._severity,
                 ),
-                Column(self.tr("File"), np.array([one.file for one in issues], str)),
-                Column(self.tr("Row"), np.array([one.row or np.nan for one in issues], float), 0),
-                Column(self.tr("Column"), np.array([one.column for one in issues], str)),
-                Column(self.tr("Value"), np.array([one.value for one in issues], str)),
-                Column(self.tr("Reason"), np.array([translated(one.reason) for one in issues], str)),
-                Column(self.tr("What to do"), np.array([translated(one.remedy) for one in issues], str)),
+                TableColumn(self.tr("File"), np.array([one.file for one in issues], str)),
+                TableColumn(self.tr("Row"), np.array([one.row or np.nan for one in issues], float), 0),
+                TableColumn(self.tr("Column"), np.array([one.column for one in issues], str)),
+                TableColumn(self.tr("Value"), np.array([one.value for one in issues], str)),
+                TableColumn(self.tr("Reason"), np.array([translated(one.reason) for one in issues], str)),
+                TableColumn(self.tr("What to do"), np.array([translated(one.remedy) for one in issues], str)),
             )
         )
         header = self.issues.horizontalHeader()

@@ -55,8 +55,8 @@ def write_block_model(body: BodyFit, path: str | PathLike[str], spacing: float |
         _write_csv(block_model(body, spacing), path)
     else:
         raise InputError(
-            message("export.block-model-ending", "A block model cannot be written as '{ending}'", ending=ending),
-            message("export.block-model-endings", "Name the file .csv, .omf or .geoh5."),
+            message("io.block-model-ending", "A block model cannot be written as '{ending}'", ending=ending),
+            message("io.block-model-endings", "Name the file .csv, .omf or .geoh5."),
             file=str(path),
         )
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from geofit.data.files import file_stems, replacing
 from geofit.geometry.mesh import Mesh
-from geofit.sampling.contours import Contour
+from geofit.sampling.contours import ContourLine
 from geofit.sampling.cut import CutLine
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ COLOURS = (30, 84, 150, 14, 200, 42, 120, 220)
 METRES = 6
 
 
-def write_contours_dxf(contours: Mapping[str, Sequence[Contour]], path: str | PathLike[str]) -> None:
+def write_contours_dxf(contours: Mapping[str, Sequence[ContourLine]], path: str | PathLike[str]) -> None:
     """Write contours as 2D polylines that carry their elevation, one layer a horizon."""
     with _drawing(path, list(contours)) as (document, layers):
         space = document.modelspace()

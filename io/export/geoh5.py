@@ -72,11 +72,11 @@ def write_geoh5(
     InputError
         If there is no surface.
     """
-    h5py = need("h5py", "geoh5", message("export.need-package", "Writing {format}", format="geoh5"))
+    h5py = need("h5py", "geoh5", message("io.package-missing-for-format", "Writing {format}", format="geoh5"))
     if not meshes:
         raise InputError(
-            message("export.no-surface-write", "No surface to write"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("data.no-surface", "No surface to write"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(path),
         )
     # In memory: on a full disk the library ends the process.
@@ -110,7 +110,7 @@ def write_geoh5_blocks(blocks: Mapping[str, BlockModel], path: str | PathLike[st
     MissingDependencyError
         If h5py is not installed.
     """
-    h5py = need("h5py", "geoh5", message("export.need-package", "Writing {format}", format="geoh5"))
+    h5py = need("h5py", "geoh5", message("io.package-missing-for-format", "Writing {format}", format="geoh5"))
     whole = BytesIO()
     with h5py.File(whole, "w", track_order=False) as file:
         model = _Model(file.create_group("GEOSCIENCE"), h5py.string_dtype())

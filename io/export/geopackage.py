@@ -13,12 +13,14 @@ from geofit.data.errors import InputError
 from geofit.data.files import replacing
 from geofit.data.messages import message
 from geofit.io.extra import need
-from geofit.sampling.contours import Contour
+from geofit.sampling.contours import ContourLine
 
 __all__ = ["write_contours_gpkg"]
 
 
-def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | PathLike[str], crs: str = "") -> None:
+def write_contours_gpkg(
+    contours: Mapping[str, Sequence[ContourLine]], path: str | PathLike[str], crs: str = ""
+) -> None:
     """Write a layer ``contours`` of lines with the fields ``horizon`` and ``elevation``.
 
     Parameters
@@ -37,14 +39,14 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
     InputError
         If there is no contour, or the file cannot be written.
     """
-    pyogrio = need("pyogrio", "gis", message("export.need-package", "Writing {format}", format="GeoPackage"))
+    pyogrio = need("pyogrio", "gis", message("io.package-missing-for-format", "Writing {format}", format="GeoPackage"))
     import shapely
 
     rows = [(name, contour) for name, lines in contours.items() for contour in lines]
     if not rows:
         raise InputError(
-            message("export.no-contour-write", "There is no contour to write"),
-            message("export.choose-smaller-interval", "Choose a smaller interval."),
+            message("io.no-contour", "There is no contour to write"),
+            message("io.choose-smaller-interval", "Choose a smaller interval."),
             file=str(path),
         )
     geometry = shapely.to_wkb(np.array([shapely.LineString(contour.line) for _, contour in rows]))
@@ -65,10 +67,8 @@ def write_contours_gpkg(contours: Mapping[str, Sequence[Contour]], path: str | P
             )  # fmt: skip
     except (pyogrio.errors.DataSourceError, pyogrio.errors.CRSError) as error:
         raise InputError(
-            message("export.file-cannot-written", "The file cannot be written: {error}", error=error),
-            message(
-                "export.check-path-give-system", "Check the path; give the system as EPSG:number, or none: --crs ''."
-            ),
+            message("data.file-not-written", "The file cannot be written: {error}", error=error),
+            message("io.check-path-and-system", "Check the path; give the system as EPSG:number, or none: --crs ''."),
             file=str(path),
         ) from None
     else:

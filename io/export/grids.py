@@ -82,15 +82,15 @@ def write_geotiff(grid: Ground, path: str | PathLike[str], crs: str = "") -> Non
     InputError
         If the cells are not square, no cell has a value, or the coordinate system is unknown.
     """
-    rasterio = need("rasterio", "gis", message("export.need-package", "Writing {format}", format="GeoTIFF"))
+    rasterio = need("rasterio", "gis", message("io.package-missing-for-format", "Writing {format}", format="GeoTIFF"))
     step = _square(grid, path)
     transform = rasterio.Affine(step, 0, grid.x[0] - step / 2, 0, -step, grid.y[-1] + step / 2)
     try:
         system = rasterio.crs.CRS.from_user_input(crs) if crs else None
     except rasterio.errors.CRSError as error:
         raise InputError(
-            message("export.coordinate-system-unknown", "The coordinate system is unknown: {error}", error=error),
-            message("export.give-epsg-number-none", "Give one as EPSG:number, or none: --crs ''."),
+            message("io.written-crs-unknown", "The coordinate system is unknown: {error}", error=error),
+            message("io.give-epsg-or-none", "Give one as EPSG:number, or none: --crs ''."),
             file=str(path),
             value=crs,
         ) from None
@@ -116,8 +116,8 @@ def _digits(value: float) -> str:
 def _valued(grid: Ground, path: str | PathLike[str]) -> None:
     if not np.isfinite(grid.z).any():
         raise InputError(
-            message("export.no-cell-grid-value", "No cell of the grid has a value"),
-            message("export.choose-cell-size-below", "Choose a cell size below the surface's size."),
+            message("io.grid-without-value", "No cell of the grid has a value"),
+            message("io.choose-smaller-cells", "Choose a cell size below the surface's size."),
             file=str(path),
         )
 
@@ -128,12 +128,12 @@ def _square(grid: Ground, path: str | PathLike[str]) -> float:
     if np.ptp(steps) > 1e-6 * steps.mean():
         raise InputError(
             message(
-                "export.cells-wide-format-needs",
+                "io.cells-not-square",
                 "The cells are from {least:g} to {most:g} m wide; the format needs square cells",
                 least=steps.min(),
                 most=steps.max(),
             ),
-            message("export.sample-surface-grid-step", "Sample the surface on a grid with one step."),
+            message("io.sample-with-one-step", "Sample the surface on a grid with one step."),
             file=str(path),
         )
     return float(steps.mean())

@@ -75,19 +75,21 @@ def write_ifc(
     InputError
         If there is neither a surface, a body nor a hole, or a void is not among the bodies.
     """
-    ifcopenshell = need("ifcopenshell", "ifc", message("export.need-package", "Writing {format}", format="IFC"))
+    ifcopenshell = need(
+        "ifcopenshell", "ifc", message("io.package-missing-for-format", "Writing {format}", format="IFC")
+    )
     bodies = {} if bodies is None else bodies
     unknown = sorted(set(voids) - set(bodies))
     if unknown:
         raise InputError(
-            message("export.void-no-body", "The void '{name}' is not among the bodies", name=unknown[0]),
-            message("export.bodies-are", "The bodies are: {names}.", names=", ".join(bodies)),
+            message("io.void-no-body", "The void '{name}' is not among the bodies", name=unknown[0]),
+            message("io.known-bodies", "The bodies are: {names}.", names=", ".join(bodies)),
             file=str(path),
         )
     if not surfaces and not holes and not bodies:
         raise InputError(
-            message("export.no-surface-write", "No surface to write"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("data.no-surface", "No surface to write"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(path),
         )
     model = _Model(ifcopenshell, site, crs)

@@ -43,11 +43,11 @@ def write_landxml(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> None
         if area.min() <= 0 <= area.max():
             raise InputError(
                 message(
-                    "export.upright-overturned-places-landxml",
+                    "io.surface-overturned",
                     "'{name}' is upright or overturned in places; a LandXML TIN has one elevation a place",
                     name=name,
                 ),
-                message("export.write-step-obj-gocad", "Write it as STEP, OBJ or GOCAD TSurf."),
+                message("io.write-other-format", "Write it as STEP, OBJ or GOCAD TSurf."),
                 file=str(path),
             )
         triangles = mesh.triangles if area.min() > 0 else mesh.triangles[:, ::-1]

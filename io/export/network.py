@@ -209,8 +209,8 @@ def write_statoil(
     """
     if axis not in (0, 1, 2):
         raise InputError(
-            message("export.axis-not-axis", "axis={axis} is not an axis of the volume", axis=axis),
-            message("export.give-0-1-2", "Give 0, 1 or 2."),
+            message("io.axis-unknown", "axis={axis} is not an axis of the volume", axis=axis),
+            message("io.give-axis", "Give 0, 1 or 2."),
         )
     folder, unit = Path(folder), network.unit
     order = [axis, *(other for other in range(3) if other != axis)]
@@ -291,12 +291,12 @@ def read_statoil(folder: str | PathLike[str], stem: str) -> StatoilNetwork:
     ):
         raise InputError(
             message(
-                "export.four-files-pores",
+                "io.network-counts-differ",
                 "its four files state {pores} pores and {throats} links, but list others",
                 pores=count,
                 throats=links,
             ),
-            message("export.export-network-again", "Export the network again."),
+            message("io.export-network-again", "Export the network again."),
             file=str(Path(folder) / stem),
         )
     node1 = np.array([row[1:4] for row in rows["node1"][1:]], float)
@@ -315,7 +315,7 @@ def _rows(folder: Path, name: str) -> list[list[str]]:
             data = gzip.decompress(path.read_bytes()) if path.suffix == ".gz" else path.read_bytes()
             return [line.split() for line in data.decode("ascii").splitlines() if line.strip()]
     raise InputError(
-        message("export.network-four-files", "a network needs four files, and this one is missing"),
-        message("export.put-beside", "Put it next to the others."),
+        message("io.network-file-missing", "a network needs four files, and this one is missing"),
+        message("io.put-next-to-others", "Put it next to the others."),
         file=str(folder / name),
     )

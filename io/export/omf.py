@@ -65,8 +65,8 @@ def write_omf(
     """
     if not meshes:
         raise InputError(
-            message("export.no-surface-write", "No surface to write"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("data.no-surface", "No surface to write"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(path),
         )
     model = _Model()

@@ -10,7 +10,7 @@ import numpy as np
 from geofit.data.files import file_stems
 from geofit.data.site import Site
 from geofit.io.export.dxf import drawing_of
-from geofit.sampling.contours import Contour
+from geofit.sampling.contours import ContourLine
 
 __all__ = ["write_plan_dxf"]
 
@@ -21,7 +21,7 @@ HEAVY, LETTERS = 5, 0.008
 
 
 def write_plan_dxf(
-    contours: Mapping[str, Sequence[Contour]],
+    contours: Mapping[str, Sequence[ContourLine]],
     intervals: Mapping[str, float],
     site: Site,
     title: str,

@@ -185,8 +185,8 @@ def _state_origin(origin: Floats, path: str | PathLike[str], axes: str) -> None:
 def _given(meshes: Mapping[str, Mesh], path: str | PathLike[str]) -> Mapping[str, Mesh]:
     if not meshes:
         raise InputError(
-            message("export.no-surface-write", "No surface to write"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("data.no-surface", "No surface to write"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(path),
         )
     return meshes

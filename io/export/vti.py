@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.bodies.blocks import block_lattice
-from geofit.bodies.posterior import Posterior
+from geofit.bodies.posterior import BodyPosterior
 from geofit.data.files import replacing
 from geofit.implicit.lattice import sample
 
@@ -47,7 +47,7 @@ def write_vti(
     lattice = block_lattice(body, spacing)
     arrays = {"field": sample(body.field, lattice)}
     if probability:
-        arrays["probability"] = Posterior(body).probability(lattice.nodes() + body.origin).reshape(lattice.shape)
+        arrays["probability"] = BodyPosterior(body).probability(lattice.nodes() + body.origin).reshape(lattice.shape)
     whole = " ".join(f"0 {n - 1}" for n in lattice.shape)
     origin = " ".join(map(repr, (lattice.origin + body.origin).tolist()))
     step = " ".join([repr(lattice.spacing)] * 3)

@@ -48,12 +48,12 @@ def write_vtp(
     if len(off) != len(data):
         raise InputError(
             message(
-                "export.deviations-given-points",
+                "io.deviations-differ-in-number",
                 "Deviations given: {count}; points: {points}",
                 count=len(off),
                 points=len(data),
             ),
-            message("export.give-deviations-points", "Give the deviations with their points, one for each."),
+            message("io.give-deviations-with-points", "Give the deviations with their points, one for each."),
             file=str(path),
         )
     xyz = np.concatenate([mesh.xyz, data])

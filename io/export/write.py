@@ -159,8 +159,8 @@ def write_surface(
     given: Surfaces = surfaces if isinstance(surfaces, Mapping) else {surfaces.name: surfaces}
     if not given:
         raise InputError(
-            message("export.no-surface-write", "No surface to write"),
-            message("export.give-least-horizon", "Give at least one horizon."),
+            message("data.no-surface", "No surface to write"),
+            message("data.give-a-horizon", "Give at least one horizon."),
             file=str(out),
         )
     to = format or format_of(out)
@@ -168,7 +168,7 @@ def write_surface(
     if unit != "m" and not chosen.unit:
         raise SettingsError(
             message(
-                "export.unit-files-use",
+                "io.unit-not-for-format",
                 "unit is '{unit}'; {format} files are in metres. Use STEP, or leave it out.",
                 unit=unit,
                 format=to,
@@ -212,9 +212,9 @@ def format_of(path: str | PathLike[str]) -> str:
             return name
     known = [ending for one in FORMATS.values() for ending in one.endings]
     raise InputError(
-        message("export.format-ending", "No format has the ending '{ending}'", ending=ending),
+        message("io.ending-unknown", "No format has the ending '{ending}'", ending=ending),
         message(
-            "export.format-file-ends", "Name the format, or give a file that ends in {names}.", names=", ".join(known)
+            "io.name-format-or-ending", "Name the format, or give a file that ends in {names}.", names=", ".join(known)
         ),
         file=str(path),
     )
@@ -248,7 +248,7 @@ def untrimmed(surfaces: Surfaces, format: str) -> list[Message]:
         return []
     return [
         message(
-            "export.faces-end-holes",
+            "io.trimmed-faces-not-held",
             "{name}: its faces end at holes or curves that {format} does not represent: the file has whole patches",
             name=name,
             format=format,
@@ -261,8 +261,8 @@ def untrimmed(surfaces: Surfaces, format: str) -> list[Message]:
 def _format(name: str) -> Format:
     if name not in FORMATS:
         raise InputError(
-            message("export.no-format", "There is no format '{to}'", to=name),
-            message("export.known-formats", "Choose one of: {names}.", names=", ".join(FORMATS)),
+            message("io.format-unknown", "There is no format '{to}'", to=name),
+            message("io.known-formats", "Choose one of: {names}.", names=", ".join(FORMATS)),
         )
     return FORMATS[name]
 
@@ -309,13 +309,13 @@ def _need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
         others = [name for name, one in FORMATS.items() if one.takes not in ("surfaces", "site")]
         raise InputError(
             message(
-                "export.triangle-mesh-holds-nurbs",
+                "io.mesh-not-for-nurbs",
                 "'{name}' is a triangle mesh; {to} stores NURBS surfaces, so it would have to be fitted first",
                 name=meshes[0],
                 to=to,
             ),
             message(
-                "export.fit-vertices-geofit-fit",
+                "io.fit-vertices-first",
                 "Fit its vertices (geofit fit), or choose one of: {names}.",
                 names=", ".join(others),
             ),
@@ -343,11 +343,11 @@ def _grids(surfaces: Surfaces, out: Path, options: _Options) -> list[tuple[Path,
         if len(surfaces) != 2:
             raise InputError(
                 message(
-                    "export.thickness-lies-two-horizons",
+                    "io.thickness-needs-two",
                     "Thickness lies between two horizons; given: {count}",
                     count=len(surfaces),
                 ),
-                message("export.name-upper-lower", "Name the upper one, then the lower."),
+                message("io.name-upper-lower", "Name the upper one, then the lower."),
             )
         upper, lower = surfaces.values()
         return [(out, thickness_grid(upper, lower, options.cell))]
@@ -357,7 +357,7 @@ def _grids(surfaces: Surfaces, out: Path, options: _Options) -> list[tuple[Path,
     if options.value != "deviation":
         raise SettingsError(
             message(
-                "export.grid-unknown-choose-elevation",
+                "io.grid-kind-unknown",
                 "A grid of '{kind}' is unknown; choose elevation, deviation or thickness.",
                 kind=options.value,
             )
@@ -366,7 +366,7 @@ def _grids(surfaces: Surfaces, out: Path, options: _Options) -> list[tuple[Path,
     missing = [name for name in surfaces if name not in data]
     if missing:
         raise InputError(
-            message("export.no-points", "There are no points of '{name}'", name=missing[0]),
-            message("export.give-points", "Give them with --points."),
+            message("io.no-points", "There are no points of '{name}'", name=missing[0]),
+            message("io.give-points-option", "Give them with --points."),
         )
     return [(files[name], deviation_grid(surfaces[name], data[name], options.cell)) for name in surfaces]

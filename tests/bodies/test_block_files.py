@@ -13,7 +13,7 @@ from bodies.planted import ORIGIN, SIZE, drilled, ellipsoid
 from geofit.bodies.blocks import block_model
 from geofit.bodies.body import BodyFit
 from geofit.bodies.fit import fit_body
-from geofit.bodies.posterior import ON_SURFACE, Posterior
+from geofit.bodies.posterior import ON_SURFACE, BodyPosterior
 from geofit.data.errors import InputError, SettingsError
 from geofit.io.export.block_model import write_block_model
 from geofit.io.export.ifc import write_ifc
@@ -30,7 +30,7 @@ def test_vti_as_vtk_reads_it(ring: BodyFit, tmp_path: Path) -> None:
     np.testing.assert_allclose(image.point_data["field"], ring.value(points), atol=1e-6)
     some = np.arange(0, len(points), 37)
     np.testing.assert_allclose(
-        image.point_data["probability"][some], Posterior(ring).probability(points[some]), atol=1e-6
+        image.point_data["probability"][some], BodyPosterior(ring).probability(points[some]), atol=1e-6
     )
     surface = image.contour([0.0], scalars="field")
     assert surface.n_open_edges == 0

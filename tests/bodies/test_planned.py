@@ -8,7 +8,7 @@ import pytest
 from bodies.planted import ORIGIN, SIZE, Truth, drilled, ellipsoid, torus
 from geofit.bodies.body import BodyFit
 from geofit.bodies.data import BodyData
-from geofit.bodies.drilling import suggest_holes
+from geofit.bodies.drilling import suggest_body_holes
 from geofit.bodies.fit import fit_body
 from geofit.bodies.planned import predict_hole
 from geofit.data.errors import SettingsError
@@ -73,7 +73,7 @@ def test_suggested_holes_narrow_the_volume_more_than_holes_elsewhere() -> None:
         truth = ellipsoid((0.7, 0.5, 0.4))[0]
         data = drilled(truth, seed, rows=6, named=True)
         body = fit_body(data)
-        suggested = suggest_holes(body, 2)
+        suggested = suggest_body_holes(body, 2)
         assert suggested[0].sd_before > suggested[0].sd_after == suggested[1].sd_before > suggested[1].sd_after
         collar = (suggested[0].hole.collar - ORIGIN) / SIZE
         predicted.append(suggested[0].sd_after / suggested[0].sd_before)
@@ -107,4 +107,4 @@ def test_holes_that_cannot_be_planned(ring: BodyFit) -> None:
     with pytest.raises(SettingsError, match="planned hole"):
         predict_hole(ring, ORIGIN, length=0)
     with pytest.raises(SettingsError, match="suggested"):
-        suggest_holes(ring, 0)
+        suggest_body_holes(ring, 0)

@@ -13,7 +13,7 @@ import pytest
 from bodies.planted import ORIGIN, SIZE
 from bodies.shapes import Case, case, other_case
 from geofit.bodies.fit import fit_body
-from geofit.bodies.posterior import Posterior
+from geofit.bodies.posterior import BodyPosterior
 
 
 @pytest.mark.parametrize(("make", "error"), [(case, 0.05), (other_case, 0.08)])
@@ -30,7 +30,7 @@ def test_bodies_of_kinds_that_were_used_and_not_used_to_calibrate(make: Callable
         held.append(volumes.p10 < volume < volumes.p90)
         errors.append(volumes.best / volume - 1)
         places = np.random.default_rng(seed).uniform(-0.9, 0.9, (3000, 3))
-        chance.append(Posterior(body).probability(places * SIZE + ORIGIN))
+        chance.append(BodyPosterior(body).probability(places * SIZE + ORIGIN))
         inside.append(one.truth(places) < 0)
     # 80 %, and two standard errors of a share.
     assert 0.65 <= np.mean(held) <= 0.95

@@ -13,7 +13,7 @@ from geofit.cad.step_attributes import KEYS, attributes_of, with_attributes
 from geofit.data.languages import EN
 from geofit.project.step_files import Signed, write_step_files
 from geofit.report.certificate import certificate
-from geofit.report.document import Table
+from geofit.report.document import ReportTable
 
 ORIGIN = np.array([500_000.0, 3_100_000.0, 1500.0])
 
@@ -112,6 +112,6 @@ def test_many_horizons_stay_on_one_page_and_a_failed_one_is_named(surfaces, tmp_
     page = certificate(tmp_path / "dam.step", every, dict.fromkeys(every, 0.5), EN)
     (chapter,) = page.chapters
     assert chapter.verdict.passed is False
-    tables = [block for block in chapter.blocks if isinstance(block, Table)]
+    tables = [block for block in chapter.blocks if isinstance(block, ReportTable)]
     assert len(tables[0].rows) == 13
     assert [row[0] for row in tables[1].rows] == ["T3"]

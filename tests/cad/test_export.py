@@ -118,5 +118,5 @@ def test_the_unit_of_the_process_stays(surfaces, tmp_path):
 
 @pytest.mark.parametrize("writer", [write_brep, write_iges])
 def test_refuses_nothing(writer, tmp_path):
-    with refused(InputError, "export.no-surface-write"):
+    with refused(InputError, "data.no-surface"):
         writer({}, tmp_path / "a")

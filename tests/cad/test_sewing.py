@@ -65,7 +65,7 @@ def test_trimmed_shell_keeps_its_seams_and_follows_the_outline(outline, seams_le
     assert occ.free_loops(shape) == 1
     ring = shapely.LinearRing(outline)
     for edge in occ.free_edges(shape):
-        line = occ.along(edge, 50)
+        line = occ.edge_places(edge, 50)
         assert shapely.distance(ring, shapely.points(line[:, :2])).max() < 1e-6
         np.testing.assert_allclose(line[:, 2], whole.evaluate(line[:, 0], line[:, 1])[:, 2], atol=1e-6)
     import cadquery
@@ -89,14 +89,14 @@ def test_a_fold_is_cut_by_a_prism():
     parts = split(patch, [u[18]], [])
     shape = shell(horizon(parts, outline=[(-500, 40), (1000, 40), (1000, 250), (-500, 250)]))
     assert occ.free_loops(shape) == 1
-    y = np.concatenate([occ.along(edge, 20)[:, 1] for edge in occ.free_edges(shape)])
+    y = np.concatenate([occ.edge_places(edge, 20)[:, 1] for edge in occ.free_edges(shape)])
     assert 40 - 0.01 <= y.min() <= y.max() <= 250 + 0.01
 
 
 def test_a_gap_is_named_with_its_width():
     _, parts = nine()
     apart = moved(parts, "p11", [0, 0, 0.01])
-    with refused(StitchError, "fit.patches-not-share-edges") as caught:
+    with refused(StitchError, "cad.edges-not-shared") as caught:
         shell(horizon(apart))
     gap = caught.value.message.params["places"][0].params
     assert (gap["first"], gap["second"], gap["gap"]) == ("p01", "p11", pytest.approx(0.01, rel=1e-6))
@@ -104,18 +104,18 @@ def test_a_gap_is_named_with_its_width():
 
 def test_patches_far_apart_are_named():
     _, parts = nine()
-    with refused(StitchError, "fit.patches-separate-pieces-connected", shells=2):
+    with refused(StitchError, "cad.patches-not-connected", shells=2):
         shell(horizon([parts[0], parts[8]]))
 
 
 def test_an_outline_beside_the_surface():
     _, parts = nine()
-    with refused(StitchError, "fit.not-reach-outline-give"):
+    with refused(StitchError, "cad.outline-not-reached-at-all"):
         shell(horizon(parts, outline=[(2000, 0), (3000, 0), (3000, 500)]))
 
 
 def test_no_patch():
-    with refused(StitchError, "fit.no-patch-surface-needs"):
+    with refused(StitchError, "cad.no-patch"):
         shell(horizon([]))
 
 
@@ -186,9 +186,9 @@ def test_one_surface_keeps_a_position_seam():
 
 def test_one_surface_needs_a_grid():
     _, parts = nine()
-    with refused(StitchError, "fit.patches-no-full-grid"):
+    with refused(StitchError, "cad.patches-not-a-grid"):
         one_surface(horizon(parts[:8]))
-    with refused(StitchError, "fit.neighbouring-patches-gape-merged"):
+    with refused(StitchError, "cad.patches-too-far-to-merge"):
         one_surface(horizon(moved(parts, "p11", [0, 0, 0.01])))
 
 

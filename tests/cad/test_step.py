@@ -91,7 +91,7 @@ def test_a_file_in_millimetres_says_so_and_holds_the_same_surface(written, tmp_p
 
 
 def test_an_unknown_unit_is_refused(written, tmp_path):
-    with refused(InputError, "export.step-file-unknown"):
+    with refused(InputError, "cad.unit-unknown"):
         write_step({"T1": written[0]}, tmp_path / "ft.step", unit="ft")
     assert not list(tmp_path.iterdir())
 
@@ -210,7 +210,7 @@ def test_a_gap_hidden_in_the_edge_tolerance_is_found(tmp_path):
 def test_a_gap_is_not_written(tmp_path):
     _, parts = nine()
     apart = (*parts[:4], replace(parts[4], control=parts[4].control + np.array([0, 0, 0.01])), *parts[5:])
-    with refused(StitchError, "fit.patches-not-share-edges"):
+    with refused(StitchError, "cad.edges-not-shared"):
         write_step({"T1": horizon(apart)}, tmp_path / "gap.step")
     assert not list(tmp_path.iterdir())
 
@@ -297,17 +297,17 @@ def test_opencascade_settings_are_put_back(written):
 
 
 def test_what_cannot_be_read_says_so(tmp_path, capfd):
-    with refused(InputError, "import.file-missing"):
+    with refused(InputError, "data.file-missing"):
         read_step(tmp_path / "none.step")
     (tmp_path / "text.step").write_text("x, y, z\n1, 2, 3\n")
-    with refused(InputError, "import.not-step"):
+    with refused(InputError, "cad.not-step"):
         read_step(tmp_path / "text.step")
     (tmp_path / "empty.step").write_text("")
-    with refused(InputError, "import.not-step"):
+    with refused(InputError, "cad.not-step"):
         read_step(tmp_path / "empty.step")
-    with refused(InputError, "export.file-cannot-written"):
+    with refused(InputError, "data.file-not-written"):
         write_step({"x": horizon([height_field()])}, tmp_path / "nowhere" / "x.step")
-    with refused(InputError, "export.no-surface-write"):
+    with refused(InputError, "data.no-surface"):
         write_step({}, tmp_path / "x.step")
 
 

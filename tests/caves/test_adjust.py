@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from cave_surveys import chain, network
 
-from geofit.caves.adjust import adjust
+from geofit.caves.adjust import adjust_survey
 from geofit.caves.shots import ShotList
 from geofit.caves.survey import SurveyError
 from geofit.data.errors import SettingsError
@@ -36,7 +36,7 @@ def dense(adjusted):
 @pytest.mark.parametrize("seed", range(6))
 def test_stations_equal_dense_least_squares(seed):
     _, survey = network(seed, extra=seed * 3)
-    adjusted = adjust(survey.with_fixed({"7": (1.0, 2.0, 3.0)}) if seed % 2 else survey)
+    adjusted = adjust_survey(survey.with_fixed({"7": (1.0, 2.0, 3.0)}) if seed % 2 else survey)
     xyz, sigma = dense(adjusted)
     np.testing.assert_allclose(adjusted.xyz, xyz, atol=1e-9)
     np.testing.assert_allclose(adjusted.sigma, sigma, atol=1e-9)
@@ -46,7 +46,7 @@ def test_stations_equal_dense_least_squares(seed):
 @pytest.mark.parametrize("seed", range(3))
 def test_without_noise_the_truth_returns(seed):
     points, survey = network(seed, noise=0.0)
-    adjusted = adjust(survey)
+    adjusted = adjust_survey(survey)
     order = [int(name) for name in survey.stations]
     np.testing.assert_allclose(adjusted.xyz, points[order], atol=1e-9)
     assert all(loop.distance < 1e-9 for loop in adjusted.loops)
@@ -58,7 +58,7 @@ def test_a_planted_misclosure_is_reported_and_spread_evenly():
     error = np.array([0.3, -0.2, 0.4])
     for i in range(4):
         shots.add("ABCD"[i], "ABCD"[(i + 1) % 4], corners[(i + 1) % 4] - corners[i] + (error if i == 3 else 0), i)
-    adjusted = adjust(shots.survey("square"), length_error=0.5, angle_error=np.degrees(0.05))
+    adjusted = adjust_survey(shots.survey("square"), length_error=0.5, angle_error=np.degrees(0.05))
     (loop,) = adjusted.loops
     np.testing.assert_allclose(np.abs(loop.misclosure), np.abs(error), atol=1e-12)
     assert loop.length == pytest.approx(40, abs=0.5)
@@ -71,14 +71,14 @@ def test_a_planted_misclosure_is_reported_and_spread_evenly():
 def test_a_blunder_is_suspicious_and_a_good_loop_is_not():
     _, survey = network(2, extra=1, noise=0.01)
     offset = survey.offset.copy()
-    assert not adjust(survey).loops[0].suspicious
+    assert not adjust_survey(survey).loops[0].suspicious
     offset[-1] += [60.0, 0, 0]
-    assert adjust(replace(survey, offset=offset)).loops[0].suspicious
+    assert adjust_survey(replace(survey, offset=offset)).loops[0].suspicious
 
 
 def test_a_traverse_between_two_fixed_stations_is_a_loop():
     survey = chain([[0, 0, 0], [10, 0, 0], [20, 0, 0]], 1.0).with_fixed({"2": (21.0, 0.0, 0.0)})
-    adjusted = adjust(survey)
+    adjusted = adjust_survey(survey)
     (loop,) = adjusted.loops
     np.testing.assert_allclose(loop.misclosure, [-1, 0, 0], atol=1e-12)
     np.testing.assert_allclose(adjusted.xyz[1], [10.5, 0, 0], atol=1e-9)
@@ -88,7 +88,7 @@ def test_rigid_shots_keep_their_length():
     shots = ShotList()
     for i, (a, b) in enumerate(((0, 1), (1, 2), (2, 0))):
         shots.add(str(a), str(b), np.array([[5, 0, 0], [0, 5, 0], [-5, -4.0, 0]])[i], i, rigid=i == 0)
-    adjusted = adjust(shots.survey("triangle"))
+    adjusted = adjust_survey(shots.survey("triangle"))
     assert np.linalg.norm(adjusted.residual[0]) < 1e-4
     assert np.linalg.norm(adjusted.residual[1:], axis=1).min() > 0.1
 
@@ -101,9 +101,9 @@ def test_unconnected_stations_are_named_with_the_remedy():
     with pytest.raises(
         SurveyError, match=r"2 stations of two caves are not connected to station A1: B1, B2.*missing shot"
     ):
-        adjust(survey)
-    assert len(adjust(survey.with_fixed({"A1": (0, 0, 0), "B1": (0, 9, 0)})).xyz) == 4
-    assert adjust(survey.connected_to("B2")).survey.stations == ("B1", "B2")
+        adjust_survey(survey)
+    assert len(adjust_survey(survey.with_fixed({"A1": (0, 0, 0), "B1": (0, 9, 0)})).xyz) == 4
+    assert adjust_survey(survey.connected_to("B2")).survey.stations == ("B1", "B2")
     with pytest.raises(SurveyError, match="no station X"):
         survey.connected_to("X")
     with pytest.raises(SurveyError, match="fixed stations Y"):
@@ -112,4 +112,4 @@ def test_unconnected_stations_are_named_with_the_remedy():
 
 def test_errors_must_be_positive():
     with pytest.raises(SettingsError, match="above 0"):
-        adjust(chain([[0, 0, 0], [1, 0, 0]], 1.0), length_error=0)
+        adjust_survey(chain([[0, 0, 0], [1, 0, 0]], 1.0), length_error=0)

@@ -64,8 +64,8 @@ def test_a_negative_size_is_missing_and_a_repeated_station_is_listed(table):
     assert found.stations == ("a", "b", "d")
     assert np.isnan(found.walls[found.stations.index("b")]).all()
     reasons = {issue.reason.code: issue.reason for issue in found.issues if issue.severity != "note"}
-    assert reasons["import.station-repeats-row"].params["row"] == 2
-    assert "import.taken-missing" in reasons
+    assert reasons["io.station-repeated"].params["row"] == 2
+    assert "io.size-taken-as-missing" in reasons
     assert found.counts[0].read == 5
     assert found.counts[0].listed == 2
 

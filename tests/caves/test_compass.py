@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from geofit.caves.adjust import adjust
+from geofit.caves.adjust import adjust_survey
 from geofit.caves.body import centreline_body
 from geofit.data.errors import InputError
 from geofit.io.compass import read_compass
@@ -44,7 +44,7 @@ def test_fulford_is_read_in_full(fulford):
 
 
 def test_fulford_closes_its_loops(fulford):
-    adjusted = adjust(read_compass(fulford))
+    adjusted = adjust_survey(read_compass(fulford))
     assert len(adjusted.loops) == 260 - 247 + 1
     assert len(np.unique(adjusted.survey.part_of())) == 1
     assert max(loop.percent for loop in adjusted.loops) < 6
@@ -73,7 +73,7 @@ def test_declination_and_corrections_are_added(tmp_path):
 def test_negative_walls_are_missing_and_four_zeros_too(tmp_path):
     found = survey(tmp_path, ["A B 1 0 0 -9.90 0 2 -9999.00", "B C 1 0 0 0 0 0 0"])
     assert np.isnan(found.walls).tolist() == [[True, True, False, False], [True] * 4]
-    assert "import.shots-four-walls" in {issue.reason.code for issue in found.issues}
+    assert "io.walls-not-measured" in {issue.reason.code for issue in found.issues}
 
 
 def test_flags(tmp_path):
@@ -83,7 +83,7 @@ def test_flags(tmp_path):
     assert found.counted.tolist() == [False, True, True]
     assert found.passage.tolist() == [True, False, True]
     assert found.rigid.tolist() == [False, True, False]
-    assert [issue.reason.code for issue in found.issues] == ["import.shot-flagged-excluded"]
+    assert [issue.reason.code for issue in found.issues] == ["io.shot-excluded"]
     assert found.counts[0].listed == 1
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.caves.adjust import adjust
+from geofit.caves.adjust import adjust_survey
 from geofit.caves.sections import sections
 from geofit.caves.shots import ShotList
 from geofit.caves.survey import SurveyError
@@ -20,7 +20,7 @@ def passage(ends, walls, step=10.0):
         shots.add(str(a), str(b), np.array([(b - a) * step, 0.0, 0.0]), row)
     for station, (shot, four) in walls.items():
         shots.add_walls(str(station), shot, four)
-    return adjust(shots.survey("passage"))
+    return adjust_survey(shots.survey("passage"))
 
 
 def test_missing_walls_are_linear_along_the_branch():
@@ -56,7 +56,7 @@ def test_zero_on_one_side_is_a_wall_and_on_both_sides_is_missing():
 def test_a_passage_without_any_wall_gets_the_mean_or_a_radius():
     shots = ShotList()
     shots.add("0", "1", np.array([5.0, 0, 0]), 0)
-    adjusted = adjust(shots.survey("bare"))
+    adjusted = adjust_survey(shots.survey("bare"))
     with pytest.raises(SurveyError, match=r"radius = \.\.\."):
         sections(adjusted)
     np.testing.assert_allclose(sections(adjusted, radius=1.5).walls, 1.5, atol=1e-6)
@@ -66,4 +66,4 @@ def test_surface_shots_get_no_section():
     shots = ShotList()
     shots.add("0", "1", np.array([5.0, 0, 0]), 0, passage=False)
     with pytest.raises(SurveyError, match="no shot along a passage"):
-        sections(adjust(shots.survey("surface")), radius=1.0)
+        sections(adjust_survey(shots.survey("surface")), radius=1.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.caves.adjust import adjust
+from geofit.caves.adjust import adjust_survey
 from geofit.data.errors import InputError
 from geofit.io.survex import read_survex
 
@@ -71,7 +71,7 @@ def test_plumbs_equates_and_fixes(svx):
     )
     np.testing.assert_allclose(found.offset, [[0, 0, 5], [0, 0, -5], [0, 0, -5], [5, 0, 0]], atol=1e-12)
     assert found.stations == ("1", "2", "3", "4", "8")
-    adjusted = adjust(found)
+    adjusted = adjust_survey(found)
     np.testing.assert_allclose(adjusted.xyz[-1], [105, 200, 295])
     assert [issue.value for issue in found.issues] == ["nowhere"]
 
@@ -114,7 +114,7 @@ def test_what_is_not_read_is_listed(svx):
     assert ("warning", 5) in listed
     assert {row for severity, row in listed if severity == "error"} == {6, 7, 11, 12}
     assert ("note", 9) in listed
-    (remarks,) = [issue.reason for issue in found.issues if issue.reason.code == "import.commands-not-change"]
+    (remarks,) = [issue.reason for issue in found.issues if issue.reason.code == "io.commands-ignored"]
     assert str(remarks.params["names"]) == "*team (2), *title (1)"
     (count,) = found.counts
     assert (count.read, count.used, count.listed) == (4, 1, 3)

@@ -127,7 +127,7 @@ def test_a_kink_is_found(degrees):
     assert checks["seam angle"].value == pytest.approx(degrees, rel=1e-6)
     allowed = named(check(horizon([first, second], seam="position")))
     assert allowed["seam angle"].passed is None
-    assert allowed["seam angle"].text.code == "check.largest-angle-seam-breaks"
+    assert allowed["seam angle"].text.code == "checks.largest-seam-angle-breaks-allowed"
 
 
 def test_a_fold_in_a_height_field_is_found():
@@ -156,7 +156,7 @@ def test_an_elevation_far_out_is_found(sign):
     checks = planted(spike)
     assert checks["elevation range"].passed is False
     assert checks["elevation range"].value > 400
-    assert checks["elevation range"].text.code == "check.elevations-reach-beyond-data"
+    assert checks["elevation range"].text.code == "data.elevations-beyond-data"
 
 
 def test_a_narrow_spike_is_found():

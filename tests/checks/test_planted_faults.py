@@ -100,9 +100,7 @@ def test_a_blunder_in_the_core_is_found(sample_surfaces):
     assert "core" in failing(moved(surface, np.flatnonzero(surface.core)[[100]], 0.5))
 
 
-@pytest.mark.parametrize(
-    ("by", "code"), [(0.06, "check.bias-surface-runs-too-low"), (-0.06, "check.bias-surface-runs-too-high")]
-)
+@pytest.mark.parametrize(("by", "code"), [(0.06, "checks.bias-low"), (-0.06, "checks.bias-high")])
 def test_a_bias_within_the_tolerance_is_found(sample_surfaces, by, code):
     surface = sample_surfaces["T2-T1"]
     found = named(moved(surface, loose(surface, "west"), by))["bias"]
@@ -138,7 +136,7 @@ def test_tails_of_a_few_points_are_found(sample_surfaces):
     rows = loose(surface)[::25]
     found = moved(surface, rows, np.where(np.arange(len(rows)) % 2, 1.5, -1.5))
     assert "normality" in failing(found)
-    assert named(found)["normality"].text.code == "check.residuals-not-noise-normal"
+    assert named(found)["normality"].text.code == "checks.residuals-not-normal"
 
 
 # Geometry.
@@ -393,7 +391,7 @@ def test_many_points_are_thinned_and_it_is_said():
     points[:, 2] += np.random.default_rng(1).normal(0, 0.05, len(points))
     found = named(check(horizon([patch], points).with_(frame="map")))
     for name in ("clustering", "oscillation"):
-        assert found[name].text.code == "check.sample-of-points"
+        assert found[name].text.code == "checks.sample-examined"
         assert (found[name].text.params["part"], found[name].text.params["n"]) == (5000, 12_000)
     assert found["clustering"].passed
     assert found["bias"].passed
@@ -407,11 +405,11 @@ def test_the_trend_of_many_points_says_how_many_it_looked_at():
     left_out = np.setdiff1d(np.arange(30_000), np.random.default_rng(0).choice(30_000, 20_000, replace=False))
     points[left_out[0], 2] += 7.0
     found = named(check(horizon([patch], points).with_(frame="map")))["trend"]
-    assert found.text.code == "check.sample-of-points"
+    assert found.text.code == "checks.sample-examined"
     assert (found.text.params["part"], found.text.params["n"]) == (20_000, 30_000)
     assert found.limit == pytest.approx(14.0, abs=0.5)
     fewer = named(check(horizon([patch], points[:400]).with_(frame="map")))
-    assert all(one.text.code != "check.sample-of-points" for one in fewer.values())
+    assert all(one.text.code != "checks.sample-examined" for one in fewer.values())
 
 
 def test_few_points_are_not_judged():

@@ -304,7 +304,7 @@ def test_a_listener_that_says_stop_stops_the_run(picks, tmp_path):
 
 
 def test_a_missing_system_library_names_its_package(capsys):
-    @console.guarded
+    @console.with_exit_code
     def command() -> int:
         raise ImportError("libGL.so.1: cannot open shared object file: No such file or directory")
 
@@ -315,7 +315,7 @@ def test_a_missing_system_library_names_its_package(capsys):
 
 
 def test_other_import_errors_are_not_hidden():
-    @console.guarded
+    @console.with_exit_code
     def command() -> int:
         raise ImportError("No module named 'numpy'")
 

@@ -49,7 +49,7 @@ def test_a_geofit_error_is_reported_in_its_own_words():
 def test_an_unforeseen_error_is_reported_with_its_kind_and_line():
     notes = []
     assert guarded(broken, None, notes.append) is None
-    assert notes[0].code == "error.unforeseen"
+    assert notes[0].code == "data.unforeseen-error"
     assert str(notes[0]).startswith("unforeseen error ZeroDivisionError (planted; test_guard.py:")
     assert translate(notes[0], ZH).startswith("未预见的错误 ZeroDivisionError（planted")
 
@@ -73,24 +73,24 @@ def test_a_method_that_fails_costs_its_own_figure_only(monkeypatch):
     np.testing.assert_array_equal(without.uncertainty.sd, whole.uncertainty.sd)
     (note, *_) = [note for note in without.notes if note.code == "prediction.method-not-compared"]
     assert note.params["method"] == "kriging"
-    assert note.params["reason"].code == "error.unforeseen"
+    assert note.params["reason"].code == "data.unforeseen-error"
 
 
 @pytest.mark.parametrize(
     ("name", "code"),
     [
-        ("linear_fit", "prediction.not-calibrated"),
+        ("linear_fit", "prediction.band-not-calibrated"),
         ("suggest_holes", "prediction.no-holes-suggested"),
-        ("uncertainty_on", "prediction.no-standard-deviation"),
-        ("thin_plate_inverse", "prediction.no-other-method"),
-        ("posterior", "prediction.error-off-data-cannot"),
+        ("uncertainty_on", "prediction.standard-deviation-unknown"),
+        ("thin_plate_inverse", "prediction.no-method-compared"),
+        ("posterior", "prediction.error-not-found"),
     ],
 )
 def test_each_part_of_an_examination_may_fail_alone(monkeypatch, name, code):
     surface = fit_horizon(cloud())
     monkeypatch.setattr("geofit.prediction.examine." + name, broken)
     (note,) = [note for note in examine(surface).notes if note.code == code]
-    assert note.params["reason"].code == "error.unforeseen"
+    assert note.params["reason"].code == "data.unforeseen-error"
 
 
 def test_a_check_that_fails_is_reported_among_the_notes(monkeypatch):
@@ -98,8 +98,8 @@ def test_a_check_that_fails_is_reported_among_the_notes(monkeypatch):
     accuracy = fit_horizon(cloud()).accuracy
     assert accuracy.passed
     assert "between points" not in {check.name for check in accuracy.checks}
-    (note,) = [note for note in accuracy.notes if note.code == "checks.not-made"]
-    assert note.params["reason"].code == "error.unforeseen"
+    (note,) = [note for note in accuracy.notes if note.code == "checks.check-not-made"]
+    assert note.params["reason"].code == "data.unforeseen-error"
 
 
 def test_a_horizon_that_fails_leaves_the_others_of_the_run(tmp_path, monkeypatch):
@@ -113,9 +113,9 @@ def test_a_horizon_that_fails_leaves_the_others_of_the_run(tmp_path, monkeypatch
     site = geofit.Site("two", {"bad": cloud(), "good": cloud(seed=1)})
     done = run_horizons(site, tmp_path)
     assert [result.name for result in done.results] == ["good"]
-    assert done.failures["bad"].code == "error.unforeseen"
+    assert done.failures["bad"].code == "data.unforeseen-error"
     assert done.failures["bad"].params["kind"] == "ZeroDivisionError"
-    assert "run.storage-not-compared" in {note.code for note in done.warnings}
+    assert "project.storage-not-compared" in {note.code for note in done.warnings}
     assert "ZeroDivisionError" in (tmp_path / "report.html").read_text("utf-8")
 
 
@@ -125,5 +125,5 @@ def test_an_order_that_fails_is_reported(tmp_path, monkeypatch):
     monkeypatch.setattr("geofit.site.fit_site.compare_horizons", broken)
     done = run_horizons(site, tmp_path)
     assert len(done.results) == 2
-    (note,) = [note for note in done.warnings if note.code == "run.order-horizons-not-examined"]
-    assert note.params["reason"].code == "error.unforeseen"
+    (note,) = [note for note in done.warnings if note.code == "project.order-not-examined"]
+    assert note.params["reason"].code == "data.unforeseen-error"

@@ -53,7 +53,7 @@ def test_a_polygon_with_a_corner_beyond_all_numbers():
 
 
 def test_points_beyond_all_numbers():
-    with refused(PointsError, "points.places-not-numbers"):
+    with refused(PointsError, "data.coordinates-not-numbers"):
         PointSet([[LONG, 0, 0]] * 4)
 
 
@@ -61,7 +61,7 @@ def test_places_that_can_be_measured():
     assert measurable_places([1, 2, 3]).shape == (1, 3)
     assert measurable_places([]).shape == (0, 3)
     assert measurable_places([[LARGEST, -LARGEST, 0]]).shape == (1, 3)
-    with refused(PointsError, "points.coordinate-too-large"):
+    with refused(PointsError, "data.coordinate-too-large"):
         measurable_places([[1.001 * LARGEST, 0, 0]])
-    with refused(PointsError, "points.points-not-finite-first", count=1, index=1):
+    with refused(PointsError, "data.points-not-finite", count=1, index=1):
         measurable_places([[0, 0, 0], [np.nan, 0, 0]])

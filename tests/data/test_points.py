@@ -47,19 +47,19 @@ def test_no_points_are_a_set_too(empty):
 @pytest.mark.parametrize(
     ("xyz", "code", "params"),
     [
-        ([[0, 0]], "points.places-wrong-shape", {"name": "xyz", "shape": (1, 2)}),
-        ([1, 2, 3], "points.places-wrong-shape", {"name": "xyz", "shape": (3,)}),
-        (np.zeros((2, 3, 3)), "points.places-wrong-shape", {"name": "xyz", "shape": (2, 3, 3)}),
-        ([["a", 0, 0]], "points.places-not-numbers", {"name": "xyz"}),
-        ([[0, 0, 0], [0, 0]], "points.places-not-numbers", {"name": "xyz"}),
+        ([[0, 0]], "data.coordinates-wrong-shape", {"name": "xyz", "shape": (1, 2)}),
+        ([1, 2, 3], "data.coordinates-wrong-shape", {"name": "xyz", "shape": (3,)}),
+        (np.zeros((2, 3, 3)), "data.coordinates-wrong-shape", {"name": "xyz", "shape": (2, 3, 3)}),
+        ([["a", 0, 0]], "data.coordinates-not-numbers", {"name": "xyz"}),
+        ([[0, 0, 0], [0, 0]], "data.coordinates-not-numbers", {"name": "xyz"}),
         (
             [[0, 0, 0], [1, np.nan, 2], [np.nan] * 3],
-            "points.points-not-finite-first",
+            "data.points-not-finite",
             {"count": 2, "total": 3, "index": 1},
         ),
         (
             [[np.inf, 0, 0]],
-            "points.points-not-finite-first",
+            "data.points-not-finite",
             {"count": 1, "total": 1, "index": 0, "place": [np.inf, 0, 0]},
         ),
     ],
@@ -72,12 +72,12 @@ def test_coordinates_that_are_no_points_are_named(xyz, code, params):
 @pytest.mark.parametrize(
     ("column", "code", "params"),
     [
-        ({"kind": ["a", "b"]}, "points.wrong-shape", {"name": "kind", "shape": (2,), "n": 3}),
-        ({"hole": [["a", "b", "c"]]}, "points.wrong-shape", {"name": "hole", "shape": (1, 3), "n": 3}),
-        ({"accuracy": ["fine", "", ""]}, "points.cannot-read", {"name": "accuracy", "type": "float64"}),
-        ({"accuracy": [0.1, -0.3, 0.2]}, "points.accuracy-standard-deviation-above", {"index": 1, "value": -0.3}),
-        ({"accuracy": 0.0}, "points.accuracy-standard-deviation-above", {"index": 0, "value": 0.0}),
-        ({"row": ["x", 2, 3]}, "points.cannot-read", {"name": "row", "type": "int64"}),
+        ({"kind": ["a", "b"]}, "data.wrong-shape", {"name": "kind", "shape": (2,), "n": 3}),
+        ({"hole": [["a", "b", "c"]]}, "data.wrong-shape", {"name": "hole", "shape": (1, 3), "n": 3}),
+        ({"accuracy": ["fine", "", ""]}, "data.cannot-read", {"name": "accuracy", "type": "float64"}),
+        ({"accuracy": [0.1, -0.3, 0.2]}, "data.accuracy-not-positive", {"index": 1, "value": -0.3}),
+        ({"accuracy": 0.0}, "data.accuracy-not-positive", {"index": 0, "value": 0.0}),
+        ({"row": ["x", 2, 3]}, "data.cannot-read", {"name": "row", "type": "int64"}),
     ],
 )
 def test_a_column_that_does_not_fit_is_named(column, code, params):
@@ -159,7 +159,7 @@ def test_with_replaces_columns_and_checks_them():
     higher = points.with_(xyz=points.xyz + np.array([0, 0, 10]))
     assert higher.hole.tolist() == ["B1"] * 3
     assert higher.xyz[0, 2] == 11
-    with refused(PointsError, "points.points-not-finite-first", count=3, total=3):
+    with refused(PointsError, "data.points-not-finite", count=3, total=3):
         points.with_(xyz=points.xyz * np.nan)
 
 
@@ -168,18 +168,18 @@ def test_with_replaces_columns_and_checks_them():
     [
         (
             {"kind": "borehole", "hole": "ZK12", "file": "holes.csv", "row": 7},
-            "point.in-file",
+            "data.point-in-file",
             {"file": "holes.csv", "row": 7},
             "borehole ZK12, holes.csv row 7",
         ),
-        ({"kind": "section", "section": "S3", "row": 9}, "point.in-row", {"row": 9}, "section S3, row 9"),
+        ({"kind": "section", "section": "S3", "row": 9}, "data.point-in-row", {"row": 9}, "section S3, row 9"),
         (
             {"kind": "adit", "hole": "PD1", "section": "S3"},
-            "point.kind-name",
+            "data.point-kind-name",
             {"kind": "adit", "name": "PD1"},
             "adit PD1",
         ),
-        ({}, "point.kind", {"kind": "point"}, "point"),
+        ({}, "data.point-kind", {"kind": "point"}, "point"),
     ],
 )
 def test_a_point_is_described_as_a_person_would_look_it_up(columns, code, params, text):

@@ -50,7 +50,7 @@ def test_false_stops_the_fit_at_any_stage(truth, stage):
         calls.append(now)
         return now != stage
 
-    with refused(Cancelled, "run.cancelled", stage=stage):
+    with refused(Cancelled, "data.cancelled-in-stage", stage=stage):
         fit_horizon(truth.points, progress=listen)
     assert calls[-1] == stage
 

@@ -32,10 +32,10 @@ def test_the_defaults_are_the_papers():
 @pytest.mark.parametrize("name", LENGTHS)
 @pytest.mark.parametrize("value", [0, -0.1, np.nan, np.inf, "0.5", None, True, [1.0]])
 def test_a_length_must_be_a_finite_number_above_zero(name, value):
-    code = "settings.finite-number-above-needed"
+    code = "data.setting-not-positive"
     with refused(SettingsError, code, setting=named(name), value=repr(value)) as caught:
         FitSettings(**{name: value})
-    assert caught.value.message.params["unit"].code == "settings.unit-metres"
+    assert caught.value.message.params["unit"].code == "data.setting-unit-metres"
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def test_a_length_must_be_a_finite_number_above_zero(name, value):
     ],
 )
 def test_an_unknown_word_is_quoted_beside_the_known_ones(name, value, choices):
-    code = "settings.choose-polygon-map-coordinates" if name == "core" else "settings.unknown-choice"
+    code = "data.setting-unknown-choice-or-polygon" if name == "core" else "data.setting-unknown-choice"
     with refused(SettingsError, code, setting=named(name), value=repr(value)) as caught:
         FitSettings(**{name: value})
     for choice in choices:
@@ -58,7 +58,7 @@ def test_an_unknown_word_is_quoted_beside_the_known_ones(name, value, choices):
 
 @pytest.mark.parametrize("value", [0, -1.0, np.nan, "much", None, False])
 def test_smoothing_is_auto_or_a_positive_number(value):
-    with refused(SettingsError, "settings.finite-number-above-needed", setting=named("smoothing"), value=repr(value)):
+    with refused(SettingsError, "data.setting-not-positive", setting=named("smoothing"), value=repr(value)):
         FitSettings(smoothing=value)
     assert FitSettings(smoothing=0.25).smoothing == 0.25
 
@@ -66,7 +66,7 @@ def test_smoothing_is_auto_or_a_positive_number(value):
 @pytest.mark.parametrize("value", [-1, 2.5, "20", None])
 def test_iterations_are_a_whole_number(value):
     with refused(
-        SettingsError, "settings.whole-number-needed", setting=named("max_iterations"), value=repr(value), least=0
+        SettingsError, "data.setting-not-whole-number", setting=named("max_iterations"), value=repr(value), least=0
     ):
         FitSettings(max_iterations=value)
     assert FitSettings(max_iterations=0).max_iterations == 0
@@ -75,7 +75,7 @@ def test_iterations_are_a_whole_number(value):
 @pytest.mark.parametrize("value", [15, 0, -4, 100.0, True, "many"])
 def test_the_cap_of_control_points_is_a_whole_number_of_at_least_16(value):
     with refused(
-        SettingsError, "settings.whole-number-needed", setting=named("max_control_points"), value=repr(value), least=16
+        SettingsError, "data.setting-not-whole-number", setting=named("max_control_points"), value=repr(value), least=16
     ):
         FitSettings(max_control_points=value)
     assert FitSettings(max_control_points=16).max_control_points == 16
@@ -85,7 +85,7 @@ def test_the_cap_of_control_points_is_a_whole_number_of_at_least_16(value):
     "core", [[[0, 0], [1, 1]], [0, 0, 1], [[0, 0, 0]] * 4, [[0, 0], [1, np.nan], [1, 1]], [["a", "b"]] * 3, 7]
 )
 def test_a_core_polygon_needs_three_finite_corners(core):
-    with refused(SettingsError, "settings.shape-polygon-least-three", setting=named("core")):
+    with refused(SettingsError, "data.setting-polygon-wrong-shape", setting=named("core")):
         FitSettings(core=core)
 
 
@@ -103,7 +103,7 @@ def test_settings_are_frozen_and_keyword_only():
         settings.epsilon = 1.0
     with pytest.raises(TypeError):
         FitSettings(0.5)
-    with refused(SettingsError, "settings.finite-number-above-needed", setting=named("epsilon"), value="-1"):
+    with refused(SettingsError, "data.setting-not-positive", setting=named("epsilon"), value="-1"):
         dataclasses.replace(settings, epsilon=-1)
 
 
@@ -121,7 +121,7 @@ def test_a_bad_setting_is_told_in_chinese_by_its_name():
 
 def test_an_input_error_is_told_in_chinese_and_crosses_to_another_process():
     error = InputError(
-        message("error.reason", "{reason}.", reason="a"),
+        message("data.reason-sentence", "{reason}.", reason="a"),
         message("test.text", "b."),
         file="f.csv",
         row=3,

@@ -62,7 +62,7 @@ def test_a_left_out_error_of_ten_epsilons_is_red_and_said():
     assert found.word == "WARNING"
     error = found.away.text.params["error"]
     assert error.params["ratio"] == pytest.approx(10)
-    assert error.params["scheme"].code == "verdict.sections"
+    assert error.params["scheme"].code == "data.verdict-sections"
     assert "10.0 ε" in str(found.text)
 
 
@@ -74,4 +74,4 @@ def test_what_was_not_examined_is_no_fault():
     found = verdict_of(accuracy())
     assert found.away.level == "none"
     assert found.word == "PASS"
-    assert found.away.text.code == "verdict.not-examined"
+    assert found.away.text.code == "data.verdict-not-examined"

@@ -80,14 +80,14 @@ def stiff_cloud(n=120, spikes=4, seed=0):
 def test_a_fit_above_epsilon_is_adjusted_until_it_passes_and_says_so():
     surface = fit_horizon(stiff_cloud(), FitSettings(core="none", smoothing=100.0, epsilon=0.5))
     assert surface.accuracy.passed
-    assert with_code(surface.accuracy.notes, "fit.local-adjustments-until-sigma").params["step"] > 0
+    assert with_code(surface.accuracy.notes, "fitting.sigma-brought-below-epsilon").params["step"] > 0
 
 
 def test_without_iterations_it_stays_above_epsilon_and_says_so():
     settings = FitSettings(core="none", smoothing=100.0, epsilon=0.5, max_iterations=0)
     surface = fit_horizon(stiff_cloud(), settings)
     assert not surface.accuracy.passed
-    assert with_code(surface.accuracy.notes, "fit.sigma-stays-above-epsilon").severity == "warning"
+    assert with_code(surface.accuracy.notes, "fitting.sigma-above-epsilon").severity == "warning"
 
 
 def test_a_contradiction_cannot_be_adjusted_away():
@@ -97,4 +97,4 @@ def test_a_contradiction_cannot_be_adjusted_away():
     assert not surface.accuracy.passed
     assert surface.accuracy.max_abs == pytest.approx(4.0, rel=0.05)
     assert len(surface.accuracy.conflicts) == len(points)
-    assert with_code(surface.accuracy.notes, "fit.sigma-stays-above-epsilon").severity == "warning"
+    assert with_code(surface.accuracy.notes, "fitting.sigma-above-epsilon").severity == "warning"

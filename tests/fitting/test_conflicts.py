@@ -28,7 +28,7 @@ def test_a_duplicate_gives_way_to_the_first_and_is_listed():
     assert kept.tolist() == [True, True, False]
     assert len(conflicts) == 1
     assert (conflicts[0].kept, conflicts[0].dropped, conflicts[0].difference) == (0, 2, 0.0)
-    assert conflicts[0].text.code == "conflict.repeated"
+    assert conflicts[0].text.code == "fitting.conflict-repeated"
     assert str(conflicts[0].text) == "point B3, row 4 repeats point B1, row 2"
 
 
@@ -37,10 +37,10 @@ def test_accuracy_settles_before_the_kind_of_source():
     kept, conflicts = settled(xyz, kind=["borehole", "section"], accuracy=[1.0, 0.2])
     assert kept.tolist() == [False, True]
     assert conflicts[0].difference == -3.0
-    assert conflicts[0].text.code == "conflict.different-elevation"
+    assert conflicts[0].text.code == "fitting.conflict-of-elevation"
     assert conflicts[0].text.severity == "warning"
     assert conflicts[0].text.params["difference"] == -3.0
-    assert conflicts[0].text.params["reason"].code == "conflict.kept-accuracy"
+    assert conflicts[0].text.params["reason"].code == "fitting.conflict-kept-by-accuracy"
 
 
 def test_a_stated_accuracy_goes_before_none():
@@ -71,7 +71,7 @@ def test_the_source_nearer_to_the_rock_is_kept_where_no_accuracy_settles_it(bett
 
 def test_the_reason_is_the_one_that_settled_it():
     _, conflicts = settled([[0, 0, 1], [0, 0, 2]], kind=["borehole", "section"], accuracy=0.3)
-    assert conflicts[0].text.params["reason"].code == "conflict.kept-source"
+    assert conflicts[0].text.params["reason"].code == "fitting.conflict-kept-by-source"
 
 
 def test_the_first_of_equals_is_kept():

@@ -52,13 +52,13 @@ def calm(surface, beyond=0.5):
 
 @pytest.mark.parametrize("n", [0, 1, 2])
 def test_too_few_points_say_how_many_are_needed(n):
-    with refused(PointsError, "fit.least-needed-lay-surface") as caught:
+    with refused(PointsError, "fitting.too-few-points") as caught:
         fit_horizon(PointSet(cloud(n)))
     assert caught.value.message.params["given"].params["count"] == n
 
 
 def test_points_all_at_one_place_are_refused():
-    with refused(PointsError, "fit.points-stand-place-least", count=4):
+    with refused(PointsError, "fitting.points-at-one-location", count=4):
         fit_horizon(PointSet(np.tile([[EASTING, NORTHING, 5.0]], (4, 1))))
 
 
@@ -288,9 +288,9 @@ def test_a_drawn_core_has_a_periphery_on_all_sides(truth):
 
 def test_a_drawn_core_outside_the_area_or_over_a_fault_is_a_fit_error(truth):
     away = tuple((x + 9e4, y) for x, y in truth.boundary)
-    with refused(FitError, "fit.core-polygon-lies-outside"):
+    with refused(FitError, "fitting.core-polygon-outside"):
         fit_horizon(truth.points, FitSettings(core=away), truth.boundary)
-    with refused(FitError, "fit.core-polygon-map-coordinates"):
+    with refused(FitError, "fitting.core-polygon-in-other-frame"):
         fit_horizon(truth.points, FitSettings(core=away, frame="best-plane"))
 
 
@@ -300,7 +300,7 @@ def test_a_boundary_smaller_than_the_data_keeps_all_points(truth):
     surface = fit_horizon(truth.points, None, small)
     assert surface.accuracy.n == 597
     assert surface.accuracy.passed
-    assert with_code(surface.accuracy.notes, "fit.points-beyond-study-area").severity == "warning"
+    assert with_code(surface.accuracy.notes, "fitting.points-beyond-study-area").severity == "warning"
     assert np.isfinite(surface.elevation(x + 1000, y + 700))
 
 
@@ -326,7 +326,7 @@ def test_a_turned_site_fits_as_well_as_one_along_the_axes(truth):
     ids=["two corners", "3d", "nan", "flat list"],
 )
 def test_a_boundary_that_is_none_is_refused(boundary):
-    with refused(PointsError, "fit.boundary-shape-least-three"):
+    with refused(PointsError, "fitting.boundary-wrong-shape"):
         fit_horizon(PointSet(cloud(10)), None, boundary)
 
 
@@ -334,7 +334,7 @@ def test_a_boundary_that_is_none_is_refused(boundary):
 def test_nan_and_infinities_never_reach_the_fit(bad):
     xyz = cloud(10)
     xyz[3, 2] = bad
-    with refused(PointsError, "points.points-not-finite-first", count=1, total=10, index=3):
+    with refused(PointsError, "data.points-not-finite", count=1, total=10, index=3):
         fit_horizon(PointSet(xyz))
 
 
@@ -389,5 +389,5 @@ def test_the_cap_holds_for_a_core_too_or_is_told(truth):
     surface = fit_horizon(truth.points, FitSettings(max_control_points=2500), truth.boundary)
     assert surface.control_points <= 2500
     assert rms(surface.accuracy.residuals) < 0.5
-    with refused(FitError, "fit.core-cannot-interpolated-points"):
+    with refused(FitError, "fitting.core-not-interpolable"):
         fit_horizon(truth.points, FitSettings(core="all", max_control_points=400), truth.boundary)

@@ -100,7 +100,7 @@ def test_exact_points_that_a_control_point_acts_on_hold_it():
     column = next(j for j in range(3, columns) if acted_on(surface, "core", row, j)[1].any())
     acting, held = acted_on(surface, "core", row, column)
     assert np.array_equal(held, acting & surface.core)
-    with refused(ExactnessError, "edit.control-point-patch-acts", count=held.sum()):
+    with refused(ExactnessError, "fitting.control-point-moves-exact-points", count=held.sum()):
         surface.adjust("core", row, column, 1.0)
 
 
@@ -119,7 +119,7 @@ def test_a_control_point_beside_a_seam_moves_both_patches_and_the_seam_stays_tan
 def test_exact_points_are_never_lost():
     surface = fitted()
     rows, columns, _ = patch_of(surface, "core").control.shape
-    with refused(ExactnessError, "edit.control-point-patch-acts"):
+    with refused(ExactnessError, "fitting.control-point-moves-exact-points"):
         surface.adjust("core", rows // 2, columns // 2, 0.5)
 
 
@@ -135,7 +135,7 @@ def test_the_surface_is_pulled_through_a_peripheral_point_and_the_core_stays_exa
     half = surface.move_to(worst, share=0.5)
     assert abs(half.accuracy.residuals[worst]) == pytest.approx(distance[worst] / 2, rel=0.01)
     assert pulled.diagnostics["by_hand"] == 1
-    assert pulled.accuracy.notes[-1].code == "edit.hand-pulled-distance"
+    assert pulled.accuracy.notes[-1].code == "fitting.moved-towards-note"
 
 
 def test_the_surface_is_pulled_to_a_place_in_the_map_even_in_the_core():
@@ -151,21 +151,21 @@ def test_the_surface_is_pulled_to_a_place_in_the_map_even_in_the_core():
 def test_what_cannot_be_pulled_says_why():
     surface = fitted()
     exact = surface.points.xyz[surface.core][0] + np.array([0.0, 0.0, 3.0])
-    with refused(ExactnessError, "edit.surface-cannot-pulled-points"):
+    with refused(ExactnessError, "fitting.target-near-exact-points"):
         surface.move_to(exact)
-    with refused(FitError, "edit.point-lies-beside-surface"):
+    with refused(FitError, "fitting.point-off-surface"):
         surface.move_to((0.0, 0.0, 0.0))
-    with refused(FitError, "edit.points-given"):
+    with refused(FitError, "fitting.point-unknown"):
         surface.move_to(10**6)
-    with refused(FitError, "edit.finite-number-needed", name="share"):
+    with refused(FitError, "fitting.value-not-finite", name="share"):
         surface.move_to(0, share=float("nan"))
-    with refused(FitError, "edit.point-three-finite-map"):
+    with refused(FitError, "fitting.target-not-finite"):
         surface.move_to((1.0, 2.0))
-    with refused(FitError, "edit.no-patch-patches", patch="nowhere"):
+    with refused(FitError, "fitting.patch-unknown", patch="nowhere"):
         surface.adjust("nowhere", 0, 0, 1.0)
-    with refused(FitError, "edit.patch-control-points-given"):
+    with refused(FitError, "fitting.control-point-unknown"):
         surface.adjust("north", 10**4, 0, 1.0)
-    with refused(FitError, "edit.read-file-patches-no"):
+    with refused(FitError, "fitting.no-common-control-net"):
         surface.with_(model=None).adjust("north", 0, 0, 1.0)
 
 
@@ -180,7 +180,7 @@ def test_a_weight_draws_the_surface_to_its_control_point():
     light_gap, heavy_gap = abs(moved.elevation(x, y) - z), abs(heavy.elevation(x, y) - z)
     assert heavy_gap < 0.6 * light_gap
     assert_seams_hold(heavy)
-    with refused(FitError, "edit.control-points-weights-act"):
+    with refused(FitError, "fitting.weights-act"):
         heavy.move_to((x, y, z))
     neutral = heavy.weigh(name, i, j, 1.0)
     assert neutral.elevation(x, y) == pytest.approx(moved.elevation(x, y), abs=1e-9)
@@ -190,16 +190,16 @@ def test_a_weight_draws_the_surface_to_its_control_point():
 def test_weights_that_would_open_a_seam_are_refused():
     surface = fitted()
     columns = patch_of(surface, "south-east").control.shape[1]
-    with refused(FitError, "edit.control-point-patch-holds"):
+    with refused(FitError, "fitting.control-point-on-seam"):
         surface.weigh("south-east", 0, columns // 2, 2.0)
-    with refused(FitError, "edit.weight-01-100-needed"):
+    with refused(FitError, "fitting.weight-out-of-range"):
         surface.weigh("south-east", 5, 5, 0.0)
 
 
 def test_a_core_that_is_straight_across_its_sections_keeps_to_them():
     surface = fitted(across="linear")
     middle = surface.points.xyz[surface.core].mean(axis=0)
-    with refused(FitError, "edit.core-straight-section-curves"):
+    with refused(FitError, "fitting.core-ruled"):
         surface.move_to(middle)
 
 

@@ -102,7 +102,7 @@ def test_of_two_points_of_a_core_that_contradict_each_other_one_is_let_go():
     beside = points.xyz[[first]] + [0.02, 0.0, 0.4]
     both = PointSet(np.concatenate([points.xyz, beside]), section=[*points.section, "X01"], hole=[*points.hole, ""])
     surface = fit_horizon(both, FitSettings(), truth.boundary)
-    torn = [note for note in surface.accuracy.notes if note.code == "fitting.core-point-contradicts-neighbour"]
+    torn = [note for note in surface.accuracy.notes if note.code == "fitting.core-points-contradict"]
     assert len(torn) == 1
     assert torn[0].severity == "warning"
     assert surface.core.sum() == 440

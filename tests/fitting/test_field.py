@@ -7,14 +7,14 @@ from truth import EASTING, NORTHING, hills, rms
 
 from geofit import FitSettings, PointSet, fit_horizon
 from geofit.fitting.field import (
-    choose,
+    choose_covariance,
     drift_of,
     plane_trend,
     precision_band,
     relative_noise,
     restricted,
     smooth,
-    widened,
+    widened_space,
 )
 from geofit.splines import bspline
 from geofit.splines.tensor import TensorSpace
@@ -63,7 +63,7 @@ def space_over(n, degree=3):
 
 
 def chosen(space, plane, z, smoothing=None):
-    return choose(space, plane, z, np.ones(len(z)), smoothing)[0][0]
+    return choose_covariance(space, plane, z, np.ones(len(z)), smoothing)[0][0]
 
 
 def smoothed(space, field, plane, z):
@@ -132,15 +132,15 @@ def test_turning_the_axes_turns_the_field():
     plane, z, _ = cloud(200, 1, 0.3, rugged(1))
     knots_u = bspline.clamped_knots(np.linspace(0, 14.2, 30), 3)
     knots_v = bspline.clamped_knots(np.linspace(0, 14.2, 26), 3)
-    one, value = choose(TensorSpace(knots_u, knots_v), plane, z, np.ones(200))[0]
-    other, same = choose(TensorSpace(knots_v, knots_u), plane[:, ::-1], z, np.ones(200))[0]
+    one, value = choose_covariance(TensorSpace(knots_u, knots_v), plane, z, np.ones(200))[0]
+    other, same = choose_covariance(TensorSpace(knots_v, knots_u), plane[:, ::-1], z, np.ones(200))[0]
     assert same == pytest.approx(value, abs=1e-6)
     assert other.turned.stretch == pytest.approx(one.stretch, abs=1e-9)
 
 
 def test_the_wide_space_is_cut_at_the_edge_without_a_change():
     space = space_over(40)
-    wide = widened(space)
+    wide = widened_space(space)
     assert wide.knots_u[0] < space.knots_u[0] - 1.5
     net = np.random.default_rng(0).normal(size=(wide.size, 2))
     at = np.random.default_rng(1).uniform(0, np.sqrt(40), (300, 2))
@@ -151,7 +151,7 @@ def test_smooth_solves_the_penalised_problem_with_a_free_plane():
     plane, z, _ = cloud(80, 2, 0.5, hills(2))
     space = space_over(80)
     field = chosen(space, plane, z)
-    wide = widened(space)
+    wide = widened_space(space)
     a = wide.matrix(plane).toarray()
     band = precision_band(wide, field)
     penalty = np.zeros((wide.size, wide.size))

@@ -44,18 +44,18 @@ def fitted() -> HorizonFit:
 @pytest.mark.parametrize(
     ("boundary", "code"),
     [
-        (SQUARE[[0, 1, 3, 2]], "fit.study-area"),
-        (CORNER + np.array([[0, 0], [50, 0], [100, 0]]), "fit.study-area"),
-        (SQUARE[[0, 0, 2, 2]], "fit.study-area"),
-        ([[0, 0], [1], [2, 3]], "fit.no-corners"),
-        ([["a", "b"]] * 3, "fit.no-corners"),
-        ([[0, 0], [LONG, 0], [1, 1]], "fit.no-corners"),
-        ([], "fit.boundary-shape-least-three"),
-        ([[0, 0], [1, np.nan], [2, 2]], "fit.boundary-shape-least-three"),
-        (SQUARE * 1e300, "points.coordinate-too-large"),
-        (SQUARE + 1e4, "fit.points-off-area"),
-        (SQUARE + np.array([1e4, 0]), "fit.points-off-area"),
-        (SQUARE[:, ::-1], "fit.points-off-area"),
+        (SQUARE[[0, 1, 3, 2]], "fitting.study-area-invalid"),
+        (CORNER + np.array([[0, 0], [50, 0], [100, 0]]), "fitting.study-area-invalid"),
+        (SQUARE[[0, 0, 2, 2]], "fitting.study-area-invalid"),
+        ([[0, 0], [1], [2, 3]], "fitting.boundary-without-corners"),
+        ([["a", "b"]] * 3, "fitting.boundary-without-corners"),
+        ([[0, 0], [LONG, 0], [1, 1]], "fitting.boundary-without-corners"),
+        ([], "fitting.boundary-wrong-shape"),
+        ([[0, 0], [1, np.nan], [2, 2]], "fitting.boundary-wrong-shape"),
+        (SQUARE * 1e300, "data.coordinate-too-large"),
+        (SQUARE + 1e4, "fitting.points-off-study-area"),
+        (SQUARE + np.array([1e4, 0]), "fitting.points-off-study-area"),
+        (SQUARE[:, ::-1], "fitting.points-off-study-area"),
     ],
     ids=["crossing", "flat", "two corners", "ragged", "words", "400 zeros", "none", "nan", "1e300 m", "10 km off",
          "10 km east", "exchanged"],
@@ -73,7 +73,7 @@ def test_a_study_area_beside_the_points_is_fitted():
 def test_coordinates_beyond_a_billion_metres_are_refused(axis):
     xyz = cloud().xyz.copy()
     xyz[7, axis] = 2 * LARGEST
-    with refused(PointsError, "points.coordinate-too-large", farthest=2 * LARGEST):
+    with refused(PointsError, "data.coordinate-too-large", farthest=2 * LARGEST):
         fit_horizon(PointSet(xyz))
 
 
@@ -83,7 +83,7 @@ def test_no_distance_to_places_that_are_none(bad, of):
     surface = fitted() if of == "patches" else MeshSurface(fitted().triangulate(1.0))
     assert np.isnan(surface.elevation(bad, CORNER[1]))
     place = [[*CORNER, 100.0], [bad, CORNER[1], 100.0]]
-    code = "points.points-not-finite-first" if not np.isfinite(bad) else "points.coordinate-too-large"
+    code = "data.points-not-finite" if not np.isfinite(bad) else "data.coordinate-too-large"
     for measure in (surface.distance, surface.project):
         with refused(PointsError, code):
             measure(place)
@@ -95,31 +95,31 @@ def test_no_standard_deviation_at_places_that_are_none():
     places = fitted().points.xyz[:3]
     np.testing.assert_array_equal(prediction_sd(fitted(), known, places[:, :2]), prediction_sd(fitted(), known, places))
     for place in ([[np.nan, CORNER[1]]], [[np.nan, CORNER[1], 0.0]]):
-        with refused(PointsError, "points.points-not-finite-first"):
+        with refused(PointsError, "data.points-not-finite"):
             prediction_sd(fitted(), known, place)
 
 
 @pytest.mark.parametrize("dz", [1e300, -1e300, np.nan, np.inf, LONG, "a", None, True])
 def test_a_control_point_is_moved_by_a_number_of_metres_only(dz):
-    with refused(FitError, "edit.finite-number-needed"):
+    with refused(FitError, "fitting.value-not-finite"):
         fitted().adjust(fitted().patches[0].name, 2, 2, dz=dz)
 
 
 @pytest.mark.parametrize("weight", [np.nan, LONG, "a", 0.0, -1.0, 1e300])
 def test_a_weight_is_a_number(weight):
-    with refused(FitError, "edit.weight-01-100-needed"):
+    with refused(FitError, "fitting.weight-out-of-range"):
         fitted().weigh(fitted().patches[0].name, 4, 4, weight=weight)
 
 
 @pytest.mark.parametrize("index", [(2.5, 2), (-1, 2), (2, LONG), ("a", 0)])
 def test_control_points_are_named_by_whole_numbers(index):
-    with refused(FitError, "edit.patch-control-points-given"):
+    with refused(FitError, "fitting.control-point-unknown"):
         fitted().adjust(fitted().patches[0].name, *index, dz=1.0)
 
 
 @pytest.mark.parametrize("point", [[np.nan, 0, 0], [*CORNER, 1e300], "abc", [1, 2], [LONG, 0, 0], None])
 def test_the_surface_is_pulled_to_places_only(point):
-    with refused(FitError, "edit.point-three-finite-map"):
+    with refused(FitError, "fitting.target-not-finite"):
         fitted().move_to(point)
 
 
@@ -152,11 +152,11 @@ def test_sigma_below_epsilon_is_never_shown_as_above_it():
 @pytest.mark.parametrize("value", [np.nan, np.inf, 0, -1, LONG, "a", True])
 def test_lengths_and_shares_are_numbers_above_zero(value):
     surface, known = fitted(), examine(fitted())
-    with refused(SettingsError, "geometry.chordal-tolerance-give-metres"):
+    with refused(SettingsError, "geometry.chordal-tolerance-not-positive"):
         surface.triangulate(value)
-    with refused(SettingsError, "geometry.contour-interval-give-metres"):
+    with refused(SettingsError, "data.contour-interval-not-positive"):
         contours(surface, value)
-    with refused(SettingsError, "prediction.share-probability-above-below"):
+    with refused(SettingsError, "prediction.share-out-of-range"):
         band(surface, known, share=value)
 
 
@@ -169,7 +169,7 @@ def test_a_tolerance_too_fine_for_memory_is_refused_at_once():
     "line", ["ab", [[0, 0], [LONG, 0]], [[1], [2, 3]], [[0, 0], [1e300, 0]], [[0, 0], [np.nan, 0]]]
 )
 def test_a_section_line_is_one(line):
-    with refused(SettingsError, "geometry.section-line-shape-finite"):
+    with refused(SettingsError, "sampling.section-line-wrong-shape"):
         cut_section(fitted(), line)
 
 
@@ -183,8 +183,8 @@ def test_bodies_refuse_what_horizons_refuse():
             with pytest.raises(PointsError):
                 measure(places)
     assert body.distance([0, 0, 100.0]) == pytest.approx(50, abs=5)
-    with refused(PointsError, "points.coordinate-too-large"):
+    with refused(PointsError, "data.coordinate-too-large"):
         BodyData(contacts=1e300 * ball)
     for spacing in (np.nan, 0, -1, LONG, "a", 1e-12):
-        with refused(SettingsError, "bodies.spacing-cannot-used"):
+        with refused(SettingsError, "bodies.spacing-unusable"):
             body.triangulate(spacing)

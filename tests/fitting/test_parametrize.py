@@ -92,9 +92,9 @@ def test_a_frame_is_taken_as_asked(kind):
 
 
 def test_sections_without_sections_are_a_fit_error():
-    with refused(FitError, "fit.frame-sections-needs-least", lines=0):
+    with refused(FitError, "fitting.frame-needs-sections", lines=0):
         parametrize(level(), FitSettings(frame="sections"), None)
-    with refused(FitError, "fit.frame-sections-needs-least", lines=1):
+    with refused(FitError, "fitting.frame-needs-sections", lines=1):
         parametrize(folded(lines=1), FitSettings(frame="sections"), None)
 
 
@@ -123,7 +123,7 @@ def test_the_study_area_widens_the_rectangle_and_points_beyond_it_are_told():
     )
     small = np.array([low + 200, [high[0] - 200, low[1] + 200], high - 200, [low[0] + 200, high[1] - 200]])
     parametrization = parametrize(points, SETTINGS, small)
-    assert with_code(parametrization.notes, "fit.points-beyond-study-area").params["count"] > 0
+    assert with_code(parametrization.notes, "fitting.points-beyond-study-area").params["count"] > 0
     assert (parametrization.plane >= (parametrization.area[0], parametrization.area[2])).all()
 
 
@@ -194,5 +194,5 @@ def test_a_cloud_that_is_no_plane_is_laid_over_the_map():
     points = PointSet(np.column_stack([a + EASTING, w + 0.2 * d + NORTHING, d]))
     parametrization = parametrize(points, SETTINGS, None)
     assert parametrization.frame.kind == "map"
-    assert "fit.cloud-not-plane" in {note.code for note in parametrization.notes}
+    assert "fitting.frame-map-despite-dip" in {note.code for note in parametrization.notes}
     assert np.isfinite(fit_horizon(points).elevation(*points.xyz[:, :2].T)).all()

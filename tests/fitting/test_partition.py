@@ -9,7 +9,7 @@ from geofit.fitting.density import split_auto
 from geofit.fitting.split import split_all, split_none, split_rectangle
 
 AREA = (0.0, 2000.0, 0.0, 2000.0)
-DRAWN = message("fit.core-polygon-drawn", "the core's polygon as drawn")
+DRAWN = message("fitting.core-polygon-drawn", "the core's polygon as drawn")
 
 
 def uniform(n, area=AREA, seed=0):
@@ -34,7 +34,7 @@ def test_the_papers_arrangement_is_found(seed):
     # The sections' own points, and no peripheral one; from one edge of the area to the other.
     np.testing.assert_array_equal(split.inside, truth.points.section != "")
     np.testing.assert_allclose(split.core, (700, 1300, 0, 2000), atol=1e-6)
-    assert split.reason.code == "fit.points-spacing-below-fill"
+    assert split.reason.code == "fitting.dense-points-fill-core"
     assert (split.reason.params["count"], split.reason.params["others"]) == (440, 157)
 
 
@@ -59,7 +59,7 @@ def test_a_uniform_cloud_has_no_core(n, seed):
     split = split_auto(uniform(n, seed=seed), AREA)
     assert split.core is None
     assert not split.inside.any()
-    assert split.reason.code == "fit.no-dense-core-points"
+    assert split.reason.code == "fitting.no-dense-core"
 
 
 def test_a_regular_grid_has_no_core():
@@ -77,7 +77,7 @@ def with_a_line(angle):
 def test_one_dense_line_makes_no_core_and_the_reason_says_so(angle):
     split = split_auto(with_a_line(angle), AREA)
     assert split.core is None
-    assert split.reason.code == "fit.dense-points-lie-along"
+    assert split.reason.code == "fitting.dense-points-on-line"
 
 
 @pytest.mark.parametrize("angle", [10, 20, 35, 45, 80])
@@ -89,7 +89,7 @@ def test_one_dense_line_across_the_axes_makes_no_core_either(angle):
 def test_few_points_have_no_core(n):
     split = split_auto(uniform(n), AREA)
     assert split.core is None
-    assert split.reason.code == "fit.points-too-few-tell"
+    assert split.reason.code == "fitting.too-few-points-for-core"
     assert len(split.inside) == n
 
 
@@ -97,7 +97,7 @@ def test_more_points_than_can_be_interpolated_are_approximated_and_told():
     dense = uniform(6000, (700, 1300, 700, 1300))
     split = split_auto(np.concatenate([dense, uniform(400)]), AREA)
     assert split.core is None
-    assert split.reason.code == "fit.dense-points-need-control"
+    assert split.reason.code == "fitting.dense-points-too-many"
     assert split.reason.severity == "warning"
 
 
@@ -137,7 +137,7 @@ def test_a_drawn_rectangle_is_taken_as_it_is():
     split = split_rectangle(plane, core, AREA, DRAWN)
     assert split.core == core
     np.testing.assert_array_equal(split.inside, within(plane, core))
-    assert split.reason.code == "fit.points-inside-outside"
+    assert split.reason.code == "fitting.points-inside-outside"
     assert split.reason.params["reason"] == DRAWN
     assert split.reason.params["within"] == split.inside.sum()
 
@@ -154,7 +154,7 @@ def test_a_drawn_rectangle_without_points_or_with_all_of_them_degenerates():
     plane = uniform(50, (0, 500, 0, 500))
     empty = split_rectangle(plane, (1500.0, 1900.0, 1500.0, 1900.0), AREA, DRAWN)
     assert empty.core is None
-    assert empty.reason.code == "fit.no-point-lies-inside"
+    assert empty.reason.code == "fitting.no-point-inside"
     full = split_rectangle(plane, (0.0, 600.0, 0.0, 600.0), AREA, DRAWN)
     assert full.core == AREA
     assert full.inside.all()
@@ -188,7 +188,7 @@ def test_sections_of_unequal_distances_make_one_core():
     side = np.where(rng.uniform(size=120) < 0.5, 0.0, 1360.0)
     plane = np.concatenate([sections, np.column_stack([side + rng.uniform(0, 640, 120), rng.uniform(0, 2000, 120)])])
     drawn = np.arange(len(plane)) < len(sections)
-    assert split_auto(plane, AREA).reason.code == "fit.dense-points-lie-along"
+    assert split_auto(plane, AREA).reason.code == "fitting.dense-points-on-line"
     split = split_auto(plane, AREA, drawn)
     assert split.core is not None
     np.testing.assert_array_equal(split.inside, drawn)

@@ -73,7 +73,7 @@ def test_points_that_cannot_all_be_met_are_a_fit_error(case):
         misfit = np.random.default_rng(1).normal(size=40)
     elif case == "frozen":
         free = np.zeros(space.size, bool)
-    with refused(FitError, "fit.core-cannot-interpolated-points"):
+    with refused(FitError, "fitting.core-not-interpolable"):
         minimum_norm_correction(space.matrix(plane), misfit, free)
 
 
@@ -167,7 +167,7 @@ def test_linear_without_sections_is_cubic_and_told():
     points = PointSet(np.column_stack([plan, 500 + 0.1 * (plan[:, 0] - EASTING)]))
     surface = fit_horizon(points, FitSettings(across="linear", core="all"))
     assert surface.patches[0].degree == (3, 3)
-    assert with_code(surface.accuracy.notes, "fit.across-linear-needs-least").severity == "warning"
+    assert with_code(surface.accuracy.notes, "fitting.ruled-core-without-sections").severity == "warning"
 
 
 def test_section_lines_are_the_mean_u_of_straight_sections():

@@ -124,15 +124,15 @@ def test_what_is_not_asked_for_or_not_of_the_horizon_changes_nothing(waved):
         fitted(waved, replace(measured, horizon=np.array(["other"]))),
     ):
         assert all(np.array_equal(a.control, b.control) for a, b in zip(plain.patches, surface.patches, strict=True))
-        assert not {"fit.dips-fitted", "fit.dips-not-fitted"} & {note.code for note in surface.accuracy.notes}
+        assert not {"fitting.dips-fitted", "fitting.dips-not-fitted"} & {note.code for note in surface.accuracy.notes}
 
 
 def test_dips_that_cannot_be_fitted_are_counted(waved):
     plan = np.array([[500, 500], [5000, 500], [500, 400.0]])
     measured = dips(plan, np.array([[0.1, 0.0], [0.1, 0.0], [0.0, 20.0]]))
     notes = {note.code: note for note in fitted(waved, measured).accuracy.notes}
-    assert notes["fit.dips-fitted"].params["count"] == 1
-    assert notes["fit.dips-not-fitted"].params["count"] == 2
+    assert notes["fitting.dips-fitted"].params["count"] == 1
+    assert notes["fitting.dips-not-fitted"].params["count"] == 2
 
 
 def test_a_surface_through_sections_says_that_its_dips_are_only_checked():
@@ -142,4 +142,4 @@ def test_a_surface_through_sections_says_that_its_dips_are_only_checked():
     measured = dips(np.array([[100, 100.0]]), np.array([[0.0, 0.2]]))
     settings = FitSettings(dips="fit", frame="sections")
     surface = fit_horizon(points, settings, name="h", orientations=measured)
-    assert "fit.dips-not-fitted-parametric" in {note.code for note in surface.accuracy.notes}
+    assert "fitting.dips-not-fitted-parametric" in {note.code for note in surface.accuracy.notes}

@@ -126,7 +126,7 @@ def test_an_outline_outside_leaves_all_and_a_plane_is_two_pieces_a_span():
 
 
 def test_refuses_a_tolerance_of_zero():
-    with refused(SettingsError, "geometry.chordal-tolerance-give-metres"):
+    with refused(SettingsError, "geometry.chordal-tolerance-not-positive"):
         horizon([height_field()]).triangulate(0.0)
 
 

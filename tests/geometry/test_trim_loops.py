@@ -10,7 +10,7 @@ from converged import converged_distances, ring
 from surfaces import ORIGIN, height_field, horizon, nine
 
 from geofit.cad.step import read_step, write_step
-from geofit.geometry.trim_loops import nearest
+from geofit.geometry.trim_loops import nearest_on_trimmed
 from geofit.io.export.write import untrimmed
 from geofit.splines import bspline
 from geofit.splines.patch import Patch
@@ -55,7 +55,7 @@ def test_a_ring_is_no_square(tmp_path):
     assert isinstance(surface, TrimmedSurface)
     assert len(surface.loops[0]) == 2
     target = 1e-3 * np.array([[70, 0, 5], [0, 0, 30], [10, 0, -1], [98, 98, 0], [0, 130, 40]], float)
-    found = nearest(surface.patches, target - surface.origin, surface.loops)
+    found = nearest_on_trimmed(surface.patches, target - surface.origin, surface.loops)
     expected = [5, 50, np.hypot(30, 1), np.hypot(98, 98) - 100, 50]
     # A circle is sampled at 64 places: its polygon lies 100 (1 - cos(pi / 64)) = 0.12 mm inside at most.
     assert np.abs(np.abs(found.distance) * 1e3 - expected).max() < 0.13
@@ -73,7 +73,7 @@ def test_through_a_hole_to_the_face_below(tmp_path):
     below = cq.Face.makeFromWires(cq.Wire.makeCircle(100, cq.Vector(0, 0, -20), cq.Vector(0, 0, 1)))
     ring = faces_of_file(tmp_path / "ring.step", disc_with_a_hole())
     disc = faces_of_file(tmp_path / "disc.step", below.wrapped)
-    found = nearest((*ring.patches, *disc.patches), [[0, 0, 0.005]], (*ring.loops, *disc.loops))
+    found = nearest_on_trimmed((*ring.patches, *disc.patches), [[0, 0, 0.005]], (*ring.loops, *disc.loops))
     assert np.abs(found.distance) == pytest.approx([0.025])
     assert found.patch.tolist() == [1]
     assert not found.beyond.any()
@@ -89,7 +89,7 @@ def test_a_hole_off_the_middle_of_a_face_seen_from_either_side(turned, tmp_path)
     ).wrapped
     surface = faces_of_file(tmp_path / "disc.step", face.Reversed() if turned else face)
     target = 1e-3 * np.array([[50, 30, 1], [-50, 30, 1], [50, -30, 1], [-50, -30, 1]], float)
-    found = nearest(surface.patches, target - surface.origin, surface.loops)
+    found = nearest_on_trimmed(surface.patches, target - surface.origin, surface.loops)
     assert found.beyond.tolist() == [True, False, False, False]
     assert np.abs(found.distance) == pytest.approx([np.hypot(0.02, 0.001), 0.001, 0.001, 0.001], abs=3e-5)
 
@@ -106,7 +106,7 @@ def test_a_trimmed_horizon_with_a_notch(tmp_path):
     target = rng.uniform([0, 0, -80], [1000, 700, 80], (120, 3))
     target[:30] = rng.uniform([460, 420, -5], [540, 640, 5], (30, 3))
     target[:30, 2] += horizon(nine()[1]).elevation(*(target[:30, :2] + ORIGIN[:2]).T) - ORIGIN[2]
-    found = nearest(back.patches, target + ORIGIN - back.origin, back.loops)
+    found = nearest_on_trimmed(back.patches, target + ORIGIN - back.origin, back.loops)
     # Truth about the local origin: distances at 3e6 m lose digits in OpenCASCADE.
     from OCP.TopLoc import TopLoc_Location
 
@@ -116,7 +116,7 @@ def test_a_trimmed_horizon_with_a_notch(tmp_path):
     assert np.abs(np.abs(found.distance) - expected).max() < 1e-5
     assert found.beyond.sum() > 20
     # A check that measures to whole patches would be wrong for some of them by metres.
-    whole = nearest(back.patches, target + ORIGIN - back.origin)
+    whole = nearest_on_trimmed(back.patches, target + ORIGIN - back.origin)
     assert (np.abs(found.distance) - np.abs(whole.distance) > 1.0).sum() > 10
 
 
@@ -131,7 +131,7 @@ def test_a_curved_face_cut_by_a_curve(tmp_path):
     rng = np.random.default_rng(5)
     target = rng.uniform(-1500, 1500, (60, 3))
     target[:20] = rng.uniform([700, -250, -250], [1400, 250, 250], (20, 3))
-    found = nearest(surface.patches, 1e-3 * target - surface.origin, surface.loops)
+    found = nearest_on_trimmed(surface.patches, 1e-3 * target - surface.origin, surface.loops)
     assert np.abs(np.abs(found.distance) * 1e3 - truth(side.wrapped, target)).max() < 1.0
     assert found.beyond[:20].all()
 
@@ -140,7 +140,7 @@ def test_beside_whole_patches_but_not_over_their_seams():
     surface = horizon(nine()[1])
     middle = surface.patches[0].evaluate(*surface.patches[0].domain[1::2])
     target = np.array([[-50, 300, 0], [500, 350, 90], [1030, 730, 0], middle + np.array([0, 0, 20])])
-    assert nearest(surface.patches, target).beyond.tolist() == [True, False, True, False]
+    assert nearest_on_trimmed(surface.patches, target).beyond.tolist() == [True, False, True, False]
 
 
 def test_no_triangle_turns_over_where_parameters_run_unevenly():
@@ -178,6 +178,6 @@ def test_distances_to_a_trimmed_fold_are_those_of_a_dense_search(turns, off):
     rng = np.random.default_rng(4)
     u, v = rng.uniform(0, 1, 60), rng.uniform(0, 500, 60)
     xyz = patch.evaluate(u, v) + patch.normal(u, v) * rng.normal(0, off, 60)[:, None]
-    found = nearest([patch], xyz, (loops,))
+    found = nearest_on_trimmed([patch], xyz, (loops,))
     assert 0.2 < found.beyond.mean() < 0.8
     np.testing.assert_allclose(np.abs(found.distance), converged_distances(patch, loops, xyz), atol=1e-9)

@@ -32,7 +32,7 @@ from geofit.project.commands import (
     SetSurface,
 )
 from geofit.project.document import Document
-from geofit.project.journal import Journal
+from geofit.project.journal import SessionJournal
 from geofit.project.provenance import DocumentError, Row
 
 STEPS = 400
@@ -77,7 +77,7 @@ def steps(seed: int):
 class Player:
     """Plays steps on a document with an undo stack of its own, and tells a journal if there is one."""
 
-    def __init__(self, journal: Journal | None) -> None:
+    def __init__(self, journal: SessionJournal | None) -> None:
         self.document, self.journal = Document(), journal
         self.document.open(tiny_site(), Path("site.toml"))
         self.done: list[Command] = []
@@ -117,7 +117,7 @@ def session(folder: Path, seed: int, acknowledge: int) -> None:
     """Work until killed."""
     document = Document()
     document.open(tiny_site(), Path("site.toml"))
-    player = Player(Journal(folder, document.state, Path("site.toml"), None))
+    player = Player(SessionJournal(folder, document.state, Path("site.toml"), None))
     os.write(acknowledge, b".")
     count = 0
     for step in steps(seed):

@@ -264,7 +264,7 @@ def test_violations_and_holes_find_each_other(with_ore):
     document, figures, view = with_ore.document, with_ore.panels.body_figures, with_ore.panels.view
     result, provenance = document.body("ORE"), document.state.bodies["ORE"].provenance
     data = result.fitted.data
-    words = message("bodies.logged-in-lies-out", "logged inside, lies outside")
+    words = message("bodies.logged-inside-lies-outside", "logged inside, lies outside")
     found = tuple(
         Violation("sample", str(data.inside_hole[i]), tuple(data.inside[i].tolist()), 0.5, 2.0, words) for i in (0, 40)
     )

@@ -135,7 +135,7 @@ def test_dips_become_data_of_the_fit_and_the_project_keeps_it(app, qtbot, with_d
     assert float(np.nanmean(panel.shown.angle)) < 0.6 * before
     assert error() < 0.9 * without
     notes = {note.code for note in app.document.surface(NAME).accuracy.notes}
-    assert "fit.dips-fitted" in notes
+    assert "fitting.dips-fitted" in notes
     # The same from the project file: settings, dips and surface.
     net = app.document.surface(NAME).patches[0].control
     file = tmp_path / "dam.geofit"

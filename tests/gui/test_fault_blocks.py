@@ -15,11 +15,11 @@ from geofit.io.project import open_project
 from geofit.project.building import make
 from geofit.project.commands import ExcludeRows, IncludeRows, SetSettings, SetSurface, SplitAtFaults
 from geofit.project.document import Document
-from geofit.project.fault_blocks import measured, split_at_faults
+from geofit.project.fault_blocks import cuts_measured, split_at_faults
 from geofit.project.ordering import comparable
 from geofit.project.provenance import DocumentError, Row
 from geofit.project.reporting import write_report_files
-from geofit.project.saving import project_of, read_surfaces, state_of, write_project
+from geofit.project.saving import project_of, read_saved_surfaces, state_of, write_project
 from geofit.report.result import HorizonResult
 from geofit.site.fit_site import fit_site
 
@@ -92,7 +92,7 @@ def test_the_window_and_the_command_line_make_the_same_surfaces(parted):
 
 
 def test_the_throw_is_that_of_the_truth(parted):
-    (cut,) = measured(parted.blocks("T2"), progress=quiet)
+    (cut,) = cuts_measured(parted.blocks("T2"), progress=quiet)
     along = (cut.trace[:, :2] - ORIGIN - START) @ WAY
     assert (cut.fault, cut.horizon) == ("F1", "T2")
     assert cut.throw.mean() == pytest.approx(throw(along).mean(), abs=0.25)
@@ -210,7 +210,7 @@ def test_a_project_brings_the_blocks_back(parted, tmp_path):
     assert state == replace(parted.state, name=state.name)
     document = opened()
     document.open(faulted_site(), site_file, state, path)
-    read = read_surfaces(project, tmp_path, document.site, progress=quiet)
+    read = read_saved_surfaces(project, tmp_path, document.site, progress=quiet)
     assert set(read) == set(surfaces)
     for provenance, surface in read.items():
         document.put(provenance, surface)

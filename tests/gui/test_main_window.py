@@ -169,7 +169,7 @@ def test_the_log_hears_geofit_and_qt_but_not_the_chatter_of_others(app):
 
 def test_the_error_dialog_says_what_to_do(qtbot):
     error = InputError(
-        message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+        message("io.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
     )
     dialog = ErrorDialog("Open a.csv", error)
     qtbot.addWidget(dialog)
@@ -200,7 +200,7 @@ def test_rows_not_used_are_listed(qtbot):
             "z",
             "abc",
             "error",
-            message("import.no-number", "This is not a number"),
+            message("io.not-a-number", "This is not a number"),
             message("test.text", "Correct it."),
         ),
         ImportIssue("a.csv", 0, "", "", "note", message("test.text", "Taken as picks")),

@@ -13,7 +13,7 @@ from geofit.implicit import Sphere, Torus
 from geofit.implicit.isosurface import isosurface
 from geofit.implicit.lattice import Lattice
 from geofit.io.export.triangles import write_ply
-from geofit.project.body_record import Frame
+from geofit.project.body_record import MorphFrame
 
 CENTRE = np.array([500900.0, 3100900.0, 1450.0])
 
@@ -113,7 +113,7 @@ def test_a_ball_becomes_a_ring_under_the_slider(bodies, tmp_path, monkeypatch):
     bodies.qtbot.mouseClick(panel.take, Qt.MouseButton.LeftButton)
     bodies.idle()
     record = bodies.document.state.bodies["quarter"]
-    assert isinstance(record.provenance.source, Frame)
+    assert isinstance(record.provenance.source, MorphFrame)
     assert record.provenance.source.names == ("ball", "ring")
     taken = bodies.document.body("quarter")
     assert taken.mesh.volume == pytest.approx(np.interp(0.25, np.linspace(0, 1, 25), volumes), rel=0.03)

@@ -219,10 +219,10 @@ def test_11_the_project_is_versioned_text_and_the_title_says_what_is_unsaved(sho
 
 
 def test_12_what_was_done_is_in_the_journal_before_the_next_thing(shown):
-    from geofit.project.journal import Journal
+    from geofit.project.journal import SessionJournal
 
     journal = shown.window.session._journal
-    assert isinstance(journal, Journal)
+    assert isinstance(journal, SessionJournal)
     shown.window.fitting.set_core(NAME, "all")
     last = journal.path.read_bytes().splitlines()[-1].partition(b" ")[2]
     assert json.loads(last)["do"] == {"kind": "core", "horizon": NAME, "core": "all"}
@@ -347,7 +347,7 @@ def test_20_errors_say_what_to_do_and_the_dark_theme_reaches_the_view(shown, qtb
     dialog = ErrorDialog(
         "Open a.csv",
         InputError(
-            message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+            message("io.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
         ),
     )
     qtbot.addWidget(dialog)

@@ -17,7 +17,7 @@ from geofit.data.settings import FitSettings
 from geofit.project.building import make
 from geofit.project.commands import MoveToPoint, RenameSite, SetSettings, SetSurface
 from geofit.project.document import Document
-from geofit.project.journal import FORMAT, Journal, unfinished
+from geofit.project.journal import FORMAT, SessionJournal, unfinished
 
 CHILD = Path(__file__).with_name("cut_off.py")
 KILLS = 60
@@ -73,7 +73,7 @@ def test_a_session_killed_at_any_moment_comes_back(tmp_path):
 
 def test_a_journal_cut_after_any_byte_gives_a_prefix(tmp_path):
     player = cut_off.Player(None)
-    journal = Journal(tmp_path, player.document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, player.document.state, Path("site.toml"), None)
     player.journal = journal
     expected = [player.document.state]
     for step in cut_off.steps(7):
@@ -103,7 +103,7 @@ def test_a_journal_cut_after_any_byte_gives_a_prefix(tmp_path):
 def test_a_damaged_line_ends_what_is_brought_back(tmp_path):
     document = Document()
     document.open(cut_off.tiny_site(), Path("site.toml"))
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
     for name in "abc":
         command = RenameSite(name)
         command.redo(document)
@@ -119,7 +119,7 @@ def test_a_damaged_line_ends_what_is_brought_back(tmp_path):
 def test_the_journal_of_a_living_session_is_left_alone(tmp_path):
     document = Document()
     document.open(cut_off.tiny_site(), Path("site.toml"))
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
     command = RenameSite("here")
     command.redo(document)
     journal.done(command)
@@ -131,7 +131,7 @@ def test_the_journal_of_a_living_session_is_left_alone(tmp_path):
 def test_what_was_saved_is_not_offered(tmp_path):
     document = Document()
     document.open(cut_off.tiny_site(), Path("site.toml"))
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
     command = RenameSite("saved")
     command.redo(document)
     journal.done(command)
@@ -144,7 +144,7 @@ def test_what_was_saved_is_not_offered(tmp_path):
 def test_surfaces_come_back_to_the_last_bit(tmp_path):
     document = Document()
     document.open(cut_off.tiny_site(), Path("site.toml"))
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
 
     def do(command):
         command.redo(document)
@@ -208,7 +208,7 @@ def test_a_journal_that_cannot_be_read_is_kept_and_blocks_no_other(tmp_path, dat
     strange = tmp_path / "session-1-0.journal"
     strange.write_bytes(data)
     document = Document()
-    journal = Journal(tmp_path, document.state, Path("site.toml"), None)
+    journal = SessionJournal(tmp_path, document.state, Path("site.toml"), None)
     journal.done(RenameSite("another"))
     journal._stream.close()
     (session,) = unfinished(tmp_path)

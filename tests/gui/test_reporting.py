@@ -56,7 +56,7 @@ def report(qtbot, dialog, folder):
 
 def test_the_window_s_report_says_what_the_command_line_s_says(app, qtbot, site_file, tmp_path, monkeypatch, capsys):
     # Pictures are not compared; drawing them would take most of the time.
-    monkeypatch.setattr(pictures, "draw", lambda *_: pictures.Pictures({}, None, ""))
+    monkeypatch.setattr(pictures, "draw_pictures", lambda *_: pictures.Pictures({}, None, ""))
     monkeypatch.setattr(pictures, "draw_site", lambda *_: pictures.Pictures({}, None, ""))
     monkeypatch.setattr(pictures, "write_picture", lambda *_: None)
     # Functions that are replaced here stay what they are in another process.

@@ -9,10 +9,10 @@ from PySide6.QtCore import QPoint, Qt
 
 from geofit.data.prediction import Uncertainty
 from geofit.gui import worker
-from geofit.gui.panels.curtain import Curtain, extent
+from geofit.gui.panels.curtain import Curtain, site_extent
 from geofit.gui.panels.section import SectionPanel
 from geofit.gui.panels.section_painter import near_points
-from geofit.gui.panels.section_scale import Extent, automatic, window
+from geofit.gui.panels.section_scale import SectionExtent, automatic, window
 
 #: Triangles of the surfaces, made once for all tests.
 MESHES = {}
@@ -121,7 +121,7 @@ def test_the_last_of_many_edits_is_cut(panel, qtbot):
 
 
 def test_the_band_is_ninety_per_cent_wide(panel, qtbot):
-    box = extent(sample_site(), {})
+    box = site_extent(sample_site(), {})
     x, y = (np.linspace(box[0, k], box[1, k], 4) for k in (0, 1))
     band = Uncertainty(x, y, np.full((4, 4), 2.0), 1.0, 2.0, 2.0, np.ones((4, 4)))
     show(panel, qtbot, uncertainty={WITH_PERIPHERY: band})
@@ -194,7 +194,7 @@ def test_the_factor_is_told_while_a_section_is_moved_and_magnified(panel, qtbot)
 
 @pytest.mark.parametrize("factor", [1.0, 2.0, 20.0])
 def test_a_window_holds_the_section_and_its_names(factor):
-    seen, size = Extent(900.0, 1300.0, 1420.0, head=1410.0, names=50.0), (700.0, 200.0)
+    seen, size = SectionExtent(900.0, 1300.0, 1420.0, head=1410.0, names=50.0), (700.0, 200.0)
     (left, right), (bottom, top) = window(seen, size, factor)
     upwards = size[1] / (top - bottom)
     assert upwards / (size[0] / (right - left)) == pytest.approx(factor)
@@ -205,7 +205,7 @@ def test_a_window_holds_the_section_and_its_names(factor):
 
 
 def test_a_section_without_any_height_is_still_drawn():
-    flat = Extent(100.0, 5.0, 5.0)
+    flat = SectionExtent(100.0, 5.0, 5.0)
     assert np.isfinite(window(flat, (300.0, 200.0), automatic(flat, (300.0, 200.0)))).all()
 
 

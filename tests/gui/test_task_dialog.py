@@ -118,7 +118,7 @@ def test_stop_ends_the_task_and_closing_too(qtbot):
     [
         (
             InputError(
-                message("import.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
+                message("io.file-empty", "The file is empty"), message("test.text", "Choose another."), file="a.csv"
             ),
             "a.csv: The file is empty. Choose another.",
         ),

@@ -48,15 +48,15 @@ def test_errors_are_told_in_chinese_with_the_file(qtbot, chinese):
         ErrorDialog(
             "打开",
             InputError(
-                message("import.file-missing", "There is no such file"),
-                message("import.check-path", "Check the path."),
+                message("data.file-missing", "There is no such file"),
+                message("data.check-path", "Check the path."),
                 file="site.toml",
             ),
         ),
         ErrorDialog(
             "",
             DocumentError(
-                message("project.no-surface-adjust-fit", "'{name}' has no surface to adjust. Fit it first.", name="T1")
+                message("data.no-surface-to-adjust", "'{name}' has no surface to adjust. Fit it first.", name="T1")
             ),
         ),
     ]
@@ -76,19 +76,19 @@ def test_the_log_speaks_chinese_and_leaves_other_libraries_alone(qtbot, chinese)
         log = logging.getLogger("geofit.gui.files")
         full = OSError(28, os.strerror(28))
         empty = InputError(
-            message("import.file-empty", "The file is empty"),
-            message("import.export-again", "Export it again."),
+            message("io.file-empty", "The file is empty"),
+            message("io.export-again", "Export it again."),
             file="p.csv",
         )
-        log.info(message("log.saved", "Saved {path}", path="dam.geofit"))
+        log.info(message("gui.log-saved", "Saved {path}", path="dam.geofit"))
         log.warning(
             message(
-                "log.no-journal",
+                "gui.log-journal-not-written",
                 "No journal can be written, so a crash would lose unsaved work: {error}",
                 error=shown_error(full),
             )
         )
-        log.error(message("log.task-error", "{task}: {error}", task="拟合", error=shown_error(empty)))
+        log.error(message("gui.log-task-error", "{task}: {error}", task="拟合", error=shown_error(empty)))
         logging.getLogger("vtk").error("bad %d", 3)
         lines = [line.split("  ", 1)[1] for line in panel.text.toPlainText().splitlines()]
     finally:
@@ -112,4 +112,4 @@ def test_a_stage_with_a_name_in_it_comes_through_a_task_as_a_sentence(qtbot, chi
 
 
 def _with_a_stage(progress):
-    progress(message("run.stage-of", "{name}: {stage}", name="T1", stage="fit"), 1.0)
+    progress(message("data.stage-of-name", "{name}: {stage}", name="T1", stage="fit"), 1.0)

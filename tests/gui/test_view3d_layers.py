@@ -8,8 +8,8 @@ import pytest
 from geofit import FitSettings, PointSet
 from geofit.data.accuracy import Seam
 from geofit.gui.view3d.axes import grouped, marks, nice, ticks
-from geofit.gui.view3d.camera import VIEWS, Viewpoint, between, framed
-from geofit.gui.view3d.colouring import legible, points_by, ramp, rgb, seam_colours
+from geofit.gui.view3d.camera import VIEWS, Viewpoint, framed, viewpoint_between
+from geofit.gui.view3d.colouring import legible_on, points_by, ramp, rgb, seam_colours
 from geofit.gui.view3d.layers import Layer, Layers
 from geofit.gui.view3d.overlay import merged
 from geofit.gui.view3d.projector import Projector
@@ -96,8 +96,8 @@ def test_without_residuals_deviation_is_plain():
 
 
 def test_colours_stand_out_from_a_dark_ground():
-    assert legible("#0b2f4a", dark=False) == "#0b2f4a"
-    assert sum(rgb(legible("#0b2f4a", dark=True))) > 2 * sum(rgb("#0b2f4a"))
+    assert legible_on("#0b2f4a", dark=False) == "#0b2f4a"
+    assert sum(rgb(legible_on("#0b2f4a", dark=True))) > 2 * sum(rgb("#0b2f4a"))
 
 
 def test_ramp_has_its_ends_at_the_values_and_grey_for_nothing():
@@ -153,8 +153,8 @@ def test_coming_nearer_keeps_the_place_under_the_pointer():
 
 def test_a_flight_turns_the_shorter_way_and_arrives():
     start, end = Viewpoint(np.zeros(3), 350.0, 10.0, 100.0), Viewpoint(np.ones(3), 20.0, 40.0, 25.0)
-    assert between(start, end, 0.5).azimuth == pytest.approx(5.0)
-    there = between(start, end, 1.0)
+    assert viewpoint_between(start, end, 0.5).azimuth == pytest.approx(5.0)
+    there = viewpoint_between(start, end, 1.0)
     assert (there.azimuth, there.height, there.distance) == pytest.approx((20.0, 40.0, 25.0))
 
 

@@ -159,6 +159,6 @@ def test_intervals_of_a_refused_collar_point_to_its_row(write):
     log = write("hole,from,to,code\nZK1,0,10,Q\nZK10,0,12,Q\nZK11,0,9,Q\n", "log.csv")
     found = read_boreholes(collar, None, [log])
     remedies = {issue.value: issue.remedy for issue in found.issues if issue.file == "log.csv"}
-    assert remedies["ZK10"].code == "import.row-not-used-mend"
+    assert remedies["ZK10"].code == "io.referred-row-not-used"
     assert "collar.csv, row 3" in str(remedies["ZK10"])
-    assert remedies["ZK11"].code == "import.did-you-mean"
+    assert remedies["ZK11"].code == "io.did-you-mean"

@@ -62,7 +62,7 @@ def test_a_hole_with_thin_beds_only_is_named():
     holes = logged(BEDS, [("soil", 4), ("sand", 0.2), ("rock", 9)])
     points = load_rule(holes, ContactRule(("sand",), "top", None, 0.5), journal)
     assert points.hole.tolist() == ["B0"]
-    assert "import.only-thin-beds" in [issue.reason.code for issue in journal.issues]
+    assert "io.beds-too-thin" in [issue.reason.code for issue in journal.issues]
 
 
 def test_a_bed_at_the_hole_end_stays_however_thin():
@@ -96,11 +96,11 @@ def test_the_site_file_states_rules_and_complains_clearly(tmp_path):
     file.write_text(head + 'base = ["sand", "silt"]\nthinner = 0.5\noccurrence = "last"\n', "utf-8")
     assert read_site(file).horizons["h"].xyz[:, 2].tolist() == [88.0] * 4
     for wrong, code in (
-        ('base = ["sand"]\noccurrence = "second"\n', "import.occurrence"),
-        ("thinner = 0.5\n", "import.rule-without-code"),
-        ("base = [1]\n", "import.codes"),
-        ('base = "sand"\nthinner = -1\n', "import.where-error"),
-        ('base = "sand"\ntop = "silt"\n', "import.top-base"),
+        ('base = ["sand"]\noccurrence = "second"\n', "io.occurrence-unknown"),
+        ("thinner = 0.5\n", "io.rule-without-code"),
+        ("base = [1]\n", "io.codes-not-text"),
+        ('base = "sand"\nthinner = -1\n', "io.key-and-error"),
+        ('base = "sand"\ntop = "silt"\n', "io.top-and-base"),
     ):
         file.write_text(head + wrong, "utf-8")
         with pytest.raises(InputError) as caught:
@@ -117,6 +117,6 @@ def test_a_code_that_no_interval_has_is_named_though_others_are_found():
     journal = Journal()
     points = load_rule(logged(BEDS), ContactRule(("sand", "snad"), "top"), journal)
     assert len(points) == 1
-    (issue,) = (one for one in journal.issues if one.reason.code == "import.code-of-rule-unknown")
+    (issue,) = (one for one in journal.issues if one.reason.code == "io.rule-code-not-logged")
     assert (issue.severity, issue.value) == ("warning", "snad")
     assert "Did you mean 'sand'?" in str(issue.remedy)

@@ -112,7 +112,7 @@ def test_adits_and_their_contacts_from_a_plan(folder):
     assert (paths.read, paths.used) == (28, 7)
     assert (contacts.read, contacts.used) == (28, 3)
     reasons = [(issue.severity, issue.reason) for issue in read.issues]
-    assert ("error", "import.polyline-no-elevation") in [(severity, reason.code) for severity, reason in reasons]
+    assert ("error", "io.polyline-no-elevation") in [(severity, reason.code) for severity, reason in reasons]
     assert any(
         severity == "error" and "50.0 m from the nearest adit, PD1" in str(reason) for severity, reason in reasons
     )
@@ -184,9 +184,9 @@ def test_one_table_of_several_sections_with_their_lines(folder):
     assert [section.name for section in read.sections] == ["C1", "C3"]
     assert counts["sections.csv"] == (6, 3, 3)
     reasons = {issue.row: issue.reason for issue in read.issues if issue.severity == "error"}
-    assert reasons[4].code == "import.distance-not-line-section"
-    assert (reasons[5].code, reasons[5].params["row"]) == ("import.row-states-section-line", 2)
-    assert (reasons[6].code, reasons[6].params["section"]) == ("import.section-no-line-plan-2", "C2")
+    assert reasons[4].code == "io.distance-off-section"
+    assert (reasons[5].code, reasons[5].params["row"]) == ("io.section-line-contradicts", 2)
+    assert (reasons[6].code, reasons[6].params["section"]) == ("io.named-section-without-line", "C2")
 
 
 def test_one_table_of_several_sections_with_a_table_of_lines(folder):
@@ -241,7 +241,7 @@ def test_a_grid_is_a_horizon(form, folder):
     np.testing.assert_allclose(points.xyz[-1], [500130, 3100100, 33])
     assert points.row.tolist() == [1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12]
     notes = [
-        issue.reason for issue in read.issues if issue.file == name and issue.reason.code == "import.nodes-no-data-no"
+        issue.reason for issue in read.issues if issue.file == name and issue.reason.code == "io.nodes-without-data"
     ]
     assert [dict(note.params) for note in notes] == [{"count": 1, "total": 12}]
     found = import_files([folder / name, folder / "ground.asc"], folder / "s.toml",

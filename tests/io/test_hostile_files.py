@@ -79,7 +79,7 @@ def test_settings_of_a_site_file_with_400_zeros(epsilon, tmp_path):
 def test_projects_with_values_of_the_wrong_type(more, tmp_path):
     text = json.dumps(PROJECT)[:-1] + ", " + more + "}"
     (tmp_path / "a.geofit").write_text(text)
-    with refused(InputError, "project.project-not-hold-version"):
+    with refused(InputError, "io.project-incomplete"):
         open_project(tmp_path / "a.geofit")
 
 
@@ -88,7 +88,7 @@ def test_projects_with_values_of_the_wrong_type(more, tmp_path):
 def test_pipes_and_devices_are_refused_at_once(read, tmp_path):
     os.mkfifo(tmp_path / "pipe.npy")
     for name in (tmp_path / "pipe.npy", "/dev/zero"):
-        with refused(InputError, "import.pipe-device-not"):
+        with refused(InputError, "io.not-a-file"):
             read(name)
 
 
@@ -171,7 +171,7 @@ def test_a_header_reads_no_file_outside_its_folder(name, tmp_path):
     (tmp_path / "in").mkdir()
     header = f"NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementSpacing = 1 1 1\nElementDataFile = {name}\n"
     (tmp_path / "in" / "a.mhd").write_text(header)
-    with refused(InputError, "import.header-names-file"):
+    with refused(InputError, "io.volume-header-names-file"):
         read_volume(tmp_path / "in" / "a.mhd", pore=0)
     (tmp_path / "in" / "x.raw").write_bytes(bytes(7) + b"\1")
     (tmp_path / "in" / "a.mhd").write_text(header.replace(name, "x.raw"))
@@ -186,7 +186,7 @@ def test_a_survey_includes_no_file_outside_its_folder(tmp_path):
     assert len(read_survex(tmp_path / "in" / "a.svx").stations) == 2
     for name in ("../secret", str(tmp_path / "secret.svx")):
         (tmp_path / "in" / "a.svx").write_text(f"*include {name}\n")
-        with refused(InputError, "import.included-file-cannot"):
+        with refused(InputError, "io.include-unreadable"):
             read_survex(tmp_path / "in" / "a.svx")
 
 

@@ -58,12 +58,12 @@ def test_upper_limits_come_from_the_row_above_and_that_is_said(write):
     found = reread(write, LAYERS)
     assert limits(found) == truth()
     assert listed(found) == []
-    (note,) = [issue for issue in found.issues if issue.reason.code == "import.lower-limits-upper-limits"]
+    (note,) = [issue for issue in found.issues if issue.reason.code == "io.upper-limits-taken-from-above"]
     assert (note.severity, note.column) == ("note", "to")
     assert "层顶取自同孔上一行的层底" in translate(note.reason, ZH)
     both = "hole,from,to,code\n" + "".join(f"{h},{t},{b},{c}\n" for (h, c), (t, b) in truth().items())
     usual = read_boreholes(write(COLLAR, "collar.csv"), None, [write(both, "both.csv")])
-    assert not [issue for issue in usual.issues if issue.reason.code == "import.lower-limits-upper-limits"]
+    assert not [issue for issue in usual.issues if issue.reason.code == "io.upper-limits-taken-from-above"]
     for limit in ({"base": "T2"}, {"top": "T2"}, {"top": "P"}):
         expected = take_contacts(usual, **limit).points.xyz
         assert len(expected) == 3
@@ -78,9 +78,9 @@ def test_rows_in_another_order_are_sorted_with_a_warning(write):
     for order in (LAYERS[::-1], sorted(LAYERS, key=lambda layer: layer[2])):
         found = reread(write, order)
         assert limits(found) == truth()
-        (told,) = [issue for issue in found.issues if issue.reason.code == "import.rows-not-order-depth"]
+        (told,) = [issue for issue in found.issues if issue.reason.code == "io.rows-out-of-order"]
         assert told.severity == "warning"
-    assert not [issue for issue in reread(write, LAYERS).issues if issue.reason.code == "import.rows-not-order-depth"]
+    assert not [issue for issue in reread(write, LAYERS).issues if issue.reason.code == "io.rows-out-of-order"]
 
 
 def test_a_step_back_takes_both_rows_and_what_hangs_on_them_out(write):
@@ -91,9 +91,9 @@ def test_a_step_back_takes_both_rows_and_what_hangs_on_them_out(write):
     assert limits(found) == {key: value for key, value in truth().items() if key[0] != "B" or key[1] == "Q"}
     reasons = {issue.row: issue.reason for issue in found.issues if issue.severity == "error"}
     for row in (7, 8):
-        assert reasons[row].code == "import.lower-limit-row-lies"
+        assert reasons[row].code == "io.lower-limit-contradicts"
         assert reasons[row].params == {"first": 7, "last": 8}
-    assert (reasons[9].code, reasons[9].params["row"]) == ("import.upper-limit-not-known", 8)
+    assert (reasons[9].code, reasons[9].params["row"]) == ("io.upper-limit-unknown", 8)
     assert list(take_contacts(found, base="T2").points.hole) == ["A", "C"]
 
 
@@ -147,7 +147,7 @@ def test_lower_limits_as_elevations(write, head):
     assert listed(found) == [3]
     wanted = {key: value for key, value in truth().items() if key != ("A", "T2")}
     assert limits(found) == {key: pytest.approx(value, abs=1e-9) for key, value in wanted.items()}
-    assert not [issue for issue in found.issues if issue.reason.code == "import.rows-not-order-depth"]
+    assert not [issue for issue in found.issues if issue.reason.code == "io.rows-out-of-order"]
 
 
 def test_depths_go_before_elevations_and_are_not_mixed_with_them(write):
@@ -187,7 +187,7 @@ def test_import_makes_a_site_of_lower_limits(write, tmp_path):
     done = import_files([write(COLLAR, "collar.csv"), log], tmp_path / "site.toml")
     assert done.exit_code == 0
     assert all(count.read == count.used + count.listed for count in done.counts)
-    assert any(issue.reason.code == "import.lower-limits-upper-limits" for issue in done.issues)
+    assert any(issue.reason.code == "io.upper-limits-taken-from-above" for issue in done.issues)
     np.testing.assert_allclose(done.site.horizons["base of T2"].xyz[:, 2], [74.5, 73, 71.5])
     np.testing.assert_allclose(done.site.horizons["base of T1"].xyz[:, 2], [62, 62, 59.5])
 

@@ -44,7 +44,7 @@ def test_entities_keep_their_order_and_place(drawing):
     np.testing.assert_allclose(points["B"].xyz[:, 2], [50, 51, 52])
     assert points["B"].row.tolist() == [4, 5, 7]
     assert points["A"].section.tolist() == ["C1"] * 4
-    assert [issue.reason.code for issue in journal.issues] == ["import.point-repeats"]
+    assert [issue.reason.code for issue in journal.issues] == ["io.point-repeated"]
 
 
 def test_scale_and_origin(drawing, write):

@@ -59,7 +59,7 @@ def test_small_site_has_every_point_where_it_belongs(make_site):
 
 def test_open_base_is_noted_and_gives_no_contact(make_site):
     site = read_site(make_site())
-    notes = [issue.reason for issue in site.issues if issue.reason.code == "import.contacts-no-sure-contact"]
+    notes = [issue.reason for issue in site.issues if issue.reason.code == "io.contacts-uncertain"]
     assert len(notes) == 1
     assert "B3" in str(notes[0].params["holes"])
 

@@ -61,4 +61,4 @@ def test_a_damaged_snapshot_says_so(site, tmp_path, damage):
             archive.writestr("site.json", '{"format": "geofit snapshot", "version": 99}')
     with pytest.raises(InputError) as caught:
         read_snapshot(file)
-    assert caught.value.reason.code == "project.snapshot-unreadable"
+    assert caught.value.reason.code == "io.snapshot-unreadable"

@@ -63,7 +63,7 @@ def test_lines_count_as_an_editor_does(write, newline):
     table, journal = read(write(newline.join(lines)))
     assert table.lines.tolist() == [4, 7, 8]
     assert table.columns == (("1", "3", "5"), ("2", "4", "6"))
-    assert {("import.comment-lines-head-not", 1), ("import.lines-without-cell-filled", 1)} <= {
+    assert {("io.comment-lines", 1), ("io.empty-lines", 1)} <= {
         (issue.reason.code, issue.reason.params.get("count")) for issue in journal.issues
     }
 
@@ -86,7 +86,7 @@ def test_rows_of_the_wrong_width(write):
     assert table.columns == (("1", "1"), ("2", "2"), ("", "3"))
     assert table.read == 3
     (issue,) = [issue for issue in journal.issues if issue.severity == "error"]
-    assert (issue.row, issue.reason.code) == (4, "import.cells-row-header")
+    assert (issue.row, issue.reason.code) == (4, "io.row-cells-differ")
     assert issue.reason.params == {"count": 4, "width": 3}
 
 
@@ -166,7 +166,7 @@ def test_findings_that_are_alike_are_counted(monkeypatch):
         journal.add("note", "a.csv", message("test.text", "alike too {row}", row=row), row=row)
     journal.add("note", "a.csv", message("test.another", "another"), row=7)
     assert len(journal.issues) == 13
-    more = [issue for issue in journal.issues if issue.reason.code == "import.more-alike"]
+    more = [issue for issue in journal.issues if issue.reason.code == "io.more-alike"]
     assert [issue.reason.params["count"] for issue in more] == [95, 95]
     assert [issue.row for issue in more] == [99, 99]
 
@@ -176,7 +176,7 @@ def test_many_repeated_points_are_counted(tmp_path):
     picks = points_of(tmp_path / "p.csv")
     assert len(picks.horizons["p"]) == 30_001
     assert len(picks.issues) < 10_100
-    (more,) = [issue.reason for issue in picks.issues if issue.reason.code == "import.horizon-points-place"]
+    (more,) = [issue.reason for issue in picks.issues if issue.reason.code == "io.horizon-points-repeated"]
     assert more.params["count"] == 29_999
 
 

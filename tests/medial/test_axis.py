@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from geofit.medial.axis import chamfer_length, inclusion_table, medial_points
+from geofit.medial.axis import chamfer_length, including_values, medial_points
 from geofit.medial.chamfer import chamfer_distance
 
 
@@ -51,7 +51,7 @@ def test_without_the_correction_included_balls_remain():
 
 
 def test_the_table_by_enumeration():
-    table = inclusion_table(20)
+    table = including_values(20)
     q = np.argwhere(np.ones((17, 17, 17), bool)) - 8
     for kind, g in enumerate(([1, 0, 0], [1, 1, 0], [1, 1, 1])):
         for r in range(1, 20):

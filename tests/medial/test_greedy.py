@@ -10,7 +10,7 @@ import pytest
 from scipy.ndimage import gaussian_filter
 
 from geofit.medial.axis import medial_points
-from geofit.medial.greedy import UNIT, Cover, choose, choose_fully
+from geofit.medial.greedy import UNIT, Cover, choose_fully, choose_next
 from geofit.medial.kernel import kernel
 
 PAD = 6
@@ -36,7 +36,7 @@ def test_the_lazy_choice_is_the_full_search(seed):
     heap, candidates = heap_of(lazy), list(range(len(full.index)))
     gains = []
     for _ in range(12):
-        first, second = choose(lazy, heap), choose_fully(full, candidates)
+        first, second = choose_next(lazy, heap), choose_fully(full, candidates)
         assert first == second
         if first is None:
             break
@@ -81,7 +81,7 @@ def test_the_radius_search_is_at_least_as_good_as_a_thousand_radii(seed):
     found = cover(seed, cost=1.3)
     heap = heap_of(found)
     for _ in range(4):
-        choose(found, heap)
+        choose_next(found, heap)
     total = found.field / UNIT
     before = total >= 1
     for i in np.random.default_rng(seed).choice(len(found.index), 3, replace=False).tolist():

@@ -285,4 +285,4 @@ def test_the_same_bodies_make_the_same_bytes() -> None:
 def test_bodies_of_other_coordinates_are_refused() -> None:
     with pytest.raises(MorphError) as caught:
         geofit.morph(implicit.Sphere([0, 0, 0], 5.0), implicit.Sphere([500_000, 3_100_000, 0], 5.0), cells=24)
-    assert caught.value.code == "morphing.far-apart"
+    assert caught.value.code == "morphing.bodies-far-apart"

@@ -189,18 +189,18 @@ def test_an_overturned_fold_leaves_out_its_sections_by_new_fits():
     assert sections.groups >= 5
     assert 0 < sections.rms < 10
     assert found.uncertainty is None
-    assert with_code(found.notes, "prediction.folded-surface-no-standard")
+    assert with_code(found.notes, "prediction.folded-without-standard-deviation")
 
 
 def test_nothing_is_said_of_an_imported_surface():
     found = examine(sample("T3-T2")[0].with_(model=None))
     assert found.left_out == ()
     assert found.uncertainty is None
-    assert found.notes[0].code == "prediction.not-fitted-no-point"
+    assert found.notes[0].code == "prediction.nothing-to-leave-out"
 
 
 def test_examine_can_be_stopped():
-    with refused(geofit.GeofitError, "run.cancelled"):
+    with refused(geofit.GeofitError, "data.cancelled-in-stage"):
         examine(sample("T3-T2")[0], lambda stage, fraction: fraction < 0.4)
 
 
@@ -235,7 +235,7 @@ def test_robust_weights_find_the_truth_behind_blunders_and_leave_clean_data_alon
     assert rms(robust.elevation(x, y) - height) < 0.5 * rms(plain.elevation(x, y) - height)
     assert rms(robust.elevation(x, y) - height) < 1.1 * rms(clean.elevation(x, y) - height)
     assert np.flatnonzero(~robust.model.problem.kept).tolist() == wrong.tolist()
-    assert with_code(robust.accuracy.notes, "prediction.robust-peripheral-points-neighbours").params["count"] == 3
+    assert with_code(robust.accuracy.notes, "fitting.outliers-not-used").params["count"] == 3
     assert np.abs(robust.accuracy.residuals[robust.core]).max() < 1e-9
     assert robust.accuracy.n == len(points)
     same = fit_horizon(truth.points, FitSettings(robust=True), boundary=boundary)
@@ -243,7 +243,7 @@ def test_robust_weights_find_the_truth_behind_blunders_and_leave_clean_data_alon
 
 
 def test_robust_is_true_or_false():
-    with refused(SettingsError, "settings.true-false-needed"):
+    with refused(SettingsError, "data.setting-not-true-or-false"):
         FitSettings(robust="yes")
 
 

@@ -25,7 +25,7 @@ def test_one_vertical_hole_has_no_area_and_says_so():
     found = examine(fit_horizon(PointSet(VERTICAL)))
     assert found.uncertainty is None
     assert found.suggestions == ()
-    assert "prediction.no-area" in {note.code for note in found.notes}
+    assert "prediction.points-without-area" in {note.code for note in found.notes}
 
 
 def test_holes_of_a_small_set_are_left_out_by_true_refits():

@@ -58,7 +58,7 @@ def test_block_factor_agrees_with_dense_algebra():
 def test_a_band_that_holds_nothing_is_refused():
     space, plane, _ = system()
     data, _ = space.normal_equations(plane[:5], np.zeros(5), np.ones(5))
-    with refused(FitError, "splines.posterior-fit-improper-some"):
+    with refused(FitError, "splines.control-points-unconstrained"):
         BlockFactor(data)
 
 
@@ -212,9 +212,9 @@ def test_band_lies_z_times_sd_above_and_below_and_keeps_its_seams():
     from geofit.geometry.seams import seams
 
     assert all(seam.gap < 1e-9 and seam.angle < 0.1 for seam in seams(upper.patches))
-    with refused(SettingsError, "prediction.share-probability-above-below"):
+    with refused(SettingsError, "prediction.share-out-of-range"):
         band(surface, uncertainty, 1.0)
-    with refused(FitError, "prediction.not-fitted-nothing-known"):
+    with refused(FitError, "prediction.surface-not-fitted"):
         band(surface.with_(model=None), uncertainty)
 
 

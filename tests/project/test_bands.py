@@ -31,6 +31,6 @@ def test_an_invalid_upper_band_leaves_the_horizon_and_the_other_band(what, tmp_p
     done = run_horizons(Site("s", {"T": PointSet(xyz)}), tmp_path, bands=True, date="2024-01-01")
     assert not done.failures
     assert done.results[0].accuracy.passed
-    assert with_code(done.warnings, "run.no-90-surface").params["name"] == "T"
+    assert with_code(done.warnings, "project.band-missing").params["name"] == "T"
     written = {path.name for path in tmp_path.glob("*.step")}
     assert written == ({"T.step", "T_lower90.step"} if what == "one side" else {"T.step"})

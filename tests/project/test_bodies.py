@@ -19,15 +19,15 @@ from geofit.morphing.errors import MorphError
 from geofit.project.body_building import (
     BodyResult,
     MeshBody,
-    codes_of,
     given_of_logs,
+    interval_codes,
     make_body,
     origin_text,
     read_mesh_body,
     site_codes,
 )
-from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, Frame, Intervals, next_colour
-from geofit.project.body_saving import difference, saved_body
+from geofit.project.body_record import BodyRecord, BodyStyle, ClosedMesh, Intervals, MorphFrame, next_colour
+from geofit.project.body_saving import largest_difference, saved_body
 from geofit.project.body_shelf import SPARE, BodyShelf
 from geofit.project.saving import read_project, save_state
 from geofit.project.state import State
@@ -65,7 +65,7 @@ def test_the_same_provenance_makes_the_same_body(site, ore):
     provenance, result = ore
     again, body = make_body(ORE, BodySettings(), "ORE", site.boreholes, SITE.parent, {})
     assert again == provenance
-    assert difference(result, body) == 0
+    assert largest_difference(result, body) == 0
     assert np.array_equal(result.mesh.vertices, body.mesh.vertices)
     assert result.accuracy.verdict == "PASS"
     assert result.violations == ()
@@ -80,7 +80,7 @@ def test_a_result_goes_to_another_process_and_back(ore):
 
 
 def test_codes_are_those_of_the_logs(site):
-    assert next(iter(codes_of(site.boreholes))) == "R"
+    assert next(iter(interval_codes(site.boreholes))) == "R"
     assert set(site_codes(SITE.with_name("bodies.toml"), progress=nothing)) >= {"ORE", "VOID", "GABBRO"}
 
 
@@ -114,9 +114,9 @@ def test_bodies_come_back_with_what_they_were_made_from(tmp_path, site, ore):
     assert next(iter(opened.bodies)) == ore[0]
     assert back.origin == "read back"
     assert "not been made again" in str(origin_text(back))
-    assert difference(back, ore[1]) == 0
+    assert largest_difference(back, ore[1]) == 0
     # Made again, it is told apart from what was read.
-    again = replace(ore[1], origin="again", difference=difference(back, ore[1]))
+    again = replace(ore[1], origin="again", difference=largest_difference(back, ore[1]))
     assert "same as the project's file" in str(origin_text(again))
 
 
@@ -183,7 +183,7 @@ def test_a_closed_mesh_is_a_body_and_an_open_one_is_refused(tmp_path, site, ore)
 
 def test_a_frame_is_made_from_what_its_ends_are_made_from(site, ore):
     void, _ = make_body(Intervals(("VOID",), "bodies.toml"), BodySettings(), "VOID", (), SITE.parent, {})
-    source = Frame((ore[0], ore[0]), ("ORE", "ORE too"), "blend", "time", (), 24, 0.5)
+    source = MorphFrame((ore[0], ore[0]), ("ORE", "ORE too"), "blend", "time", (), 24, 0.5)
     provenance, result = make_body(source, BodySettings(), "between", site.boreholes, SITE.parent, {})
     assert result.body.name == "between"
     assert result.mesh.volume == pytest.approx(ore[1].mesh.volume, rel=0.02)

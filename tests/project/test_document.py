@@ -17,7 +17,7 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Ground, Orientations, Site
 from geofit.project import shelf as shelf_module
 from geofit.project.body_commands import DeleteBody, RenameBody, SetBody, StyleBody
-from geofit.project.body_record import BodyProvenance, BodyRecord, BodyStyle, ClosedMesh, Frame, Intervals
+from geofit.project.body_record import BodyProvenance, BodyRecord, BodyStyle, ClosedMesh, Intervals, MorphFrame
 from geofit.project.building import make
 from geofit.project.commands import (
     COMMANDS,
@@ -127,7 +127,7 @@ fitted_bodies = st.builds(
     given_data,
 )
 frames = st.builds(
-    Frame, st.tuples(fitted_bodies, fitted_bodies), st.just(("A", "B")), st.sampled_from(["arrival", "blend"]),
+    MorphFrame, st.tuples(fitted_bodies, fitted_bodies), st.just(("A", "B")), st.sampled_from(["arrival", "blend"]),
     st.just("progress"), st.sampled_from([(), ("2024-01-01", "2025-01-01")]), st.just(96), st.floats(0, 1),
 )  # fmt: skip
 records = st.builds(BodyRecord, fitted_bodies | st.builds(BodyProvenance, frames, body_settings, given_data), styles)
@@ -136,7 +136,7 @@ FRAME = replace(
     BODY,
     provenance=replace(
         BODY.provenance,
-        source=Frame((BODY.provenance, BODY.provenance), ("A", "B"), "arrival", "progress", (), 96, 0.5),
+        source=MorphFrame((BODY.provenance, BODY.provenance), ("A", "B"), "arrival", "progress", (), 96, 0.5),
     ),
 )
 commands = st.one_of(

@@ -33,7 +33,7 @@ def test_an_ordinary_site_is_fitted_and_examined_or_refused(name):
     with nullcontext() if name == "core_overflow.csv" else suppress(GeofitError):
         surface = fit_horizon(points)
         notes = [*surface.accuracy.notes, *examine(surface).notes]
-        assert "error.unforeseen" not in [code for note in notes for code in codes(note)]
+        assert "data.unforeseen-error" not in [code for note in notes for code in codes(note)]
 
 
 @pytest.mark.parametrize("name", ["rowhuge.xlsx", "wide.xlsx"])

@@ -217,8 +217,8 @@ def test_collars_are_found_by_the_name_of_their_holes(tmp_path, header):
 def test_a_table_of_degrees_names_the_remedy(tmp_path):
     done, _ = kinds_of(tmp_path, p="name,longitude,latitude,horizon\nB1,110.1,30.2,T2\nB2,110.2,30.3,T2\n")
     (issue,) = [issue for issue in done.issues if issue.severity == "error"]
-    assert issue.reason.code == "import.file-not-used-places"
-    assert issue.remedy.code == "import.grid-site-crs"
+    assert issue.reason.code == "io.file-in-degrees"
+    assert issue.remedy.code == "io.name-grid-with-crs"
 
 
 def test_warnings_are_shown_by_kind(capsys):

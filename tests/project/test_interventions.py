@@ -10,7 +10,7 @@ from geofit.data.languages import EN, ZH
 from geofit.project.interventions import interventions_of
 from geofit.project.provenance import Move, MoveToPointEdit, Provenance, Row, SeparationEdit, Weigh
 from geofit.report.chapters import document
-from geofit.report.document import Paragraph, Table
+from geofit.report.document import Paragraph, ReportTable
 from geofit.report.gather import accuracy_report
 
 
@@ -26,7 +26,12 @@ def test_excluded_rows_become_points_and_edits_become_sentences():
     )
     excluded, told = interventions_of(result.site, Provenance("T3/T2", result.surface.settings, "", rows, edits))
     assert excluded.row.tolist() == points.row[[3, 7]].tolist()
-    assert [one.code for one in told] == ["edit.moved", "edit.pulled", "edit.weighed", "edit.separated"]
+    assert [one.code for one in told] == [
+        "project.moved",
+        "project.moved-towards-point",
+        "project.weighed",
+        "project.separated",
+    ]
     assert told[1].params == {"number": 12, "share": 80.0}
     assert interventions_of(result.site, Provenance("T3/T2", result.surface.settings, "")) == (None, ())
 
@@ -39,5 +44,5 @@ def test_excluded_rows_become_points_and_edits_become_sentences():
 
 
 def _lists(chapter, excluded):
-    rows = {tuple(row[:2]) for block in chapter.blocks if isinstance(block, Table) for row in block.rows if row}
+    rows = {tuple(row[:2]) for block in chapter.blocks if isinstance(block, ReportTable) for row in block.rows if row}
     yield all((str(f), str(r)) in rows for f, r in zip(excluded.file, excluded.row, strict=True))

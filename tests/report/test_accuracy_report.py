@@ -21,10 +21,10 @@ from geofit.report.digits import metres
 from geofit.report.gather import accuracy_report, today
 from geofit.report.html import write_html
 from geofit.report.pdf import write_pdf
-from geofit.report.pictures import draw, draw_site
+from geofit.report.pictures import draw_pictures, draw_site
 from geofit.report.schema import report_document, to_json, write_json
 from geofit.site.order import Order
-from geofit.site.overlap import Crossing
+from geofit.site.overlap import HorizonCrossing
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 pypdf = pytest.importorskip("pypdf", reason="pypdf reads the PDF's fonts; it comes with the extra 'test'")
@@ -39,7 +39,9 @@ LANGUAGES = (
 
 def order() -> Order:
     """Two horizons that cross once."""
-    crossing = Crossing(area=532.0, volume=1_234_567.0, x=500_123.4, y=3_100_456.7, depth=1.234, lines=(), in_air=0.0)
+    crossing = HorizonCrossing(
+        area=532.0, volume=1_234_567.0, x=500_123.4, y=3_100_456.7, depth=1.234, lines=(), in_air=0.0
+    )
     places = ((500_123.4, 3_100_456.7), (500_900.0, 3_100_000.0))
     return Order("T3/T2", "T2/T1", 2e5, -1.234, 11.5, 30.0, *places, (crossing,))
 
@@ -58,7 +60,7 @@ def report(results) -> AccuracyReport:
 def images(results):
     found = dict(draw_site(results).images)
     for result in results:
-        found |= draw(result).images
+        found |= draw_pictures(result).images
     return found
 
 

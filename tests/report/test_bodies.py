@@ -17,7 +17,7 @@ from geofit.project.pores_run import run_pores
 from geofit.project.single_reports import body_findings, write_body_report, write_pores_report
 from geofit.report import fonts
 from geofit.report.body_chapter import body_chapter
-from geofit.report.document import Facts, Heading, Mark, Paragraph, Picture, Table
+from geofit.report.document import CheckMark, Facts, Heading, Paragraph, Picture, ReportTable
 from geofit.report.style import PASS
 
 NO_FONT = fonts._chinese() is None
@@ -53,7 +53,7 @@ def words(chapter) -> str:
                 said.append(block.text)
             case Facts():
                 said += [" ".join(item) for item in block.items]
-            case Table():
+            case ReportTable():
                 said += [column.title for column in block.columns]
                 said += [" ".join(cell if isinstance(cell, str) else cell.text for cell in row) for row in block.rows]
             case Picture():
@@ -106,8 +106,8 @@ def test_what_was_not_examined_and_a_failed_check_are_said(run):
     body = run.body.with_accuracy(replace(run.body.accuracy, checks=(broken,)))
     chapter = body_chapter(replace(bare, body=body), EN)
     assert "But a check fails" in words(chapter)
-    marks = [cell for b in chapter.blocks if isinstance(b, Table) for row in b.rows for cell in row]
-    assert any(isinstance(cell, Mark) and cell.passed is False for cell in marks)
+    marks = [cell for b in chapter.blocks if isinstance(b, ReportTable) for row in b.rows for cell in row]
+    assert any(isinstance(cell, CheckMark) and cell.passed is False for cell in marks)
 
 
 @pytest.mark.skipif(NO_FONT, reason="no font with Chinese characters on this machine")

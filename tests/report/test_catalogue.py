@@ -28,7 +28,7 @@ def test_a_message_is_formatted_only_where_it_is_shown():
 def test_lists_terms_and_names_are_shown_in_the_language():
     assert translate(message("x", "{point}", point="core"), ZH) != "core"
     assert translate(message("x", "{point}", point=Untranslated("core")), ZH) == "core"
-    rows = tuple(message("place.row", "row {row}", row=row) for row in (2, 5))
+    rows = tuple(message("data.place-row", "row {row}", row=row) for row in (2, 5))
     assert translate(message("x", "{rows}", rows=rows), ZH) == "第 2 行，第 5 行"
 
 

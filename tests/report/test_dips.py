@@ -11,9 +11,9 @@ from results import ORIGIN, height, horizon
 from geofit.data.languages import EN, ZH
 from geofit.data.site import Orientations
 from geofit.report.dip_blocks import dip_blocks
-from geofit.report.document import Paragraph, Picture, Table
+from geofit.report.document import Paragraph, Picture, ReportTable
 from geofit.report.gather import accuracy_report, horizon_report
-from geofit.report.pictures import draw
+from geofit.report.pictures import draw_pictures
 from geofit.report.schema import report_document
 
 
@@ -49,11 +49,11 @@ def test_the_plain_data_hold_every_dip_and_its_angle(result):
 def test_the_chapter_shows_the_net_and_the_worst_first(result, t):
     report = horizon_report(result)
     blocks = dip_blocks(report, t)
-    table = next(block for block in blocks if isinstance(block, Table))
+    table = next(block for block in blocks if isinstance(block, ReportTable))
     assert len(table.rows) == 20
     assert float(table.rows[0][4]) == pytest.approx(50, abs=1.0)
     picture = next(block for block in blocks if isinstance(block, Picture))
-    assert draw(result, t).images[picture.name].startswith(b"\x89PNG")
+    assert draw_pictures(result, t).images[picture.name].startswith(b"\x89PNG")
     assert any("5" in block.text for block in blocks if isinstance(block, Paragraph) and block.style == "quiet")
 
 

@@ -17,7 +17,7 @@ from geofit.checks.storage import equal_accuracy
 from geofit.data.files import file_stems, replacing
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report import fonts, plots, scene
-from geofit.report.pictures import Pictures, draw, draw_site, write_picture
+from geofit.report.pictures import Pictures, draw_pictures, draw_site, write_picture
 from geofit.report.result import HorizonResult
 from geofit.report.schema import horizon_document, write_json
 from geofit.report.style import bands
@@ -35,7 +35,7 @@ def result() -> HorizonResult:
 
 @pytest.fixture(scope="module")
 def pictures(result) -> Pictures:
-    return draw(result)
+    return draw_pictures(result)
 
 
 def test_json_has_the_promised_keys_and_the_known_figures(result, tmp_path):
@@ -185,7 +185,7 @@ def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path):
 
 def test_without_opengl_the_pictures_say_what_to_install(result, monkeypatch, tmp_path):
     monkeypatch.setattr(scene, "_opengl", lambda: False)
-    pictures = draw(result)
+    pictures = draw_pictures(result)
     assert pictures.scene is None
     assert "libegl1" in str(pictures.missing)
     assert set(pictures.images) == {"plan/T3/T2", "deviation/T3/T2", "residuals/T3/T2"}

@@ -17,15 +17,13 @@ from geofit.data.messages import Untranslated, message
 
 
 def test_a_sentence_of_the_core_is_told_with_its_values():
-    text = message(
-        "check.places-folded-degenerate", "{count} of {total} places folded or degenerate", count=3, total=40
-    )
+    text = message("checks.places-folded-count", "{count} of {total} places folded or degenerate", count=3, total=40)
     assert translate(text, EN) == "3 of 40 places folded or degenerate"
     assert translate(text, ZH) == "40 处中有 3 处折叠或退化"
     inner = message(
-        "fit.points-approximated",
+        "fitting.core-given-up",
         "{reason}, but all points are approximated: {error}",
-        reason=message("fit.dense-points-fill-area", "the dense points fill the area"),
+        reason=message("fitting.dense-points-fill-area", "the dense points fill the area"),
         error="x",
     )
     assert translate(inner, ZH) == "密集点布满全区，但全部点采用逼近：x"
@@ -47,7 +45,7 @@ def test_what_the_readers_list_is_told_in_chinese(tmp_path):
 def test_words_alone_are_told_and_names_are_left():
     assert (translate("borehole", ZH), translate("ZK101", ZH)) == ("钻孔", "ZK101")
     assert sentence("largest angle at a seam", EN) == "Largest angle at a seam."
-    assert sentence(message("check.largest-angle-seam", "largest angle at a seam"), ZH) == "拼接缝处的最大夹角。"
+    assert sentence(message("checks.largest-seam-angle", "largest angle at a seam"), ZH) == "拼接缝处的最大夹角。"
     assert sentence("Not told", ZH) == "Not told."
 
 
@@ -58,16 +56,16 @@ def test_an_unknown_language_names_the_known_ones():
 
 
 def test_english_that_is_left_is_found():
-    assert english_left(message("error.reason", "{reason}.", reason="Nobody said this")) == ["Nobody said this"]
+    assert english_left(message("data.reason-sentence", "{reason}.", reason="Nobody said this")) == ["Nobody said this"]
 
 
 def test_an_error_is_told_as_a_whole():
     reason = message(
-        "project.project-cannot-written", "The project cannot be written: {error}", error=os.strerror(errno.EACCES)
+        "io.project-not-written", "The project cannot be written: {error}", error=os.strerror(errno.EACCES)
     )
     error = InputError(
         reason,
-        message("project.folder-name", "Make the folder, or name another."),
+        message("data.make-or-name-folder", "Make the folder, or name another."),
         file="site.toml",
         row=3,
         column="base",
@@ -83,9 +81,9 @@ def test_an_error_is_told_as_a_whole():
 
 def test_a_reason_that_ends_with_a_full_stop_gets_no_second_one():
     inner = message(
-        "edit.no-patch-patches", "There is no patch '{patch}'. The patches are: {names}.", patch="x", names="core"
+        "fitting.patch-unknown", "There is no patch '{patch}'. The patches are: {names}.", patch="x", names="core"
     )
-    error = InputError(inner, message("import.check-path", "Check the path."))
+    error = InputError(inner, message("data.check-path", "Check the path."))
     assert str(error).count("..") == 0
     assert translate(error.message, ZH).endswith("核心区。请检查路径。")
     assert str(InputError(inner)) == str(inner)
@@ -93,7 +91,7 @@ def test_a_reason_that_ends_with_a_full_stop_gets_no_second_one():
 
 def test_columns_keys_and_names_stay_as_they_are():
     assert translate(Untranslated("north"), ZH) == "north" != translate("north", ZH)
-    assert translate((Untranslated("core"), message("place.row", "row {row}", row=2)), ZH) == "core，第 2 行"
+    assert translate((Untranslated("core"), message("data.place-row", "row {row}", row=2)), ZH) == "core，第 2 行"
     assert translate((), ZH) == "()"
 
 
@@ -130,8 +128,8 @@ def test_tables_of_a_chinese_report_have_chinese_reasons(tmp_path):
         "z",
         "abc",
         "error",
-        message("row.not-a-number", "The {role} is not a finite number", role="z"),
-        message("row.complete-cell", "Complete the cell."),
+        message("io.cell-not-a-number", "The {role} is not a finite number", role="z"),
+        message("io.complete-the-cell", "Complete the cell."),
     )
     write_issues([issue], tmp_path / "i.csv", ZH)
     with (tmp_path / "i.csv").open(encoding="utf-8-sig", newline="") as stream:
@@ -142,7 +140,7 @@ def test_tables_of_a_chinese_report_have_chinese_reasons(tmp_path):
     result = horizon()
     (conflict,) = result.accuracy.conflicts
     text = message(
-        "conflict.repeated",
+        "fitting.conflict-repeated",
         "{dropped} repeats {kept}",
         dropped=result.surface.points.describe(conflict.dropped),
         kept="x",

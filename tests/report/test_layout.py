@@ -15,14 +15,14 @@ from geofit.data.site import Ground, Section
 from geofit.data.title_block import Revision, TitleBlock
 from geofit.report import fonts
 from geofit.report.chapters import document
-from geofit.report.document import Column, Picture, Signatures, Table
+from geofit.report.document import Column, Picture, ReportTable, Signatures
 from geofit.report.furniture import exaggeration_for, scale_for, scale_text
 from geofit.report.gather import accuracy_report
 from geofit.report.html import write_html
 from geofit.report.pdf import write_pdf
 from geofit.report.pdf_table import FEWEST, _Laid, _parts
-from geofit.report.pictures import draw, draw_sections, draw_site
-from geofit.report.profile import along, profiles, report_sections
+from geofit.report.pictures import draw_pictures, draw_sections, draw_site
+from geofit.report.profile import along_polyline, profiles, report_sections
 
 pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
 Image = pytest.importorskip("PIL.Image", reason="Pillow comes with fpdf2")
@@ -63,7 +63,7 @@ def images(results):
     made, sections = results
     found = {**draw_site(made).images, **draw_sections(made, sections)}
     for one in made:
-        found |= draw(one).images
+        found |= draw_pictures(one).images
     return found
 
 
@@ -144,7 +144,7 @@ def test_sections_hold_the_line_its_band_and_what_lies_above_the_ground(results)
     xy = np.column_stack([499_400.0 + line.line[:, 0], np.full(len(line.line), 3_100_000.0)])
     np.testing.assert_allclose(made[0].surface.elevation(*xy.T), line.line[:, 1], atol=1e-6)
     assert line.lower is None  # nothing stands behind a surface that was made by hand
-    s, off = along(sections[0].line, np.array([[500_000.0, 3_100_030.0], [499_300.0, 3_100_000.0]]))
+    s, off = along_polyline(sections[0].line, np.array([[500_000.0, 3_100_030.0], [499_300.0, 3_100_000.0]]))
     assert (s.tolist(), off.tolist()) == ([600.0, 0.0], [30.0, 100.0])
 
 
@@ -178,7 +178,7 @@ class _Ruler:
 @pytest.mark.parametrize("room", [20.0, 60.0, 100.0, 180.0, 250.0])
 @pytest.mark.parametrize("count", [1, 3, 5, 11, 23, 24, 45, 46, 47, 100, 300])
 def test_no_table_is_torn_by_a_row_or_two(count, room):
-    table = Table((Column("a"), Column("b", "number")), tuple((f"r{k}", str(k)) for k in range(count)))
+    table = ReportTable((Column("a"), Column("b", "number")), tuple((f"r{k}", str(k)) for k in range(count)))
     laid = _Laid(table, 170.0, _Ruler())
     ends = _parts(laid, room, 250.0)
     turned, ends = ends[0] == 0, [end for end in ends if end]

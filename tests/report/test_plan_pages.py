@@ -68,7 +68,7 @@ def test_a_larger_paper_has_a_larger_scale_and_one_too_large_is_refused(tmp_path
     assert large < small
     with pytest.raises(SettingsError) as caught:
         plan_scale([result()], "A4", 500)
-    assert caught.value.message.code == "plan.scale-too-large"
+    assert caught.value.message.code == "report.plan-scale-too-large"
     with pytest.raises(SettingsError):
         write_plan_svg([result()], BLOCK, tmp_path / "p.svg", interval=0.0)
 

@@ -24,7 +24,7 @@ from geofit.sample.truth import (
     MapTruth,
     PlaneTruth,
     ground,
-    inside,
+    in_study_area,
     to_map,
     to_site,
 )
@@ -109,7 +109,7 @@ def test_no_two_points_contradict_each_other(site: geofit.Site, name: str) -> No
     size = 2 if name in ("T3-T2", "T2-T1", "W") else 3
     nearest = cKDTree(xyz[:, :size]).query(xyz[:, :size], k=2)[0][:, 1]
     assert nearest.min() > 5.0
-    assert inside(xyz[:, 0], xyz[:, 1]).all()
+    assert in_study_area(xyz[:, 0], xyz[:, 1]).all()
 
 
 def test_horizons_are_in_geological_order() -> None:
@@ -202,7 +202,7 @@ def test_places_lie_on_the_truth_in_the_study_area(name: str) -> None:
         xyz = truth.places(3000, core=core)
         assert xyz.shape == (3000, 3)
         assert np.abs(truth.offset(xyz)).max() < 1e-6
-        assert inside(xyz[:, 0], xyz[:, 1]).all()
+        assert in_study_area(xyz[:, 0], xyz[:, 1]).all()
         assert (xyz[:, 2] < ground(xyz[:, 0], xyz[:, 1])).all()
         assert np.array_equal(xyz, truth.places(3000, core=core))
     s, _ = to_site(xyz[:, 0], xyz[:, 1])

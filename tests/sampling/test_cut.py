@@ -125,11 +125,11 @@ def test_interval(span, expected):
 
 def test_refuses_what_makes_no_section_or_too_many_contours():
     surface = horizon([height_field()])
-    with refused(SettingsError, "geometry.section-line-place-give"):
+    with refused(SettingsError, "sampling.section-line-one-point"):
         cut_section(surface, [[0, 0], [0, 0]])
-    with refused(SettingsError, "geometry.section-line-shape-finite"):
+    with refused(SettingsError, "sampling.section-line-wrong-shape"):
         cut_section(surface, [0, 0, 1, 1])
-    with refused(SettingsError, "geometry.contour-interval-give-metres"):
+    with refused(SettingsError, "data.contour-interval-not-positive"):
         contours(surface, -1)
-    with refused(SettingsError, "geometry.interval-contours-give-above"):
+    with refused(SettingsError, "sampling.too-many-contours"):
         contours(surface, 1e-4)

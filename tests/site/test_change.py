@@ -53,7 +53,7 @@ def test_the_area_that_moved_is_that_of_the_bump():
     assert found.areas[0].area == pytest.approx(found.moved)
     assert found.area == pytest.approx(SIZE**2, rel=0.02)
     assert found.share == pytest.approx(found.moved / found.area)
-    assert found.text.code == "site.change"
+    assert found.text.code == "site.surface-moved"
 
 
 def test_a_state_against_itself_has_not_moved():
@@ -141,5 +141,5 @@ def test_a_band_that_was_too_narrow_is_called_so():
     moved = more.with_(xyz=more.xyz + np.array([0, 0, 40.0]))
     test = blind_test(before, examine(before).uncertainty, known, geofit.PointSet.concatenate([known, moved]))
     assert test.too_narrow
-    assert test.text.code == "site.blind-too-narrow"
+    assert test.text.code == "site.new-contacts-outside-band"
     assert test.probability < 1e-6

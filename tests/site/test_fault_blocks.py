@@ -58,7 +58,7 @@ def test_the_throw_along_an_inclined_fault_is_recovered(blocks):
     assert np.isfinite(cut.heave[2:-2]).all()
     assert np.nanmean(cut.heave) == pytest.approx(cut.throw.mean() / np.tan(DIP), rel=0.2)
     assert isinstance(cut.text, Message)
-    assert (cut.text.code, cut.text.params["fault"], cut.text.params["horizon"]) == ("site.throw", "F1", "T2")
+    assert (cut.text.code, cut.text.params["fault"], cut.text.params["horizon"]) == ("site.fault-throw", "F1", "T2")
 
 
 def test_the_higher_block_is_named(blocks):
@@ -146,22 +146,24 @@ def test_a_fault_beside_the_points_does_not_cut_and_a_note_says_so(points):
     assert len(found.blocks) == 1
     assert found.blocks[0].name == "T2"
     (note,) = found.notes
-    assert (note.code, note.severity) == ("site.points-lie-side", "warning")
+    assert (note.code, note.severity) == ("site.points-on-one-side", "warning")
     assert note.params == {"horizon": "T2", "fault": "fault 1"}
 
 
 def test_a_block_of_too_few_points_is_refused_with_its_rows(points):
     x = np.sort(points.xyz[:, 0])
     line = np.array([[x[1] + 1e-3, NORTHING], [x[1] + 1e-3, NORTHING + 1000]])
-    with refused(FitError, "site.too-few-points-block", horizon="T2", count=2) as caught:
+    with refused(FitError, "site.block-too-few-points", horizon="T2", count=2) as caught:
         fit_blocks(points, [line], None, BOUNDARY, name="T2")
     assert all(point.params["row"] for point in caught.value.message.params["points"])
     line[:, 0] = (x[4] + x[5]) / 2
-    assert with_code(fit_blocks(points, [line], None, BOUNDARY).notes, "site.rests-points").severity == "warning"
+    assert (
+        with_code(fit_blocks(points, [line], None, BOUNDARY).notes, "site.block-rests-on-points").severity == "warning"
+    )
 
 
 def test_what_is_no_fault_is_refused(points):
-    with refused(SettingsError, "site.fault-shape-fitted-surface", number=1):
+    with refused(SettingsError, "site.fault-wrong-shape", number=1):
         fit_blocks(points, [[1.0, 2.0]], None, BOUNDARY)
 
 
@@ -169,7 +171,7 @@ def test_a_site_states_which_fault_cuts_which_horizon():
     site = faulted_site()
     found = fit_faulted(site, "T2")
     assert found.cuts[0].fault == "F1"
-    with refused(InputError, "site.no-fault-site-cuts", name="F1"):
+    with refused(InputError, "site.horizon-not-faulted", name="F1"):
         fit_faulted(site, "F1")
-    with refused(InputError, "run.no-horizon", name="X"):
+    with refused(InputError, "data.horizon-unknown", name="X"):
         fit_faulted(replace(site, faults={}), "X")

@@ -16,11 +16,11 @@ from geofit.data.languages import EN, ZH
 from geofit.data.site import Ground, Orientations, Site
 from geofit.project.run import run_horizons, write_reports
 from geofit.report.chapters import document
-from geofit.report.document import Table
+from geofit.report.document import ReportTable
 from geofit.report.gather import accuracy_report
 from geofit.report.result import HorizonResult
 from geofit.report.schema import report_document, to_json
-from geofit.site.fit_site import SiteFit, compare, fit_site
+from geofit.site.fit_site import SiteFit, compare_in_order, fit_site
 from geofit.site.separate import Contradiction
 from geofit.site.site_checks import add_site_checks, ground_tolerance
 
@@ -97,7 +97,7 @@ def test_a_faulted_horizon_is_fitted_block_by_block(fits):
 
 
 def test_blocks_are_compared_on_the_same_side_of_the_fault_only(site, fits):
-    found = compare(site, fits)
+    found = compare_in_order(site, fits)
     west = {name for name in ("T2 (A)", "T2 (B)") if fits.surfaces[name].points.xyz[0, 0] < TRACE + EASTING}
     west |= {name for name in ("T1 (A)", "T1 (B)") if fits.surfaces[name].points.xyz[0, 0] < TRACE + EASTING}
     assert len(found) == 2
@@ -130,7 +130,7 @@ def test_the_ground_is_asked_with_a_tenth_of_its_cell(site, fits):
 
 def test_throw_and_heave_stand_in_the_report(site, fits):
     results = [HorizonResult(surface, site) for surface in fits.surfaces.values()]
-    report = accuracy_report(results, compare(site, fits), cuts=fits.cuts, date="2026-11-21")
+    report = accuracy_report(results, compare_in_order(site, fits), cuts=fits.cuts, date="2026-11-21")
     assert [one["horizon"] for one in json.loads(to_json(report_document(report)))["horizons"]] == [
         one.name for one in report.horizons
     ]
@@ -140,7 +140,7 @@ def test_throw_and_heave_stand_in_the_report(site, fits):
     heave = [place.heave for place in cut.places if place.heave is not None]
     assert np.mean(heave) == pytest.approx(THROW / SLOPE, abs=0.3)
     blocks = [block for chapter in document(report, EN).chapters for block in chapter.blocks]
-    tables = [block for block in blocks if isinstance(block, Table)]
+    tables = [block for block in blocks if isinstance(block, ReportTable)]
     titles = [[column.title for column in table.columns] for table in tables]
     along = tables[titles.index(["Along the fault, m", "x, m", "y, m", "z, m", "Throw, m", "Heave, m"])]
     assert len(along.rows) == 11
@@ -154,7 +154,7 @@ def test_a_fault_that_cannot_be_laid_is_named(site):
     bad = replace(site, horizons={**site.horizons, "F1": fault()[:2]})
     found = fit_site(bad, ["T2"])
     failure = found.failures["T2"]
-    assert (failure.code, failure.params["fault"]) == ("site.fault-cannot-laid", "F1")
+    assert (failure.code, failure.params["fault"]) == ("site.fault-not-fitted", "F1")
     assert failure.params["reason"].params["given"].params["count"] == 2
     assert not found.surfaces
 
@@ -173,26 +173,26 @@ def crossing():
 def test_a_repair_pushes_crossing_horizons_apart_and_checks_them_again():
     site = crossing()
     before = fit_site(site, ["U", "L"])
-    (order,) = compare(site, before)
+    (order,) = compare_in_order(site, before)
     assert order.check().passed is False
     after = fit_site(site, ["U", "L"], separate=True)
-    (order,) = compare(site, after)
+    (order,) = compare_in_order(site, after)
     assert order.min > -0.05
     assert after.moved
     for name in after.moved:
         surface = after.surfaces[name]
-        assert with_code(surface.accuracy.notes, "site.moved-keep-order-strata").params["most"] > 0
+        assert with_code(surface.accuracy.notes, "site.moved-to-keep-order").params["most"] > 0
         assert np.abs(surface.distance(surface.points.xyz) - surface.accuracy.residuals).max() < 1e-6
 
 
 def test_a_repair_says_what_it_leaves_alone(site):
     found = SiteFit()
-    assert compare(site, found) == ()
+    assert compare_in_order(site, found) == ()
     plain = replace(crossing(), order=())
-    assert fit_site(plain, ["U"], separate=True).warnings[0].code == "site.no-repair-order-site"
+    assert fit_site(plain, ["U"], separate=True).warnings[0].code == "site.order-names-no-pair"
     cut = fit_site(site, ["T2", "T1"], separate=True)
     (warning,) = cut.warnings
-    assert (warning.code, warning.severity) == ("site.cut-fault-not-pushed", "warning")
+    assert (warning.code, warning.severity) == ("site.faulted-not-separated", "warning")
     assert warning.params["names"] == "T2, T1"
 
 
@@ -206,7 +206,7 @@ def test_what_exact_points_hold_stands_in_the_report_with_their_rows():
     ]
     for language, title in ((EN, "Missing, m"), (ZH, "尚差，m")):
         blocks = [block for chapter in document(report, language).chapters for block in chapter.blocks]
-        (table,) = [b for b in blocks if isinstance(b, Table) and title in [column.title for column in b.columns]]
+        (table,) = [b for b in blocks if isinstance(b, ReportTable) and title in [column.title for column in b.columns]]
         assert table.rows == (("U", "L", "0.250", "500100.00", "3100200.00", "point, u.csv row 7", "–"),)
 
 

@@ -161,7 +161,7 @@ def test_a_crossing_above_the_ground_is_told_from_one_in_the_rock():
         assert order.crossings[0].in_air == share
         assert order.check().passed is passed
     check = compare_horizons(upper, lower, Ground(x, y, np.zeros((8, 11)))).check()
-    assert check.text.code == "site.lies-below-above-ground"
+    assert check.text.code == "site.horizons-cross-above-ground"
     assert compare_horizons(upper, lower).check().passed is False
 
 
@@ -170,7 +170,7 @@ def test_the_check_says_where_how_deep_and_how_much():
     assert (check.name, check.passed, check.unit) == ("order", False, "m")
     assert check.value == pytest.approx(3.6, abs=1e-6)
     assert isinstance(check.text, Message)
-    assert check.text.code == "site.lies-below-places-m2"
+    assert check.text.code == "site.horizons-cross"
     figures = check.text.params
     assert (figures["upper"], figures["lower"], figures["count"]) == ("T3-T2", "T2-T1", 1)
     assert figures["depth"] == pytest.approx(3.6, abs=1e-6)
@@ -193,9 +193,9 @@ def test_every_pair_of_a_sequence_is_compared():
 @pytest.mark.parametrize(
     ("sequence", "code", "params"),
     [
-        (["A", "X"], "site.order-names-no-surface", {"name": "X"}),
-        (["A", "A"], "site.order-names-horizon-twice", {}),
-        (["A", "M"], "site.no-height-field-map", {"name": "M"}),
+        (["A", "X"], "site.order-without-surface", {"name": "X"}),
+        (["A", "A"], "site.order-repeats-horizon", {}),
+        (["A", "M"], "site.not-a-height-field", {"name": "M"}),
     ],
 )
 def test_a_sequence_that_cannot_be_is_refused(sequence, code, params):
@@ -247,13 +247,13 @@ def test_the_site_file_states_order_and_faults(tmp_path):
 @pytest.mark.parametrize(
     ("order", "faults", "code", "params"),
     [
-        ('["A", "b"]', "", "import.names-unknown-horizon", {"key": "order", "where": "[site]", "name": "b"}),
-        ('["A", "A"]', "", "import.names-twice", {"name": "A"}),
-        ('"A"', "", "import.key-where-kind", {"key": "order", "where": "[site]"}),
-        ('["A", "F1"]', 'F1 = ["B"]', "import.fault-stands-order-strata", {"fault": "F1"}),
-        ('["A"]', 'F1 = ["F1"]', "import.fault-said-cut", {"fault": "F1"}),
-        ('["A"]', 'F2 = ["A"]', "import.names-unknown-horizon", {"key": "faults", "name": "F2"}),
-        ('["A"]', 'F1 = ["C"]', "import.names-unknown-horizon", {"key": "F1", "name": "C"}),
+        ('["A", "b"]', "", "io.key-names-unknown-horizon", {"key": "order", "where": "[site]", "name": "b"}),
+        ('["A", "A"]', "", "io.key-names-horizon-twice", {"name": "A"}),
+        ('"A"', "", "io.mapping-value-wrong-kind", {"key": "order", "where": "[site]"}),
+        ('["A", "F1"]', 'F1 = ["B"]', "io.fault-in-order", {"fault": "F1"}),
+        ('["A"]', 'F1 = ["F1"]', "io.fault-cuts-itself", {"fault": "F1"}),
+        ('["A"]', 'F2 = ["A"]', "io.key-names-unknown-horizon", {"key": "faults", "name": "F2"}),
+        ('["A"]', 'F1 = ["C"]', "io.key-names-unknown-horizon", {"key": "F1", "name": "C"}),
     ],
 )
 def test_an_order_or_fault_that_cannot_be_is_refused_by_name(tmp_path, order, faults, code, params):

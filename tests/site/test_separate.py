@@ -146,7 +146,7 @@ def test_exact_points_that_contradict_are_named_with_their_rows(crossing):
     assert 2.0 < worst.lack < 10.0
     assert str(worst.below) == "section S3, wrong.csv row 77"
     assert (worst.above.params["file"], worst.above.params["row"]) == ("points_1.csv", points.row[row])
-    assert (worst.text.code, worst.text.severity) == ("site.contradiction", "warning")
+    assert (worst.text.code, worst.text.severity) == ("site.horizons-not-separable", "warning")
     for surface in found.surfaces.values():
         np.testing.assert_allclose(surface.accuracy.residuals[surface.core], 0, atol=1e-8)
     # Nothing swings for what cannot be.
@@ -155,7 +155,7 @@ def test_exact_points_that_contradict_are_named_with_their_rows(crossing):
 
 def test_what_cannot_be_repaired_is_refused(crossing):
     imported = {**crossing, "base": replace(crossing["base"], model=None)}
-    with refused(SettingsError, "site.no-control-net-map", name="base"):
+    with refused(SettingsError, "site.no-control-net", name="base"):
         separate_horizons(imported, ["top", "base"])
-    with refused(SettingsError, "site.least-thickness-give-metres", value=-1):
+    with refused(SettingsError, "site.least-thickness-negative", value=-1):
         separate_horizons(crossing, ["top", "base"], minimum=-1)

@@ -185,14 +185,14 @@ def test_factor_leaves_its_argument_as_it_is():
 
 def test_an_indefinite_matrix_is_a_fit_error():
     band = np.array([[1.0, 1.0, 1.0], [2.0, 0.0, 0.0]])
-    with refused(FitError, "splines.system-fit-not-positive"):
+    with refused(FitError, "splines.system-not-positive"):
         Factor(band)
 
 
 def test_a_control_point_that_nothing_holds_is_a_fit_error():
     band = positive(5, 1)
     band[:, 2] = 0
-    with refused(FitError, "splines.control-points-held-neither", count=1):
+    with refused(FitError, "splines.control-points-without-data", count=1):
         Factor(band)
 
 

@@ -197,7 +197,7 @@ def test_a_streamed_table_of_several_horizons_needs_a_name(small_blocks, tmp_pat
     path.write_text("x,y,z,horizon\n" + "".join(f"{i % 70},{i // 70},{i % 5},{'AB'[i % 2]}\n" for i in range(9_000)))
     with pytest.raises(InputError) as error:
         list(open_cloud(path).chunks())
-    assert error.value.code == "clouds.horizons"
+    assert error.value.code == "io.cloud-of-several-horizons"
     points = np.concatenate(list(open_cloud(path, horizon="B").chunks()))
     assert len(points) == 4_500
 
