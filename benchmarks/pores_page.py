@@ -41,7 +41,7 @@ _TRIED = """
 Mobility w = c (2 R d - d²) overrates narrow places between chambers: a scalar mobility does not know the loss where a
 flow opens and closes. Each variant below was measured on touching simple cubic spheres (30 voxels a cell), body-centred
 (46) and face-centred spheres (57), and along axis 0 of Berea 200³, where lattice Boltzmann gives 1433 mD. Asked: 15 %.
-Where two figures stand for the simple cubic pack, its cells have 20 and 40 voxels.
+Where the simple cubic pack has two figures, its cells have 20 and 40 voxels.
 
 | mobility | simple cubic | body-centred | face-centred | Berea 200³ |
 | --- | --- | --- | --- | --- |

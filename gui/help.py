@@ -73,11 +73,13 @@ class Help(QObject):
         set_theme: Callable[[str], object],
         set_language: Callable[[str], object],
         set_mouse: Callable[[Scheme], object],
+        set_sizes: Callable[[float, float], object],
     ) -> None:
-        """Ask for theme, language and mouse."""
+        """Ask for theme, language, sizes and mouse."""
         dialog = PreferencesDialog(preferences, self._window)
         if dialog.exec() == QDialog.DialogCode.Accepted:
             set_mouse(dialog.mouse)
+            set_sizes(dialog.text_size, dialog.point_size)
             if dialog.theme != preferences.theme:
                 set_theme(dialog.theme)
             if dialog.language != preferences.language:

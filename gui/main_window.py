@@ -31,7 +31,7 @@ from geofit.gui.preferences import Preferences
 from geofit.gui.selecting import Selecting
 from geofit.gui.session import Session
 from geofit.gui.showing import Showing
-from geofit.gui.theme import apply_theme, is_dark
+from geofit.gui.theme import apply_theme, is_dark, set_text_size
 from geofit.gui.view3d.mouse import Scheme
 from geofit.gui.worker import finish_all
 from geofit.gui.workspace import Workspace
@@ -96,6 +96,7 @@ class MainWindow(QMainWindow):
         self._choose_in(self.actions_.themes, preferences.theme)
         self._choose_in(self.actions_.languages, preferences.language)
         self._set_mouse(preferences.mouse)
+        self._set_sizes(preferences.text_size, preferences.point_size)
         self._restore_layout()
         self.showing.everything()
         self._show_title()
@@ -191,7 +192,7 @@ class MainWindow(QMainWindow):
             "steps": self._show_steps,
             "rename": self._rename,
             "preferences": lambda: self.help.preferences(
-                self.preferences, self._set_theme, self.language_chosen.emit, self._set_mouse
+                self.preferences, self._set_theme, self.language_chosen.emit, self._set_mouse, self._set_sizes
             ),
             "home": view.reset_camera,
             "fold": self.panels.bar.toggle,
@@ -368,6 +369,13 @@ class MainWindow(QMainWindow):
 
     def _set_mouse(self, scheme: Scheme) -> None:
         self.preferences.mouse = self.panels.view.canvas.scheme = scheme
+
+    def _set_sizes(self, text: float, points: float) -> None:
+        app = QApplication.instance()
+        assert isinstance(app, QApplication)
+        self.preferences.text_size, self.preferences.point_size = text, points
+        set_text_size(app, text)
+        self.panels.view.set_point_size(points)
 
     def _choose_in(self, group: object, value: object) -> None:
         for action in group.actions():  # type: ignore[attr-defined]

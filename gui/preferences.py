@@ -11,10 +11,15 @@ from geofit.gui.language import LANGUAGES, system_language
 from geofit.gui.theme import THEMES, Theme
 from geofit.gui.view3d.mouse import SCHEMES, Scheme
 
-__all__ = ["Preferences"]
+__all__ = ["POINT_SIZES", "TEXT_SIZES", "Preferences"]
 
 #: Files that the start page and the File menu offer again.
 RECENT = 10
+
+
+#: Sizes of text and of data points, as shares of the usual ones.
+TEXT_SIZES = (0.85, 1.0, 1.15, 1.3, 1.5)
+POINT_SIZES = (0.5, 0.75, 1.0, 1.5, 2.0)
 
 
 class Preferences:
@@ -52,6 +57,28 @@ class Preferences:
     @mouse.setter
     def mouse(self, scheme: Scheme) -> None:
         self._store.setValue("mouse", scheme)
+
+    @property
+    def text_size(self) -> float:
+        """How many times larger than the system's the text is."""
+        return self._share("text_size", TEXT_SIZES)
+
+    @text_size.setter
+    def text_size(self, share: float) -> None:
+        self._store.setValue("text_size", share)
+
+    @property
+    def point_size(self) -> float:
+        """How many times larger than usual data points are in the scene."""
+        return self._share("point_size", POINT_SIZES)
+
+    @point_size.setter
+    def point_size(self, share: float) -> None:
+        self._store.setValue("point_size", share)
+
+    def _share(self, key: str, known: tuple[float, ...]) -> float:
+        stored = str(self._store.value(key, 1.0))
+        return next((share for share in known if str(share) == stored), 1.0)
 
     @property
     def recent(self) -> tuple[Path, ...]:

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 from geofit.gui.dark_style import DarkStyle
 from geofit.gui.style import Style
 
-__all__ = ["THEMES", "Theme", "apply_theme", "is_dark", "missing_chinese", "set_font"]
+__all__ = ["THEMES", "Theme", "apply_theme", "is_dark", "missing_chinese", "set_font", "set_text_size"]
 
 Theme = Literal["system", "light", "dark"]
 THEMES: tuple[Theme, ...] = ("system", "light", "dark")
@@ -31,6 +31,10 @@ _DARK = {
     "Midlight": "#39414a", "Mid": "#3b434b", "Dark": "#171b1f", "Shadow": "#0d1013",
 }  # fmt: skip
 _MUTED = {"light": "#95a0aa", "dark": "#6d7882"}
+
+
+#: Property of the application that keeps the system's own size of text, points.
+_SYSTEM_SIZE = "geofit system text size"
 
 
 def apply_theme(app: QApplication, theme: Theme) -> None:
@@ -65,3 +69,14 @@ def set_font(app: QApplication) -> None:
     behind = [family for family in CHINESE if family in known][:1]
     font.setFamilies([*font.families(), *behind])
     app.setFont(font)
+
+
+def set_text_size(app: QApplication, share: float) -> None:
+    """Make all text ``share`` times as large as the system has it."""
+    font = QFont(app.font())
+    if app.property(_SYSTEM_SIZE) is None:
+        app.setProperty(_SYSTEM_SIZE, font.pointSizeF())
+    size = share * float(app.property(_SYSTEM_SIZE))
+    if abs(font.pointSizeF() - size) > 0.01:
+        font.setPointSizeF(size)
+        app.setFont(font)

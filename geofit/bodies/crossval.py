@@ -22,7 +22,7 @@ from geofit.streaming.executors import run_tasks
 if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
 
-__all__ = ["CrossValidation", "HoleScore", "MethodScore", "examined", "leave_one_hole_out"]
+__all__ = ["CrossValidation", "HoleScore", "MethodScore", "leave_one_hole_out", "left_out_body"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -308,7 +308,7 @@ def _kriged(data: BodyData, names: tuple[str, ...]) -> dict[str, Floats]:
     return {name: 0.5 - estimate[group] for name, group in zip(names, groups, strict=True)}
 
 
-def examined(body: BodyFit) -> LeftOutBody | None:
+def left_out_body(body: BodyFit) -> LeftOutBody | None:
     """Return what the verdict takes from leaving holes out; None where the data are of too few holes for that."""
     try:
         return leave_one_hole_out(body, compared=False).left_out

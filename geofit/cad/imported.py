@@ -5,9 +5,9 @@ OpenCASCADE is imported inside the functions: it takes seconds to load.
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.cad.faces import edge_places, edges_with_faces, explore, faces_of, from_geom
+from geofit.cad.step_attributes import attributes_at
 from geofit.cad.trimming import is_height_field, needed
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
@@ -40,12 +41,13 @@ WHOLE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class FileShape:
-    """A product of a file: its shape in its own coordinates (m), where it stands, its faces' names."""
+    """A product of a file: its shape in its own coordinates (m), where it stands, its faces' names, our attributes."""
 
     name: str
     shape: Any
     location: Any
     face_names: tuple[str, ...]
+    attributes: Mapping[str, str] = field(default_factory=dict)
 
 
 @contextmanager
@@ -95,7 +97,7 @@ def products(document: Any, stem: str) -> Iterator[FileShape]:
                 continue
             name = unique_name(_label_name(label) or stem, taken)
             taken.add(name)
-            yield FileShape(name, shape, location.Multiplied(own), names)
+            yield FileShape(name, shape, location.Multiplied(own), names, attributes_at(label))
 
 
 def unique_name(base: str, taken: Container[str]) -> str:

@@ -4,23 +4,21 @@ from __future__ import annotations
 
 import hashlib
 from collections import defaultdict
-from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.cad.faces import edge_places, edges_with_faces, faces_of, free_edges, free_loops
+from geofit.cad.step_attributes import attributes_of
 from geofit.data.accuracy import Check, ReadBack, Seam
 from geofit.data.messages import Message, message
-from geofit.data.settings import FitSettings
 from geofit.geometry.projection import Projection, project
 from geofit.surfaces.protocol import FittedSurface, Surface
 
 if TYPE_CHECKING:
     from geofit.cad.imported import FileShape
-    from geofit.data.points import PointSet
 
 __all__ = ["read_back", "self_intersects"]
 
@@ -34,32 +32,13 @@ SAMPLES = 200
 MEASURED = 2000
 
 
-@dataclass(frozen=True)
-class _Judge:
-    """What a surface in a file is judged by: its points (n, 3), which of them it meets exactly, (n,), and settings."""
-
-    xyz: Floats
-    core: NDArray[np.bool_]
-    settings: FitSettings
-
-    @classmethod
-    def of(cls, surface: Surface) -> Self:
-        """Those of a fit; a surface that was only read has no points, and its seams may break."""
-        points: PointSet | None = getattr(surface, "points", None)
-        if points is None:
-            return cls(np.empty((0, 3)), np.zeros(0, bool), FitSettings(seam="position"))
-        fitted = cast("FittedSurface", surface)
-        core = fitted.core if len(fitted.core) == len(points) else np.zeros(len(points), bool)
-        return cls(points.xyz, core, fitted.settings)
-
-
-def read_back(surface: Surface, shape: FileShape, found: Surface, written: Any, path: Path) -> ReadBack:
+def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written: Any, path: Path) -> ReadBack:
     """Check a horizon as written in the file against the one that was written.
 
     Parameters
     ----------
-    surface : Surface
-        What was written, with its points where it has any.
+    surface : FittedSurface
+        What was written, with its points.
     shape : FileShape
         What was read, as OpenCASCADE's shape.
     found : Surface
@@ -77,22 +56,21 @@ def read_back(surface: Surface, shape: FileShape, found: Surface, written: Any, 
     """
     from OCP.BRepCheck import BRepCheck_Analyzer
 
-    judge = _Judge.of(surface)
-    distance, how = _distances(judge, shape, found)
+    distance, how = _distances(surface, shape, found)
     squares = float(np.sum(distance**2))
     sigma = float(np.sqrt(squares / (len(distance) - 1))) if len(distance) > 1 else float("nan")
-    core = distance[judge.core]
+    core = distance[surface.core] if len(surface.core) == len(distance) else distance[:0]
     core_max = float(np.abs(core).max()) if core.size else float("nan")
     seams = _seams(shape)
     valid = bool(BRepCheck_Analyzer(shape.shape).IsValid())
     free, expected = free_edges(shape.shape), len(free_edges(written))
     loops = free_loops(shape.shape)
     inner, outer = _edge_tolerances(shape.shape)
-    rim = judge.settings.boundary_tolerance
+    rim = surface.settings.boundary_tolerance
     crossing = self_intersects(shape.shape)
     gap = max((seam.gap for seam in seams), default=0.0)
     angle = max((seam.angle for seam in seams), default=0.0)
-    tangent = judge.settings.seam == "tangent"
+    tangent = surface.settings.seam == "tangent"
     checks = (
         Check(
             "read-back core",
@@ -138,7 +116,7 @@ def read_back(surface: Surface, shape: FileShape, found: Surface, written: Any, 
                 loops=loops,
             ),
         ),
-        _outline_check(surface, shape, free, rim),
+        _outline_check(surface, shape, free),
         Check(
             "read-back seam tolerance",
             inner <= EDGE,
@@ -178,6 +156,7 @@ def read_back(surface: Surface, shape: FileShape, found: Surface, written: Any, 
             ),
         ),
         _normal_check(found, seams),
+        _attribute_check(surface, shape),
     )
     return ReadBack(
         file=path.name,
@@ -228,9 +207,9 @@ def _words(seams: tuple[Seam, ...], field: str, unit: str) -> Message:
     )
 
 
-def _distances(judge: _Judge, shape: FileShape, found: Surface) -> tuple[Floats, Message]:
+def _distances(surface: FittedSurface, shape: FileShape, found: Surface) -> tuple[Floats, Message]:
     """Signed distances: sign and face by our projection, lengths by OpenCASCADE's in map coordinates."""
-    xyz = judge.xyz
+    xyz = surface.points.xyz
     if not len(xyz):
         return np.empty(0), message("cad.no-points", "no points")
     ours = project(found.patches, xyz - found.origin)
@@ -238,7 +217,7 @@ def _distances(judge: _Judge, shape: FileShape, found: Surface) -> tuple[Floats,
     chosen = np.arange(len(xyz))
     how = message("cad.projection-of-opencascade", "OpenCASCADE's projection")
     if len(xyz) > MEASURED:
-        core = np.flatnonzero(judge.core)
+        core = np.flatnonzero(surface.core) if len(surface.core) == len(xyz) else chosen[:0]
         spread = np.unique(np.linspace(0, len(xyz) - 1, MEASURED // 4).astype(int))
         chosen = np.unique(np.concatenate([core[:: max(1, len(core) // MEASURED)], spread]))
     length = _occ_lengths(shape, xyz, ours, chosen)
@@ -350,8 +329,8 @@ def _edge_tolerances(shape: Any) -> tuple[float, float]:
     return inner, outer
 
 
-def _outline_check(surface: Surface, shape: FileShape, free: list[Any], limit: float) -> Check:
-    name = "read-back outline"
+def _outline_check(surface: FittedSurface, shape: FileShape, free: list[Any]) -> Check:
+    name, limit = "read-back outline", surface.settings.boundary_tolerance
     if surface.outline is None:
         return Check(
             name,
@@ -372,6 +351,19 @@ def _outline_check(surface: Surface, shape: FileShape, free: list[Any], limit: f
     )
     reach = follows if off <= limit else short
     return Check(name, True if off <= limit else None, off, limit, "m", reach)
+
+
+def _attribute_check(surface: FittedSurface, shape: FileShape) -> Check:
+    """Check that the product has the attributes that were written: sigma, epsilon, the hash of the data."""
+    written = attributes_of(surface)
+    wrong = [key for key, value in written.items() if shape.attributes.get(key) != value]
+    text = message(
+        "cad.attributes-of-product",
+        "{found} of {count} attributes of the product (sigma, epsilon, hash of the data) read as written",
+        found=len(written) - len(wrong),
+        count=len(written),
+    )
+    return Check("read-back attributes", not wrong, float(len(wrong)), 0.0, "", text)
 
 
 def _normal_check(found: Surface, seams: tuple[Seam, ...]) -> Check:

@@ -24,6 +24,7 @@ from geofit.cad.foreign import read_in_child
 from geofit.cad.imported import FileShape, empty_document, existing, no_faces, products, quiet, surface_of
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
+from geofit.cad.step_attributes import attributes_of, with_attributes
 from geofit.cad.step_text import canonical
 from geofit.data.accuracy import ReadBack
 from geofit.data.columns import LARGEST
@@ -34,6 +35,7 @@ from geofit.data.messages import message
 from geofit.splines.patch import Patch
 from geofit.surfaces.patch_surface import PatchSurface
 from geofit.surfaces.protocol import Surface
+from geofit.surfaces.unfitted import as_fitted
 
 __all__ = ["UNITS", "Unit", "read_shapes", "read_step", "step_surfaces", "store_step", "write_step"]
 
@@ -55,10 +57,18 @@ PARAMETERS = {
 }
 
 
-def write_step(surfaces: Mapping[str, Surface], path: str | PathLike[str], *, unit: Unit = "m") -> dict[str, ReadBack]:
+def write_step(
+    surfaces: Mapping[str, Surface],
+    path: str | PathLike[str],
+    *,
+    unit: Unit = "m",
+    author: str = "",
+    organisation: str = "",
+) -> dict[str, ReadBack]:
     """Write horizons as one STEP AP242 assembly, read it back with OpenCASCADE and check it.
 
-    Each horizon is a named, coloured product, each face has its patch's name. The file is written under a
+    Each horizon is a named, coloured product with attributes (sigma, epsilon, largest residual, number of points and
+    their SHA-256, the version of geofit); each face has its patch's name. The file is written under a
     temporary name and renamed when it is complete; the same surfaces give the same bytes.
 
     Parameters
@@ -69,6 +79,8 @@ def write_step(surfaces: Mapping[str, Surface], path: str | PathLike[str], *, un
         The file, usually ``*.step``.
     unit : {"m", "mm"}
         In which the file gives lengths. It reports it, and CAD systems convert: the surfaces are the same.
+    author, organisation : str
+        Who answers for the file, for its header.
 
     Returns
     -------
@@ -83,14 +95,21 @@ def write_step(surfaces: Mapping[str, Surface], path: str | PathLike[str], *, un
         If there is nothing to write, the unit is unknown, or the file cannot be written.
     """
     target = Path(path)
-    shells = store_step(surfaces, target, unit=unit)
+    shells = store_step(surfaces, target, unit=unit, author=author, organisation=organisation)
     return {
-        name: read_back(surface, shape, surface_of(shape, whole=True), shells[name], target)
+        name: read_back(as_fitted(surface), shape, surface_of(shape, whole=True), shells[name], target)
         for (name, surface), shape in zip(surfaces.items(), read_shapes(target), strict=True)
     }
 
 
-def store_step(surfaces: Mapping[str, Surface], path: str | PathLike[str], *, unit: Unit = "m") -> dict[str, Any]:
+def store_step(
+    surfaces: Mapping[str, Surface],
+    path: str | PathLike[str],
+    *,
+    unit: Unit = "m",
+    author: str = "",
+    organisation: str = "",
+) -> dict[str, Any]:
     """Write the same file without reading it back, for a project of one's own; return the shells by horizon.
 
     Errors as :func:`write_step`.
@@ -126,7 +145,9 @@ def store_step(surfaces: Mapping[str, Surface], path: str | PathLike[str], *, un
     with _parameters(unit):
         filled = empty_document()
         _fill(filled, surfaces, shells)
-        _save(filled, [_patch_names(shells[name], s.patches) for name, s in surfaces.items()], target)
+        names = [_patch_names(shells[name], s.patches) for name, s in surfaces.items()]
+        attributes = [attributes_of(as_fitted(surface)) for surface in surfaces.values()]
+        _save(filled, names, target, attributes, (author or "geofit", organisation))
     return shells
 
 
@@ -172,6 +193,7 @@ def read_shapes(path: str | PathLike[str]) -> list[FileShape]:
         found = empty_document()
         reader = STEPCAFControl_Reader()
         reader.SetNameMode(True)
+        reader.SetMetaMode(True)
         with _utf8_name(source) as name:
             done = reader.ReadFile(name) == IFSelect_RetDone and reader.Transfer(found)
     shapes = list(products(found, legible(source.stem))) if done else []
@@ -263,7 +285,13 @@ def _patch_names(shape: Any, patches: Sequence[Patch]) -> list[str]:
     return names
 
 
-def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> None:
+def _save(
+    document: Any,
+    face_names: Sequence[Sequence[str]],
+    target: Path,
+    attributes: Sequence[Mapping[str, str]],
+    signed: tuple[str, str],
+) -> None:
     from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.STEPCAFControl import STEPCAFControl_Writer
@@ -286,8 +314,8 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
             header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
             header.SetName(TCollection_HAsciiString("horizons"))
             header.SetTimeStamp(TCollection_HAsciiString(TIMESTAMP))
-            header.SetAuthorValue(1, TCollection_HAsciiString("geofit"))
-            header.SetOrganizationValue(1, TCollection_HAsciiString(""))
+            header.SetAuthorValue(1, TCollection_HAsciiString(signed[0]))
+            header.SetOrganizationValue(1, TCollection_HAsciiString(signed[1]))
             header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
             done = writer.Write(temporary) == IFSelect_RetDone
         if not done:
@@ -297,7 +325,8 @@ def _save(document: Any, face_names: Sequence[Sequence[str]], target: Path) -> N
                 file=str(target),
             )
         with replacing(target) as part:
-            part.write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
+            text = with_attributes(canonical(Path(temporary).read_text("utf-8")), attributes)
+            part.write_text(text, "ascii", newline="\n")
     except (OSError, ValueError):  # ValueError: a text that was cut off in the middle
         raise InputError(
             message("cad.disk-full", "The file cannot be written: the disk may be full"),

@@ -91,8 +91,8 @@ def body(
 def _drawn(source: Path, of_holes: bool, layers: list[str], settings: BodySettings) -> SourceData | None:
     """Read outlines or points; None: the source is of boreholes."""
     from geofit.io.outlines import OUTLINE_ENDINGS
-    from geofit.project.body_record import Outlines, Picks
-    from geofit.project.body_sources import read_source
+    from geofit.project.body_record import Outlines, SurfacePicks
+    from geofit.project.body_sources import read_body_source
 
     ending = source.suffix.casefold()
     outlined = ending in OUTLINE_ENDINGS
@@ -103,10 +103,10 @@ def _drawn(source: Path, of_holes: bool, layers: list[str], settings: BodySettin
             file=str(source),
         )
     if outlined:
-        return read_source(Outlines(source.name, tuple(layers)), settings, (), source.parent)
+        return read_body_source(Outlines(source.name, tuple(layers)), settings, (), source.parent)
     if of_holes or ending == ".toml":
         return None
-    return read_source(Picks(source.name), settings, (), source.parent)
+    return read_body_source(SurfacePicks(source.name), settings, (), source.parent)
 
 
 def _read(source: Path, survey: Path | None, intervals: list[Path]) -> Boreholes | Site:

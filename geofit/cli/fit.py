@@ -14,7 +14,7 @@ from geofit.cli.options import (
     Across,
     Crs,
     Decimal,
-    Dips,
+    DipsChoice,
     FrameChoice,
     Json,
     Out,
@@ -89,7 +89,7 @@ def fit(
     ] = None,
     max_iterations: Annotated[int | None, typer.Option(help=_help("max_iterations", "20"))] = None,
     max_control_points: Annotated[int | None, typer.Option(help=_help("max_control_points", "automatic"))] = None,
-    dips: Annotated[Dips | None, typer.Option(help=_help("dips", "check"))] = None,
+    dips: Annotated[DipsChoice | None, typer.Option(help=_help("dips", "check"))] = None,
     dip_accuracy: Annotated[float | None, typer.Option(help=_help("dip_accuracy", "5"))] = None,
     coincidence_distance: Annotated[float | None, typer.Option(help=_help("coincidence_distance", "0.01"))] = None,
     separate: Annotated[

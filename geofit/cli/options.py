@@ -30,7 +30,7 @@ class SeamChoice(StrEnum):
     POSITION = "position"
 
 
-class Dips(StrEnum):
+class DipsChoice(StrEnum):
     """What measured dips are for."""
 
     CHECK = "check"

@@ -182,7 +182,7 @@ def _away_of_body(found: LeftOutBody, epsilon: float) -> Lamp:
             title,
             "fail" if found.missed else "none",
             message(
-                "verdict.body-nothing-predicted", "none of {missed} left-out contacts is predicted", missed=found.missed
+                "data.body-nothing-predicted", "none of {missed} left-out contacts is predicted", missed=found.missed
             )
             if found.missed
             else message("data.verdict-cannot-examine", "the error away from the data cannot be estimated"),
@@ -190,20 +190,20 @@ def _away_of_body(found: LeftOutBody, epsilon: float) -> Lamp:
     level, error = _error(found.error, found.scheme, epsilon)
     parts = [error]
     if found.missed:
-        parts.append(message("verdict.contacts-missed", "contacts not predicted: {count}", count=found.missed))
+        parts.append(message("data.contacts-missed", "contacts not predicted: {count}", count=found.missed))
     if found.logged:
         parts.append(
             message(
-                "verdict.misclassified",
+                "data.misclassified",
                 "{wrong:.1f} m of {logged:.1f} m on the wrong side",
                 wrong=found.misclassified,
                 logged=found.logged,
             )
         )
-    parts.append(message("verdict.band-contains", "the 90 % band contains {share:.0f} %", share=100 * found.inside))
+    parts.append(message("data.band-contains", "the 90 % band contains {share:.0f} %", share=100 * found.inside))
     if level == "pass" and (found.missed or round(found.inside, 2) < LEAST_INSIDE):
         level = "warning"
-    return Lamp(title, level, message("verdict.left-out-body", "{parts}", parts=tuple(parts)))
+    return Lamp(title, level, message("data.left-out-body", "{parts}", parts=tuple(parts)))
 
 
 def _least_inside(known: Sequence[LeftOut]) -> LeftOut | None:

@@ -149,21 +149,23 @@ class Searchable:
         """Return the nearest places to (n, 3) points by compiled loops."""
         apart, done = np.full(len(target), np.inf), np.zeros(len(target), bool)
         cell, local = np.zeros(len(target), np.int64), np.zeros((2, len(target)))
-        self.explore(target, done.copy(), (apart, cell, local, done), untrimmed(len(self.cells.breaks)), self.balls)
+        self.explore(
+            target, done.copy(), (apart, cell, local, done), untrimmed_patches(len(self.cells.breaks)), self.balls
+        )
         return Place(cell, local, done)
 
     def explore(
         self, target: Floats, known: Bools, found: tuple[Floats, Ints, Floats, Bools], loops: Any, places: Any
     ) -> None:
-        """Look for nearer feet inside loops; see :func:`geofit.geometry.search_loops.explore`."""
-        from geofit.geometry.search_loops import explore
+        """Look for nearer feet inside loops; see :func:`geofit.geometry.search_loops.explore_tree`."""
+        from geofit.geometry.search_loops import explore_tree
 
         points, (apart, cell, local, done) = np.ascontiguousarray(target), found
         some_places, tree = places
 
         def work(some: slice) -> None:
             part = (apart[some], cell[some], local[:, some], done[some])
-            explore(self.of_cells, some_places, tree, loops, points[some], known[some], part)
+            explore_tree(self.of_cells, some_places, tree, loops, points[some], known[some], part)
 
         side_by_side(work, len(target))
 
@@ -191,7 +193,7 @@ class Searchable:
         return places, (tree.order, tree.centre, tree.radius, tree.spacing, tree.curvature)
 
 
-def untrimmed(patches: int) -> tuple[Any, ...]:
+def untrimmed_patches(patches: int) -> tuple[Any, ...]:
     """Return the loops of patches that have none, as compiled loops take them."""
     return (
         np.zeros(patches, bool),

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from geofit.geometry.ball_tree import LEAF
 from geofit.geometry.foot_loops import foot, jet_at
 
-__all__ = ["explore", "rim_feet"]
+__all__ = ["explore_tree", "rim_feet"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -116,7 +116,7 @@ def _walked(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def explore(cells: Any, places: Any, tree: Any, loops: Any, target: Floats, known: Bools, found: Any) -> None:
+def explore_tree(cells: Any, places: Any, tree: Any, loops: Any, target: Floats, known: Bools, found: Any) -> None:
     """Find feet inside the loops that are nearer to (n, 3) points than what is found already.
 
     ``cells``: table, neighbours, rounding error, patches, lattice origin and steps, centres and half widths of the

@@ -37,13 +37,13 @@ def arrival(d_a: Floats, d_b: Floats, spacing: float) -> Floats:
     no end; buckets in place of a heap (L. Yatziv et al., J. Comput. Phys. 212, 2006).
     """
     from geofit.morphing.arrival_loops import START, march, start_values
-    from geofit.morphing.wedge_loops import angles, wedges
+    from geofit.morphing.wedge_loops import wedge_angles, wedges
 
     floor = FLOOR * spacing
     d_a, d_b = np.ascontiguousarray(d_a), np.ascontiguousarray(d_b)
     region = (d_a < 0) != (d_b < 0)
     near = np.minimum(np.abs(d_a), np.abs(d_b)) < (START + 2) * spacing
-    cosine = angles(d_a, d_b, region | near, spacing)
+    cosine = wedge_angles(d_a, d_b, region | near, spacing)
     factor = wedges(d_a, d_b, cosine, region | (np.abs(d_a) <= START * spacing), spacing, floor)
     u = start_values(d_a, d_b, *factor[:2], spacing, floor)
     march(u, d_b, region, *factor, spacing, floor)

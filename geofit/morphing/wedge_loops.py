@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-__all__ = ["LEAST", "angles", "wedges"]
+__all__ = ["LEAST", "wedge_angles", "wedges"]
 
 Floats = NDArray[np.float64]
 
@@ -34,7 +34,7 @@ def _central(f: Floats, at: int, step: int) -> tuple[float, float]:
 
 
 @njit(cache=True)
-def angles(d_a: Floats, d_b: Floats, wanted: NDArray[np.bool_], h: float) -> Floats:
+def wedge_angles(d_a: Floats, d_b: Floats, wanted: NDArray[np.bool_], h: float) -> Floats:
     """Return the cosine of the angle between both distances' slopes, nan where one has a crease or is not wanted."""
     nx, ny, nz = d_a.shape
     strides = np.array([ny * nz, nz, 1])

@@ -26,7 +26,7 @@ MOST_SECTIONS = 40
 
 
 @dataclass(frozen=True, eq=False)
-class _Fold:
+class RefitFold:
     """Points of a surface with the group that is left out, and how the others are fitted."""
 
     points: PointSet
@@ -36,7 +36,7 @@ class _Fold:
     name: str
 
 
-def _left_out(fold: _Fold) -> NDArray[np.float64] | None:
+def refit_without(fold: RefitFold) -> NDArray[np.float64] | None:
     """Return the distances of a group from the surface of all others; None where these have none."""
     rest = np.setdiff1d(np.arange(len(fold.points)), fold.group)
     try:
@@ -77,8 +77,8 @@ def sections_by_refit(
         inner = []
     failed = 0
     tell(progress, "cross-validation", 0.0)
-    tasks = [_Fold(points, group, surface.settings, model.problem.boundary, surface.name) for group in inner]
-    for done, (k, distance) in enumerate(where.run(_left_out, tasks)):
+    tasks = [RefitFold(points, group, surface.settings, model.problem.boundary, surface.name) for group in inner]
+    for done, (k, distance) in enumerate(where.run(refit_without, tasks)):
         tell(progress, "cross-validation", (done + 1) / len(inner))
         if distance is None:
             failed += 1

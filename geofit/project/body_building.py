@@ -28,9 +28,9 @@ from geofit.project.body_record import (
     Intervals,
     MorphFrame,
     Outlines,
-    Picks,
+    SurfacePicks,
 )
-from geofit.project.body_sources import file_digest, read_source
+from geofit.project.body_sources import file_digest, read_body_source
 from geofit.project.mesh_body import MeshBody, read_mesh_body
 
 if TYPE_CHECKING:
@@ -133,7 +133,7 @@ def make_body(
     """
     tell(progress, "read", 0.0)
     match source:
-        case Intervals() | Outlines() | Picks():
+        case Intervals() | Outlines() | SurfacePicks():
             result, given = _fitted(source, settings, name, campaigns, folder, progress)
         case ClosedMesh(file):
             result, given = BodyResult(read_mesh_body(folder / file, name)), file_digest(folder / file)
@@ -155,23 +155,27 @@ def make_body(
 
 
 def _fitted(
-    source: Intervals | Outlines | Picks, settings: BodySettings, name: str, campaigns: Sequence[Any], folder: Path,
+    source: Intervals | Outlines | SurfacePicks,
+    settings: BodySettings,
+    name: str,
+    campaigns: Sequence[Any],
+    folder: Path,
     progress: Progress | None,
-) -> tuple[BodyResult, str]:  # fmt: skip
+) -> tuple[BodyResult, str]:
     """Fit a body to what its source holds; return also the hash of it."""
-    from geofit.bodies.crossval import examined
+    from geofit.bodies.crossval import left_out_body
     from geofit.bodies.fit import fit_body
     from geofit.bodies.questions import section_questions
     from geofit.bodies.violations import violations
 
-    read = read_source(source, settings, campaigns, folder, progress)
+    read = read_body_source(source, settings, campaigns, folder, progress)
     tell(progress, "fit", 0.1)
     body = fit_body(read.data, settings, name=name)
     tell(progress, "volumes", 0.5)
     volumes = body.volumes()
     tell(progress, "holes left out", 0.65)
     questions = section_questions(read.outlines, body) if read.outlines else ()
-    found = BodyResult(body, volumes, violations=violations(body), questions=questions, left_out=examined(body))
+    found = BodyResult(body, volumes, violations=violations(body), questions=questions, left_out=left_out_body(body))
     return found, read.given
 
 

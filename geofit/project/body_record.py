@@ -20,7 +20,7 @@ __all__ = [
     "Intervals",
     "MorphFrame",
     "Outlines",
-    "Picks",
+    "SurfacePicks",
     "next_colour",
 ]
 
@@ -45,7 +45,7 @@ class Outlines:
 
 
 @dataclass(frozen=True)
-class Picks:
+class SurfacePicks:
     """Points on the body, with or without normals, in ``file``, relative to the folder of the site."""
 
     file: str
@@ -83,9 +83,9 @@ class MorphFrame:
     seeds: bool = False
 
 
-BodySource = Intervals | Outlines | Picks | ClosedMesh | BetweenHorizons | MorphFrame
+BodySource = Intervals | Outlines | SurfacePicks | ClosedMesh | BetweenHorizons | MorphFrame
 #: Sources that a body is fitted to, and judged by.
-FITTED = (Intervals, Outlines, Picks)
+FITTED = (Intervals, Outlines, SurfacePicks)
 
 
 @dataclass(frozen=True)
@@ -145,7 +145,7 @@ def _source_data(source: BodySource) -> dict[str, Any]:
             return {"kind": "intervals", "codes": list(codes), "file": file}
         case Outlines(file, layers):
             return {"kind": "outlines", "file": file, "layers": list(layers)}
-        case Picks(file):
+        case SurfacePicks(file):
             return {"kind": "points", "file": file}
         case ClosedMesh(file):
             return {"kind": "mesh", "file": file}
@@ -168,7 +168,7 @@ def _source_from(data: Mapping[str, Any]) -> BodySource:
         case "outlines":
             return Outlines(str(data["file"]), tuple(str(layer) for layer in data["layers"]))
         case "points":
-            return Picks(str(data["file"]))
+            return SurfacePicks(str(data["file"]))
         case "mesh":
             return ClosedMesh(str(data["file"]))
         case "horizons":

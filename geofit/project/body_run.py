@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from geofit.bodies.crossval import examined
+from geofit.bodies.crossval import left_out_body
 from geofit.bodies.fit import fit_body
 from geofit.bodies.settings import BodySettings
 from geofit.data.accuracy import plain
@@ -126,7 +126,7 @@ def run_body(
     tell(progress, "volumes", 0.3)
     volumes = body.volumes()
     tell(progress, "holes left out", 0.5)
-    left_out = examined(body)
+    left_out = left_out_body(body)
     tell(progress, "STEP", 0.6)
     step, contacts = stem.with_name(f"{stem.name}.step"), stem.with_name(f"{stem.name}_contacts.csv")
     read_back = body.write_step(step)

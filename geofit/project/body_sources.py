@@ -15,7 +15,7 @@ from geofit.bodies.settings import BodySettings
 from geofit.data.errors import InputError
 from geofit.data.messages import Untranslated, message
 from geofit.data.progress import Progress
-from geofit.project.body_record import Intervals, Outlines, Picks
+from geofit.project.body_record import Intervals, Outlines, SurfacePicks
 
 if TYPE_CHECKING:
     from geofit.bodies.outlines import Outline
@@ -27,7 +27,7 @@ __all__ = [
     "given_of_logs",
     "interval_codes",
     "outline_layers",
-    "read_source",
+    "read_body_source",
     "site_codes",
 ]
 
@@ -41,8 +41,8 @@ class SourceData:
     outlines: tuple[Outline, ...] = ()
 
 
-def read_source(
-    source: Intervals | Outlines | Picks,
+def read_body_source(
+    source: Intervals | Outlines | SurfacePicks,
     settings: BodySettings,
     campaigns: Sequence[Any],
     folder: Path,
@@ -79,7 +79,7 @@ def read_source(
             drawn = read_outlines(folder / file, layers)
             data = from_outlines(drawn.outlines, settings.step)
             return SourceData(_with_issues(data, drawn.issues), file_digest(folder / file), drawn.outlines)
-        case Picks(file):
+        case SurfacePicks(file):
             from geofit.io.body_points import read_body_points
 
             picked = read_body_points(folder / file)

@@ -23,7 +23,7 @@ from geofit.report.gather import SITE_PICTURE, cut_of, picture_name, section_pic
 from geofit.report.histogram import histogram, normal_plot
 from geofit.report.result import HorizonResult
 from geofit.report.section_sheet import draw_section, section_sheet
-from geofit.report.stereonet import Net, angles, stereonet
+from geofit.report.stereonet import StereonetContent, angles, stereonet
 from geofit.report.style import CORE, FAIL, HORIZONS, MUTED, PASS, TEXT, WARNING, drawing
 from geofit.report.uncertainty import uncertainty_map
 
@@ -89,7 +89,7 @@ def _dips(result: HorizonResult, t: Language) -> bytes:
         figure = Figure(figsize=(WIDTH, NET), dpi=DOTS)
         colours = [CORE] * len(result.dips)
         net = figure.add_axes((0, 0, NET / WIDTH, 1))
-        stereonet(net, Net(found[0], found[1], colours, (found[2], found[3])), t)
+        stereonet(net, StereonetContent(found[0], found[1], colours, (found[2], found[3])), t)
         angles(figure.add_axes((0.56, 0.17, 0.42, 0.7)), np.array([one.angle for one in result.dips]), t)
         return png(figure, margin=8)
 

@@ -17,7 +17,7 @@ from geofit.site.dips import LIMIT
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["Net", "angles", "stereonet"]
+__all__ = ["StereonetContent", "angles", "stereonet"]
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ LEAST = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Net:
+class StereonetContent:
     """What a stereonet shows: n measured planes (degrees), a colour each, and planes of surfaces beside them.
 
     ``surface`` holds azimuth and dip of the surface at each measurement, nan where it has none; ``chosen`` is the
@@ -47,7 +47,7 @@ class Net:
     traces: bool = False
 
 
-def stereonet(axes: Axes, net: Net, t: Language = EN) -> None:
+def stereonet(axes: Axes, net: StereonetContent, t: Language = EN) -> None:
     """Draw the net, the poles of the measured planes, the surface's own as rings, and the mean plane's trace."""
     axes.set_aspect("equal")
     axes.set_axis_off()

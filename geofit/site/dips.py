@@ -18,7 +18,7 @@ from geofit.geometry.projection import project
 if TYPE_CHECKING:
     from shapely import Polygon
 
-__all__ = ["DipDeviation", "check_dips", "within"]
+__all__ = ["DipDeviation", "check_dips", "dips_within"]
 
 Floats = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ def check_dips(surface: HorizonFit, orientations: Orientations | None) -> tuple[
     return deviations, _check(deviations, orientations)
 
 
-def within(orientations: Orientations | None, horizon: str, area: Polygon, name: str) -> Orientations | None:
+def dips_within(orientations: Orientations | None, horizon: str, area: Polygon, name: str) -> Orientations | None:
     """Return the measurements with those of a horizon inside an area (shapely.Polygon, map) under another name."""
     import shapely
 

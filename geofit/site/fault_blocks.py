@@ -22,7 +22,7 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Orientations, Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.fitting.pipeline import fit_horizon
-from geofit.site.dips import within
+from geofit.site.dips import dips_within
 from geofit.site.fault import BEYOND_TRACE, Fault, Height, longer, longer_side
 from geofit.site.height_field import HeightField
 from geofit.site.throw import FaultCut, Sides, throws
@@ -278,7 +278,7 @@ def fit_block(
         shapely.intersection(shapely.buffer(guess, BEYOND * longer_side(area), join_style="mitre"), area)
     )
     corners = shapely.get_coordinates(widened.exterior)[:-1]
-    measured = within(*dips, guess, name)
+    measured = dips_within(*dips, guess, name)
     surface = fit_horizon(points, settings, corners, progress, name=name, orientations=measured)
     height_field = HeightField(surface)
     held = _largest(shapely.intersection(area, height_field.area()))

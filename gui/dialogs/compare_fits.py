@@ -25,7 +25,7 @@ from PySide6.QtWidgets import (
 from geofit.data.prediction import PredictionResult
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
-from geofit.gui.panels.marks import is_dark
+from geofit.gui.theme import is_dark
 from geofit.gui.translate import translated
 from geofit.gui.view3d.view import SceneView
 from geofit.project.fit_comparison import apart, fit_figures, title_of

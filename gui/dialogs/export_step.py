@@ -12,6 +12,7 @@ from PySide6.QtCore import QSettings, QSize, Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QButtonGroup,
+    QCheckBox,
     QComboBox,
     QFileDialog,
     QFormLayout,
@@ -30,18 +31,20 @@ from PySide6.QtWidgets import (
 from geofit.data.accuracy import Check
 from geofit.data.files import file_stems
 from geofit.data.messages import message
+from geofit.data.title_block import TitleBlock
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon, level_mark, verdict_mark
 from geofit.gui.panels.tables import DataTable, TableColumn
-from geofit.gui.translate import translated
-from geofit.project.step_files import StepFile, step_paths, write_step_files
+from geofit.gui.theme import missing_chinese
+from geofit.gui.translate import translated, user_language
+from geofit.project.step_files import Signed, StepFile, step_paths, write_step_files
 from geofit.report import digits
 
 __all__ = ["ExportDialog"]
 
-_FOLDER = "folder"
+_FOLDER, _AUTHOR, _ORGANISATION = "folder", "step/author", "step/organisation"
 
 
 class ExportDialog(TaskDialog):
@@ -56,9 +59,10 @@ class ExportDialog(TaskDialog):
         parent: QWidget | None = None,
         verdicts: Mapping[str, Verdict] | None = None,
         folder: Path | None = None,
+        title: TitleBlock | None = None,
     ) -> None:
         super().__init__(parent)
-        self._verdicts = verdicts or {}
+        self._verdicts, title = verdicts or {}, title or TitleBlock()
         self.setWindowTitle(self.tr("Export STEP"))
         # The patches are all that a file holds; what stands behind them need not travel to the other process.
         self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
@@ -71,6 +75,17 @@ class ExportDialog(TaskDialog):
         self.unit.setToolTip(
             self.tr("The file states its unit, and CAD systems convert it. The surfaces are the same.")
         )
+        self.author, self.organisation = QLineEdit(), QLineEdit()
+        about = self.tr("It is written in the head of the file and on the certificate.")
+        for field, key, words in (
+            (self.author, _AUTHOR, title.author), (self.organisation, _ORGANISATION, title.organisation)
+        ):  # fmt: skip
+            field.setText(words or str(QSettings().value(key, "")))
+            field.setToolTip(about)
+        self.certificate = QCheckBox(self.tr("&Certificate: one page of PDF with what was read back"))
+        # A page in Chinese needs a font of it.
+        self._no_page = user_language().code == "zh" and missing_chinese()
+        self.certificate.setChecked(not self._no_page)
         self.together, self.apart = QRadioButton(self.tr("&One file")), QRadioButton(self.tr("One file a &horizon"))
         self.table = DataTable()
         self.table.setAccessibleName(self.tr("What the reader found in the file"))
@@ -137,7 +152,20 @@ class ExportDialog(TaskDialog):
             label.setBuddy(field)
             form.addRow(label, row)
         form.insertRow(2, "", choice)
-        self.fields = (self.horizons, self.target, browse, self.together, self.apart, self.unit)
+        signed = QHBoxLayout()
+        signed.addWidget(self.author, 1)
+        organisation = QLabel(self.tr("&Organisation"))
+        organisation.setBuddy(self.organisation)
+        signed.addWidget(organisation)
+        signed.addWidget(self.organisation, 1)
+        author = QLabel(self.tr("&Author"))
+        author.setBuddy(self.author)
+        form.addRow(author, signed)
+        form.addRow("", self.certificate)
+        self.fields = (
+            self.horizons, self.target, browse, self.together, self.apart, self.unit, self.author, self.organisation,
+            self.certificate,
+        )  # fmt: skip
         layout = QVBoxLayout(self)
         layout.addLayout(form)
         layout.addLayout(self.message_row)
@@ -161,17 +189,23 @@ class ExportDialog(TaskDialog):
         surfaces = {name: self._surfaces[name] for name in names}
         self.files = []
         self.say(self.tr("Writing, and reading back what was written…"))
-        work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked())
+        page = user_language().code if self.certificate.isChecked() else ""
+        signed = Signed(self.author.text().strip(), self.organisation.text().strip(), page)
+        work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked(), signed)
         paths = list(step_paths(names, work[1], separate=work[3]))
         self.begin(write_step_files, *work, on_done=self.show_files, on_stopped=partial(self._stopped, paths))
 
     def show_files(self, files: list[StepFile]) -> None:
         """Show what was written, and what reading it back gave."""
         self.files = files
-        QSettings().setValue(_FOLDER, str(files[0].path.parent))
+        store = QSettings()
+        store.setValue(_FOLDER, str(files[0].path.parent))
+        store.setValue(_AUTHOR, self.author.text().strip())
+        store.setValue(_ORGANISATION, self.organisation.text().strip())
         found = {name: back for file in files for name, back in file.read_back.items()}
         size = digits.kilobytes(sum(file.size for file in files))
-        names = ", ".join(str(file.path.resolve()) for file in files)
+        pages = [file.certificate for file in files if file.certificate is not None]
+        names = ", ".join(str(path.resolve()) for path in (*(file.path for file in files), *pages))
         if all(back.passed for back in found.values()):
             self.say(self.tr("Wrote {names} ({size}). The file passes every check.").format(names=names, size=size),
                       "passed")  # fmt: skip
@@ -248,6 +282,7 @@ class ExportDialog(TaskDialog):
         names, idle = self.chosen(), not self.running
         self.apart.setEnabled(idle and len(names) > 1)
         self.go.setEnabled(idle and bool(names) and bool(self.target.text().strip()))
+        self.certificate.setEnabled(idle and not self._no_page)
         self.folder.setVisible(bool(self.files) and idle)
         self.table.setVisible(bool(self.files) and idle)
         files = [path.name for path in step_paths(names, self._path(), separate=self.apart.isChecked())]

@@ -1,4 +1,4 @@
-"""Theme, language, and what the mouse does in the 3D view."""
+"""Theme, language, size of text and points, and what the mouse does in the 3D view."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import cast
 from PySide6.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QFormLayout, QLabel, QWidget
 
 from geofit.gui.language import LANGUAGES
-from geofit.gui.preferences import Preferences
+from geofit.gui.preferences import POINT_SIZES, TEXT_SIZES, Preferences
 from geofit.gui.theme import missing_chinese
 from geofit.gui.view3d.mouse import Scheme
 
@@ -15,7 +15,7 @@ __all__ = ["PreferencesDialog"]
 
 
 class PreferencesDialog(QDialog):
-    """Asks for theme, language and mouse; ``theme``, ``language`` and ``mouse`` hold what was chosen."""
+    """Asks for theme, language, sizes and mouse; the properties hold what was chosen."""
 
     def __init__(self, preferences: Preferences, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -42,12 +42,21 @@ class PreferencesDialog(QDialog):
         self.mouse_box.setCurrentIndex(self.mouse_box.findData(preferences.mouse))
         self._mouse_words.setWordWrap(True)
         self.mouse_box.currentIndexChanged.connect(self._explain)
+        self._text, self._points = QComboBox(), QComboBox()
+        for box, known, now in (
+            (self._text, TEXT_SIZES, preferences.text_size), (self._points, POINT_SIZES, preferences.point_size)
+        ):  # fmt: skip
+            for share in known:
+                box.addItem(self.tr("{percent} %").format(percent=f"{100 * share:.0f}"), share)
+            box.setCurrentIndex(box.findData(now))
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
         form.addRow(self.tr("&Theme"), self._theme)
         form.addRow(self.tr("&Language"), self._language)
+        form.addRow(self.tr("Te&xt size"), self._text)
+        form.addRow(self.tr("&Points in 3D"), self._points)
         form.addRow(self.tr("&Mouse in 3D"), self.mouse_box)
         form.addRow("", self._mouse_words)
         self._explain()
@@ -76,6 +85,16 @@ class PreferencesDialog(QDialog):
     def mouse(self) -> Scheme:
         """The chosen scheme of the mouse."""
         return cast("Scheme", self.mouse_box.currentData())
+
+    @property
+    def text_size(self) -> float:
+        """The chosen size of text, as a share of the system's."""
+        return float(self._text.currentData())
+
+    @property
+    def point_size(self) -> float:
+        """The chosen size of data points, as a share of the usual one."""
+        return float(self._points.currentData())
 
     @property
     def theme(self) -> str:

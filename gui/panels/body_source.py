@@ -25,7 +25,7 @@ from geofit.project.body_record import (
     Intervals,
     MorphFrame,
     Outlines,
-    Picks,
+    SurfacePicks,
 )
 
 __all__ = ["MESH", "OTHER", "OUTLINES", "OWN", "POINTS", "BodySourceForm"]
@@ -110,7 +110,7 @@ class BodySourceForm(QWidget):
                 self._wanted, kind = frozenset(layers), OUTLINES
                 self._remember(kind, file, layers)
                 self._wanted = self._wanted or frozenset(self._offers[OUTLINES])
-            case Picks(file):
+            case SurfacePicks(file):
                 self._files[POINTS], kind = file, POINTS
             case ClosedMesh(file):
                 self._files[MESH], kind = file, MESH
@@ -131,7 +131,7 @@ class BodySourceForm(QWidget):
             case "mesh":
                 return ClosedMesh(file)
             case "points":
-                return Picks(file)
+                return SurfacePicks(file)
             case "outlines":
                 # All layers: the same source as without a choice.
                 whole = len(chosen) == len(offered)

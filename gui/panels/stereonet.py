@@ -19,7 +19,7 @@ from geofit.gui.panels.placeholder import Placeholder
 from geofit.gui.panels.tables import DataTable, TableColumn
 from geofit.gui.translate import translated, user_language
 from geofit.project.dip_table import DipTable
-from geofit.report.stereonet import Net, stereonet
+from geofit.report.stereonet import StereonetContent, stereonet
 from geofit.site.dips import LIMIT
 
 __all__ = ["StereonetPanel"]
@@ -204,7 +204,7 @@ class StereonetPanel(QWidget):
         (axes,) = self.canvas.axes(1)
         names = table.measured.horizon[table.index].tolist()
         chosen = np.flatnonzero(table.index == (-1 if self._chosen is None else self._chosen))
-        net = Net(
+        net = StereonetContent(
             table.azimuth,
             table.dip,
             [self._colours.get(name, PLAIN) for name in names],

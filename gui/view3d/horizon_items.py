@@ -61,7 +61,7 @@ def points_item(
     ]
     if not used.all():
         ghosts = dots(poly(points.xyz[~used] - look.origin), GHOST[look.dark], balls=not many)
-        parts.append(ActorPart(ghosts, size=SIZE, opacity=GHOSTLY))
+        parts.append(ActorPart(ghosts, size=SIZE * look.points, opacity=GHOSTLY))
     return Item(parts, corners_of(points.xyz), targets=points.xyz, legend=made.legend)
 
 
@@ -84,7 +84,7 @@ def _dots(
 ) -> ActorPart:
     actor = dots(poly(xyz[which] - look.origin), "#000000", balls=not flat)
     coloured(actor, made.colour[which])
-    return ActorPart(actor, detail, size=size)
+    return ActorPart(actor, detail, size=size * look.points)
 
 
 def shape_item(

@@ -19,10 +19,14 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """How things are drawn just now: about which origin (map coordinates), on a dark ground or not."""
+    """How things are drawn just now: about which origin (map coordinates), on a dark ground or not.
+
+    ``points`` is how many times larger than usual data points are.
+    """
 
     origin: Floats
     dark: bool
+    points: float = 1.0
 
     @property
     def text(self) -> str:

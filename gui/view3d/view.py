@@ -24,7 +24,6 @@ from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.contents import Contents
 from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.view3d.handles import Handle, Handles
-from geofit.gui.view3d.item import Look
 from geofit.gui.view3d.layers import Layers
 from geofit.gui.view3d.opengl import require_opengl
 from geofit.gui.view3d.overlay import Content, merged
@@ -235,7 +234,12 @@ class SceneView(QWidget):
         """Follow the theme: a dark or a light background."""
         self._annotations.dark = dark
         self.canvas.set_background_colour(theme_of(self.palette(), dark).paper)
-        self._stage.set_look(Look(self.canvas.origin, dark))
+        self._stage.set_look(replace(self._stage.look, origin=self.canvas.origin, dark=dark))
+        self._changed()
+
+    def set_point_size(self, share: float) -> None:
+        """Draw data points ``share`` times as large as usual."""
+        self._stage.set_look(replace(self._stage.look, points=share))
         self._changed()
 
     # Tools ---------------------------------------------------------------------------------------------------
@@ -308,7 +312,7 @@ class SceneView(QWidget):
             middle, reach = (known.min(axis=0) + known.max(axis=0)) / 2, np.ptp(known, axis=0).max()
             if np.abs(middle - self.canvas.origin).max() > max(10.0 * float(reach), 1.0) or not self._framed:
                 self.canvas.origin = np.round(middle)
-                self._stage.set_look(Look(self.canvas.origin, self._stage.look.dark))
+                self._stage.set_look(replace(self._stage.look, origin=self.canvas.origin))
             if not self._framed:
                 self._framed = True
                 self.canvas.viewpoint = framed(self.canvas.viewpoint, self._in_scene(self._box()), self._aspect())

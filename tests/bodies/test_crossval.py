@@ -7,7 +7,7 @@ import pytest
 
 from bodies.planted import ORIGIN, drilled, ellipsoid
 from geofit.bodies.body import BodyFit
-from geofit.bodies.crossval import examined, leave_one_hole_out
+from geofit.bodies.crossval import leave_one_hole_out, left_out_body
 from geofit.bodies.data import BodyData
 from geofit.bodies.fit import fit_body
 from geofit.bodies.outlines import Outline, from_outlines
@@ -112,4 +112,4 @@ def test_sections_left_out_are_measured_at_right_angles_to_the_surface() -> None
 
 
 def test_too_few_holes_leave_nothing_to_examine() -> None:
-    assert examined(fit_body(drilled(ellipsoid((0.6, 0.4, 0.3))[0], 0))) is None
+    assert left_out_body(fit_body(drilled(ellipsoid((0.6, 0.4, 0.3))[0], 0))) is None

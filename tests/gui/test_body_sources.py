@@ -11,7 +11,7 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFileDialog
 
-from geofit.project.body_record import Intervals, Outlines, Picks
+from geofit.project.body_record import Intervals, Outlines, SurfacePicks
 
 PLACE = np.array([1400.0, 2600.0, 500.0])
 ANGLE = np.linspace(0, 2 * np.pi, 40, endpoint=False)
@@ -109,7 +109,7 @@ def test_points_with_and_without_normals_become_a_body(opened, monkeypatch):
     choose(opened, monkeypatch, "points", file)
     assert not opened.panels.bodies.source.codes.isVisibleTo(opened.panels.bodies)
     fit(opened)
-    assert opened.document.state.bodies["ball"].provenance.source == Picks("ball.csv")
+    assert opened.document.state.bodies["ball"].provenance.source == SurfacePicks("ball.csv")
     assert opened.document.body("ball").mesh.volume == pytest.approx(4 / 3 * np.pi * 25**3, rel=0.02)
 
 

@@ -111,3 +111,31 @@ def test_a_check_that_fails_is_named_above_the_table(qtbot, tmp_path):
 def test_names_of_files_of_their_own_are_sound_and_different():
     plan = step_paths(["T1/T2", "t1_t2"], Path("dam.stp"), separate=True)
     assert [path.name for path in plan] == ["dam_T1_T2.stp", "dam_t1_t2-2.stp"]
+
+
+@pytest.mark.usefixtures("own_settings")
+def test_author_organisation_and_certificate(qtbot, tmp_path):
+    pdfium = pytest.importorskip("pypdfium2", reason="PDFium reads the PDF back; it comes with the extra 'test'")
+    dialog = opened(qtbot, WITH_PERIPHERY)
+    dialog.target.setText(str(tmp_path / "dam.step"))
+    dialog.author.setText("M. Weber")
+    dialog.organisation.setText("Dam Office")
+    press(qtbot, dialog, dialog.go)
+    (file,) = dialog.files
+    head = file.path.read_text("ascii").split("ENDSEC;")[0]
+    assert "('M. Weber'),('Dam Office')" in head.replace("\n", "")
+    assert file.certificate == tmp_path / "dam_certificate.pdf"
+    assert str(file.certificate) in dialog.message.text()
+    assert any("attributes" in name for name in column(dialog, "Check of the file"))
+    pdf = pdfium.PdfDocument(file.certificate)
+    assert len(pdf) == 1
+    assert "Dam Office" in pdf[0].get_textpage().get_text_range()
+    pdf.close()
+    # Who answered for the last file answers for the next one; the page is left out where it is not wanted.
+    again = opened(qtbot, WITH_PERIPHERY)
+    assert (again.author.text(), again.organisation.text()) == ("M. Weber", "Dam Office")
+    again.target.setText(str(tmp_path / "other.step"))
+    again.certificate.setChecked(False)
+    press(qtbot, again, again.go)
+    assert again.files[0].certificate is None
+    assert not (tmp_path / "other_certificate.pdf").exists()

@@ -74,7 +74,7 @@ def dying(fold):
     if fold.name == "doomed" and not mark.exists():
         mark.write_text("killed")
         os.kill(os.getpid(), signal.SIGKILL)
-    return refits._left_out(fold)
+    return refits.refit_without(fold)
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="no kill on this system")
@@ -83,13 +83,13 @@ def test_a_worker_that_is_killed_over_a_fold_costs_nothing(folded, tmp_path, mon
     groups = [np.flatnonzero(folded.points.section == f"S{k}") for k in (1, 2, 3)]
     names = ("sound", "doomed", "sound")
     tasks = [
-        refits._Fold(folded.points, group, folded.settings, None, name)
+        refits.RefitFold(folded.points, group, folded.settings, None, name)
         for group, name in zip(groups, names, strict=True)
     ]
     found = dict(Where("local", 2).run(dying, tasks))
     assert (tmp_path / "killed").exists()
     for k, task in enumerate(tasks):
-        assert found[k].tobytes() == refits._left_out(task).tobytes()
+        assert found[k].tobytes() == refits.refit_without(task).tobytes()
 
 
 @pytest.mark.filterwarnings("ignore")

@@ -1,0 +1,92 @@
+"""What a product of a STEP file says of itself: attributes that the designers' CAD shows beside the surface.
+
+Each is a user-defined attribute of the product (ISO 10303-41, general property; CAx-IF, *Recommended Practices for User
+Defined Attributes*): a named text. OpenCASCADE reads them as the metadata of the product.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from geofit import __version__
+from geofit.surfaces.protocol import FittedSurface
+
+__all__ = ["KEYS", "attributes_at", "attributes_of", "data_hash", "with_attributes"]
+
+#: Names of the attributes, in the order of the file.
+KEYS = ("sigma_m", "epsilon_m", "largest_residual_m", "points", "data_sha256", "geofit_version")
+
+_ATTRIBUTE = """\
+#{0} = GENERAL_PROPERTY('user defined attribute','{key}','');
+#{1} = PROPERTY_DEFINITION('{key}','',#{product});
+#{2} = GENERAL_PROPERTY_ASSOCIATION('','',#{0},#{1});
+#{3} = PROPERTY_DEFINITION_REPRESENTATION(#{1},#{4});
+#{4} = REPRESENTATION('{key}',(#{5}),#{context});
+#{5} = DESCRIPTIVE_REPRESENTATION_ITEM('{key}','{value}');
+"""
+_LINES = 6
+
+
+def attributes_of(surface: FittedSurface) -> dict[str, str]:
+    """Return the attributes of a fitted surface; without points or a check those of them are missing."""
+    found, accuracy = {"geofit_version": __version__}, surface.accuracy
+    if len(surface.points):
+        found |= {"points": str(len(surface.points)), "data_sha256": data_hash(surface)}
+    if accuracy is not None and accuracy.n:
+        found["sigma_m"] = f"{accuracy.sigma:.6g}"
+        found["epsilon_m"] = f"{accuracy.epsilon:.6g}"
+        found["largest_residual_m"] = f"{accuracy.max_abs:.6g}"
+    return {key: found[key] for key in KEYS if key in found}
+
+
+def data_hash(surface: FittedSurface) -> str:
+    """Return the SHA-256 of the points that the surface was fitted to: easting, northing and elevation as float64."""
+    return hashlib.sha256(np.ascontiguousarray(surface.points.xyz, dtype="<f8").tobytes()).hexdigest()
+
+
+def with_attributes(text: str, attributes: Sequence[Mapping[str, str]]) -> str:
+    """Return the text of a STEP file of ours with attributes of its products, in the products' order."""
+    head, end, tail = text.rpartition("ENDSEC;")
+    free = max(int(number) for number in re.findall(r"^#(\d+) =", head, re.M)) + 1
+    added = []
+    for (product, context), values in zip(_products(head), attributes, strict=True):
+        for key, value in values.items():
+            numbers = range(free, free + _LINES)
+            free += _LINES
+            quoted = value.replace("\\", "\\\\").replace("'", "''")
+            added.append(_ATTRIBUTE.format(*numbers, key=key, value=quoted, product=product, context=context))
+    return head + "".join(added) + end + tail
+
+
+def _products(text: str) -> list[tuple[str, str]]:
+    """Return the numbers of the definition and of the context of each product that is a sewn shell."""
+    shapes = dict(re.findall(r"SHAPE_DEFINITION_REPRESENTATION\(\s*#(\d+)\s*,\s*#(\d+)\s*\)", text))
+    by_shape = {shape: definition for definition, shape in shapes.items()}
+    definitions = dict(
+        re.findall(r"#(\d+) = PRODUCT_DEFINITION_SHAPE\(\s*'[^']*'\s*,\s*'[^']*'\s*,\s*#(\d+)\s*\)", text)
+    )
+    shells = re.findall(
+        r"#(\d+) = MANIFOLD_SURFACE_SHAPE_REPRESENTATION\(\s*'[^']*'\s*,\s*\([^)]*\)\s*,\s*#(\d+)", text
+    )
+    return [(definitions[by_shape[shape]], context) for shape, context in shells]
+
+
+def attributes_at(label: Any) -> dict[str, str]:
+    """Return our attributes of a product that OpenCASCADE has read."""
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDataStd import TDataStd_NamedData
+
+    data = TDataStd_NamedData()
+    if not label.FindAttribute(TDataStd_NamedData.GetID_s(), data):
+        return {}
+    found = {}
+    for key in KEYS:
+        name = TCollection_ExtendedString(key)
+        if data.HasString(name):
+            found[key] = str(data.GetString(name).ToExtString())
+    return found
