@@ -22,7 +22,7 @@ from geofit.implicit.quadric import Plane
 
 if TYPE_CHECKING:
     from geofit.bodies.implicit_body import ImplicitBody
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
 
 __all__ = ["creased_solid", "write_solid"]
 
@@ -66,7 +66,7 @@ def creased_solid(body: ImplicitBody) -> Any:
 def _combined(part: Field, epsilon: float, size: float) -> tuple[Any, bool]:
     """Return the solid of a field, and whether the field is what lies outside it."""
     from geofit.cad.boolean import common, fused, half_space, subtract_solid
-    from geofit.cad.solid import patch_solid
+    from geofit.cad.solid_shapes import patch_solid
 
     found = sharp_union(part)
     if found is None:

@@ -20,7 +20,7 @@ from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
     from geofit.bodies.cut import BodyPiece
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
     from geofit.implicit.field import Field
 
 __all__ = ["ImplicitBody", "OwnField"]

@@ -20,7 +20,7 @@ from geofit.implicit.lattice import Lattice
 from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
 
 __all__ = ["GEOMETRY_ONLY", "MorphBody"]
 

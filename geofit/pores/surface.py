@@ -34,7 +34,7 @@ from geofit.pores.network import PoreNetwork
 from geofit.pores.volume import RockVolume, VolumeError
 
 if TYPE_CHECKING:
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
 
 __all__ = ["Construction", "ContactField", "PoreSurface", "pore_surface"]
 

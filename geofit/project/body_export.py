@@ -16,7 +16,7 @@ from geofit.project.body_building import BodyResult
 from geofit.project.mesh_body import MeshBody
 
 if TYPE_CHECKING:
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
     from geofit.morphing.body import MorphBody
 
 __all__ = ["BLOCK_ENDINGS", "TRIANGLE_ENDINGS", "BodyExport", "export_body"]

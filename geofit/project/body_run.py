@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from geofit.bodies.body import BodyFit
     from geofit.bodies.data import BodyData
     from geofit.bodies.simulate import BodyVolumes
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
     from geofit.data.prediction import LeftOutBody
     from geofit.data.site import Site
     from geofit.io.boreholes import Boreholes

@@ -18,7 +18,7 @@ from geofit.project.body_files import write_figures
 
 if TYPE_CHECKING:
     from geofit.bodies.cut import CuttingSurface
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
     from geofit.geometry.mesh import Mesh
     from geofit.implicit.mesh import TriangleMesh
     from geofit.morphing.sequence import Morph

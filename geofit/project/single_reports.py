@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from geofit.bodies.drilling import SuggestedHole
     from geofit.bodies.simulate import BodyVolumes
     from geofit.bodies.strata import StratumVolume
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
     from geofit.data.site import Site
     from geofit.project.body_run import BodyRun
     from geofit.project.pores_run import PoresRun

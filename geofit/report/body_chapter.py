@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from geofit.bodies.drilling import SuggestedHole
     from geofit.bodies.simulate import BodyVolumes
     from geofit.bodies.strata import StratumVolume
-    from geofit.cad.solid import SolidReadBack
+    from geofit.cad.solid_read_back import SolidReadBack
 
 __all__ = ["BodyFindings", "body_chapter", "body_picture"]
 

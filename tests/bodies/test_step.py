@@ -16,8 +16,8 @@ from geofit.bodies.dual import dual_quads
 from geofit.bodies.fit import fit_body
 from geofit.bodies.quads import patched_surface
 from geofit.cad.faces import explore
-from geofit.cad.solid import patch_solid
 from geofit.cad.solid_mesh import solid_triangles
+from geofit.cad.solid_shapes import patch_solid
 from geofit.cad.step import read_shapes
 from geofit.implicit.mesh import TriangleMesh
 from geofit.io.boreholes import read_boreholes

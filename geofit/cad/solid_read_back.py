@@ -1,0 +1,211 @@
+"""The STEP file of a body, read back by OpenCASCADE and compared with the body."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from geofit.cad.faces import explore, faces_of, free_edges, from_geom
+from geofit.cad.solid_shapes import volume_of
+from geofit.data.accuracy import Check
+from geofit.data.errors import StitchError
+from geofit.data.messages import message
+from geofit.implicit.mesh import TriangleMesh
+
+if TYPE_CHECKING:
+    from geofit.bodies.implicit_body import ImplicitBody
+
+__all__ = ["SolidReadBack", "read_back_body"]
+
+Floats = NDArray[np.float64]
+
+#: Largest difference of volumes between the file and the triangulated body, relative: NURBS, triangles.
+VOLUME = {"nurbs": 2e-3, "triangles": 1e-6}
+
+
+@dataclass(frozen=True)
+class SolidReadBack:
+    """What an independent reader (OpenCASCADE) finds in the file of a body.
+
+    ``grade`` is "nurbs" or "triangles". ``volume`` (m3) is that of the solids in the file, ``deviation`` the largest
+    distance in metres of the file's faces from the surface of the body, ``sigma`` and ``max_abs`` are of the contacts'
+    distances from the faces (nan for triangles), ``edge_tolerance`` is the largest in the file, metres.
+    """
+
+    file: str
+    sha256: str
+    grade: str
+    faces: int
+    solids: int
+    volume: float
+    deviation: float
+    sigma: float
+    max_abs: float
+    brep_valid: bool
+    free_edges: int
+    edge_tolerance: float
+    checks: tuple[Check, ...]
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check of the file passes."""
+        return all(check.passed is not False for check in self.checks)
+
+
+def read_back_body(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) -> SolidReadBack:
+    """Read the file of a body and check it: NURBS or triangles, faces trimmed or whole."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepCheck import BRepCheck_Analyzer
+    from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
+    from OCP.TopAbs import TopAbs_EDGE, TopAbs_SOLID
+
+    from geofit.cad.solid_mesh import solid_triangles
+    from geofit.cad.step import read_shapes
+    from geofit.geometry.projection import project
+
+    # In the product's own coordinates: the body's local ones.
+    shape = read_shapes(target)[0].shape
+    faces = faces_of(shape)
+    solids = list(explore(shape, TopAbs_SOLID))
+    if trimmed:
+        # Places of the faces themselves: beyond its trims a surface is none of the body's.
+        places = solid_triangles(shape).vertices
+        measured, residuals = False, np.full(1, np.nan)
+        volume = sum(volume_of(solid) for solid in solids)
+        free = len(free_edges(shape))
+    elif nurbs:
+        patches = tuple(from_geom(str(k), BRep_Tool.Surface_s(face)) for k, face in enumerate(faces, 1))
+        t = np.linspace(0.0, 1.0, 17)
+        places = np.concatenate(
+            [p.evaluate((p.domain[0] + t * (p.domain[1] - p.domain[0]))[:, None],
+                        (p.domain[2] + t * (p.domain[3] - p.domain[2]))[None]).reshape(-1, 3) for p in patches]
+        )  # fmt: skip
+        measured = len(body.contacts) > 0
+        residuals = np.full(1, np.nan)
+        if measured:
+            residuals = np.abs(project(patches, body.contacts - body.origin).distance)
+        volume = sum(volume_of(solid) for solid in solids)
+        free = len(free_edges(shape))
+    else:
+        meshes = [_triangles_of(face) for face in faces]
+        places = np.concatenate([mesh.vertices for mesh in meshes])
+        measured, residuals = False, np.full(1, np.nan)
+        volume = sum(mesh.volume for mesh in meshes)
+        free = sum(len(mesh.boundary_edges) for mesh in meshes)
+    slope = np.linalg.norm(body.field.gradient(places), axis=1)
+    deviation = float((np.abs(body.field.value(places)) / np.maximum(slope, 1e-300)).max())
+    tolerances = ShapeAnalysis_ShapeTolerance()
+    edge = float(tolerances.Tolerance(shape, 1, TopAbs_EDGE)) if nurbs else 0.0
+    valid = bool(BRepCheck_Analyzer(shape).IsValid())
+    sigma = float(np.sqrt((residuals**2).sum() / max(len(residuals) - 1, 1)))
+    grade = "nurbs" if nurbs else "triangles"
+    best = _reference_volume(body) if nurbs else body.overview.volume
+    epsilon = body.epsilon
+    checks = (
+        Check(
+            "solids",
+            len(solids) > 0,
+            float(len(solids)),
+            1.0,
+            "1",
+            message("cad.solids-count", "{count} solids in the file", count=len(solids)),
+        ),
+        # A tessellated face has no surface, which the check of a B-rep would miss.
+        Check(
+            "valid",
+            valid if nurbs else None,
+            float(valid),
+            1.0,
+            "1",
+            message("cad.solids-valid", "OpenCASCADE finds the solids valid")
+            if valid
+            else message("cad.solids-invalid", "OpenCASCADE finds the solids invalid"),
+        ),
+        Check(
+            "closed",
+            free == 0,
+            float(free),
+            0.0,
+            "1",
+            message("cad.free-edges-count", "{count} free edges in the file", count=free),
+        ),
+        Check(
+            "deviation",
+            deviation <= epsilon,
+            deviation,
+            epsilon,
+            "m",
+            message(
+                "cad.faces-deviation",
+                "The faces of the file lie within {deviation:.3g} m of the body",
+                deviation=deviation,
+            ),
+        ),
+        Check(
+            "sigma",
+            sigma < epsilon if measured else None,
+            sigma,
+            epsilon,
+            "m",
+            message(
+                "cad.contacts-sigma",
+                "The contacts lie on the faces of the file with sigma {sigma:.3g} m",
+                sigma=sigma,
+            ),
+        ),
+        Check(
+            "volume",
+            abs(volume / best - 1) <= VOLUME[grade],
+            volume,
+            best,
+            "m3",
+            message(
+                "cad.volume-differs",
+                "The file's solids have {volume:.6g} m3, the body {best:.6g} m3",
+                volume=volume,
+                best=best,
+            ),
+        ),
+    )
+    return SolidReadBack(
+        file=str(target),
+        sha256=hashlib.sha256(target.read_bytes()).hexdigest(),
+        grade=grade,
+        faces=len(faces),
+        solids=len(solids),
+        volume=volume,
+        deviation=deviation,
+        sigma=sigma,
+        max_abs=float(residuals.max()),
+        brep_valid=valid,
+        free_edges=free,
+        edge_tolerance=edge,
+        checks=checks,
+    )
+
+
+def _reference_volume(body: ImplicitBody) -> float:
+    """Return the body's volume from two meshes, by Richardson's extrapolation: triangles err with the square."""
+    lower, upper = body.extent
+    spacing = float((upper - lower).max()) / 40
+    coarse, fine = body.local_mesh(spacing).volume, body.local_mesh(spacing / 2).volume
+    return (4 * fine - coarse) / 3
+
+
+def _triangles_of(face: Any) -> TriangleMesh:
+    from OCP.BRep import BRep_Tool
+    from OCP.TopLoc import TopLoc_Location
+
+    location = TopLoc_Location()
+    found = BRep_Tool.Triangulation_s(face, location)
+    if found is None:
+        raise StitchError(message("cad.face-without-triangles", "A face of the file has no triangles."))
+    move = location.Transformation()
+    nodes = [found.Node(k).Transformed(move) for k in range(1, found.NbNodes() + 1)]
+    corners = [found.Triangle(k).Get() for k in range(1, found.NbTriangles() + 1)]
+    return TriangleMesh(np.array([(p.X(), p.Y(), p.Z()) for p in nodes]), np.array(corners) - 1)
