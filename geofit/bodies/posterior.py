@@ -39,7 +39,7 @@ TRUST = 30
 #: are logged outside bound it, and only those that are active are in the covariance - and a shift, as fields of r^3
 #: swell a little where data are few.
 WITHIN = 0.87
-WITHOUT = 0.6
+WITHOUT = 0.63
 SHIFT = 0.16
 #: The chance of lying inside at the surface itself: the normal distribution at -SHIFT.
 ON_SURFACE = math.erfc(SHIFT / math.sqrt(2)) / 2

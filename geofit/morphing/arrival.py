@@ -11,6 +11,8 @@ Floats = NDArray[np.float64]
 
 #: The speed |d_B| counts as this many spacings at least: at B the front would stop.
 FLOOR = 0.05
+#: Surfaces that are nearer to each other than this share of a spacing are one.
+TOGETHER = 1e-6
 #: Layers of nodes beyond the way of the front to which its lengths are continued.
 LAYERS = 8
 
@@ -61,6 +63,8 @@ def source_field(u: Floats, d_a: Floats, d_b: Floats, spacing: float) -> Floats:
 
     length = np.maximum(np.abs(d_b), FLOOR * spacing) / u
     length = np.where(d_b < 0, length, -length)
+    # Where both surfaces run through a node, as in a common base, its share of the way is noise.
+    length[np.abs(d_a) + np.abs(d_b) < TOGETHER * spacing] = np.nan
     alone = np.isnan(u) & ((d_a < 0) != (d_b < 0))
     widen(length, LAYERS)
     field = np.where(np.isnan(length) | alone, d_a, d_b + length)

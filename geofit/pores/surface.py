@@ -289,14 +289,6 @@ def pore_surface(
         )
     if not kappa > 0:
         raise VolumeError(message("pores.kappa-not-positive", "kappa={kappa} is not positive.", kappa=kappa))
-    if construction == "contact" and volume.pore.all():
-        raise VolumeError(
-            message(
-                "pores.no-rock-to-touch",
-                "The volume has no rock voxel, so no ball touches rock. "
-                "Give construction='blend', or another pore label.",
-            )
-        )
     if network is None:
         network = pore_network(volume)
     if network.pore_of is None or network.pore_of.shape != volume.shape:
@@ -306,6 +298,14 @@ def pore_surface(
                 "The network stores no voxels of a volume of shape {shape}. Compute it from this "
                 "volume with pore_network.",
                 shape=volume.shape,
+            )
+        )
+    if construction == "contact" and volume.pore.all():
+        raise VolumeError(
+            message(
+                "pores.no-rock-to-touch",
+                "The volume has no rock voxel, so no ball touches rock. "
+                "Give construction='blend', or another pore label.",
             )
         )
     tell(progress, "contacts", 0.0)

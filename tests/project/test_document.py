@@ -17,7 +17,17 @@ from geofit.data.settings import FitSettings
 from geofit.data.site import Ground, Orientations, Site
 from geofit.project import shelf as shelf_module
 from geofit.project.body_commands import DeleteBody, RenameBody, SetBody, StyleBody
-from geofit.project.body_record import BodyProvenance, BodyRecord, BodyStyle, ClosedMesh, Intervals, MorphFrame
+from geofit.project.body_record import (
+    BetweenHorizons,
+    BodyProvenance,
+    BodyRecord,
+    BodyStyle,
+    ClosedMesh,
+    Intervals,
+    MorphFrame,
+    Outlines,
+    SurfacePicks,
+)
 from geofit.project.building import make
 from geofit.project.commands import (
     COMMANDS,
@@ -41,6 +51,7 @@ from geofit.project.commands import (
     command_from,
 )
 from geofit.project.document import Document
+from geofit.project.fit_command import TakeFit
 from geofit.project.provenance import (
     DocumentError,
     Earlier,
@@ -122,7 +133,10 @@ given_data = st.text("0123456789abcdef", min_size=16, max_size=16)
 fitted_bodies = st.builds(
     BodyProvenance,
     st.builds(Intervals, st.lists(st.text(min_size=1), min_size=1).map(tuple), st.text(max_size=5))
-    | st.builds(ClosedMesh, st.text(max_size=5)),
+    | st.builds(ClosedMesh, st.text(max_size=5))
+    | st.builds(Outlines, st.text(max_size=5), st.lists(st.text(max_size=3)).map(tuple))
+    | st.builds(SurfacePicks, st.text(max_size=5))
+    | st.builds(BetweenHorizons, st.just("up"), st.just("low") | numbers),
     body_settings,
     given_data,
 )
@@ -171,6 +185,7 @@ commands = st.one_of(
         st.dictionaries(st.just("low"), st.builds(Earlier, st.text(max_size=4), provenances)),
     ),
     st.builds(SetBody, names, records),
+    st.builds(TakeFit, provenances),
     st.builds(RenameBody, names, names),
     st.builds(DeleteBody, names),
     st.builds(StyleBody, names, styles),
@@ -221,6 +236,7 @@ def test_every_command_is_told_in_words_that_can_be_translated():
         SetArea(None), SetArea(((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))),
         ChangeData("x", ("a.csv", "b.csv"), (), {"low": FitSettings()}, {}, {}, {}),
         SetBody("a", BODY), SetBody("a", FRAME), RenameBody("a", "b"), DeleteBody("a"), StyleBody("a", BODY.style),
+        TakeFit(provenance),
     ]  # fmt: skip
     assert {type(command) for command in samples} == set(COMMANDS.values())
     assert not [left for command in samples for left in english_left(command.text)]

@@ -14,6 +14,7 @@ from surfaces import ORIGIN, fold, height_field, horizon, nine
 
 from geofit.cad.step import write_step
 from geofit.data.errors import InputError, SettingsError
+from geofit.data.files import spreadsheet_cell
 from geofit.data.points import PointSet
 from geofit.io.export.section_csv import write_section_csv
 from geofit.io.export.write import FORMATS, write_surface
@@ -184,7 +185,7 @@ def test_any_section_table_comes_back(lines, name, tmp_path):
     write_section_csv({name: cuts}, tmp_path / "any.csv")
     with (tmp_path / "any.csv").open(encoding="utf-8-sig", newline="") as stream:
         rows = list(csv.DictReader(stream))
-    assert {row["horizon"] for row in rows} == {name}
+    assert {row["horizon"] for row in rows} == {spreadsheet_cell(name)}
     for number, line in enumerate(cuts, 1):
         own = [row for row in rows if row["line"] == str(number)]
         back = np.array([[float(row[key]) for key in ("distance", "x", "y", "elevation")] for row in own])
