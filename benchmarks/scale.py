@@ -265,7 +265,7 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
         cells += ["–"] * 3 if row is None else [f"{row['fit']:.2f}", f"{row['cpu']:.1f}", f"{row['peak']:.0f}"]
         lines.append("| " + " | ".join(cells) + " |")
     far = f"| *10,000,000,000* | – | – | – | – | *{best['fit'] / largest * 1e10:,.0f}* | *{rate * 1e10:,.0f}* |"
-    lines += [f"{far} *{best['peak']:.0f}* |", ""]
+    lines += [f"{far} – |", ""]
     ends = {min(arrays): arrays[min(arrays)], largest: best}
     say(f"""Growth of the time from the smallest to the largest n: exponent {exponent(arrays):.2f} (`fit_horizon`),
         {exponent(clouds):.2f} (`fit_cloud` in memory), {exponent(files):.2f} (streamed), {exponent(ends):.2f} from
@@ -283,6 +283,8 @@ def page(found: dict[str, dict[int, Figures]]) -> str:
     if largest < 10**8:
         say(f"""*1e8 points* were not measured to the end; at the rate of {largest:,} they take {hundred:.0f} s after
             reading on two free processors.""")
+    sizes = " and ".join(f"{row['peak']:.0f} MB at {n:,}" for n, row in sorted(files.items())[-2:])
+    say(f"The peak memory of a streamed run grows, too: {sizes}. So that of 1e10 points is not extrapolated.")
     say(f"""*1e10 points*, from {rate * 1e6:.2f} s a million at {largest:,}: {hours:.0f} h of one processor, 240 GB of
         disk for the points and some 80 GB for the distances. Only the distances are spread over the workers: the fit
         takes {best["fit"] / largest * 1e10 / 3600:.0f} h on one processor however many there are.""")
