@@ -25,7 +25,7 @@ __all__ = ["load_result", "refused", "save_reason", "save_result"]
 
 
 def save_reason(target: Path, **reasons: Message) -> None:
-    """Write why there are no surfaces: ``reason`` with or without ``remedy``, or ``missing``, an optional package."""
+    """Write why no surface was read: ``reason``, with ``remedy`` where there is one, or the ``missing`` package."""
     _write(target, {key: _stored(reason) for key, reason in reasons.items()}, [])
 
 

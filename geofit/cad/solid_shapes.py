@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +13,6 @@ from geofit.data.errors import StitchError
 from geofit.data.messages import message
 from geofit.implicit.mesh import TriangleMesh
 from geofit.splines.patch import Patch
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = ["patch_solid", "triangle_solid", "volume_of"]
 

@@ -1,4 +1,4 @@
-"""What a product of a STEP file says of itself: attributes that the designers' CAD shows beside the surface.
+"""Attributes of the products in a STEP file, which CAD systems list with each surface.
 
 Each is a user-defined attribute of the product (ISO 10303-41, general property; CAx-IF, *Recommended Practices for User
 Defined Attributes*): a named text. OpenCASCADE reads them as the metadata of the product.

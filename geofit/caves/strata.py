@@ -77,7 +77,7 @@ def strata(body: PassageBody, horizons: Mapping[str, Horizon], *, spacing: float
     """
     if not horizons:
         raise SettingsError(
-            message("caves.no-horizon", "There is no horizon to cut with; give at least one, from the top down.")
+            message("caves.no-horizon", "No horizon to cut with; give at least one, from top to bottom.")
         )
     found = body.columns(spacing)
     heights = _heights(horizons, found.x, found.y)

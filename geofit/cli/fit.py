@@ -137,7 +137,9 @@ def fit(
     if source.suffix.casefold() != ".toml" and (stream or is_cloud(source)):
         from geofit.cli.cloud import fit_cloud_file
 
-        only = [word for word, given in (("--separate", separate), ("--bands", bands), ("--crs", crs)) if given]
+        # What a cloud has no use for is refused, not ignored.
+        used = (("--separate", separate), ("--bands", bands), ("--crs", crs), ("--dips", dips == DipsChoice.FIT))
+        only = [word for word, given in used if given]
         return fit_cloud_file(
             source, out, columns, horizon, boundary, changes, only, scheduler or "local", workers, as_json
         )

@@ -255,7 +255,7 @@ def approximate_all(data: Data, settings: FitSettings, stage: Stage) -> Net:
 
 
 @dataclass(frozen=True, eq=False)
-class Beside:
+class PeripheryFit:
     """What an approximation gives: see :class:`Net`."""
 
     space: TensorSpace
@@ -282,13 +282,13 @@ class Periphery:
     most: int
     refit: bool
 
-    def fit(self, space: TensorSpace, start: Smoothed) -> Beside:
+    def fit(self, space: TensorSpace, start: Smoothed) -> PeripheryFit:
         """Approximate, and add knots where points stay outside the tolerance, as far as the cap allows."""
         data, tolerance = self.data, self.settings.interior_tolerance
         coefficients = self._refitted(space, start) if self.refit else start.coefficients
         chased = self._chased
         if not chased and self.outer.all():
-            return self._as_it_is(space, coefficients)
+            return self._unchanged(space, coefficients)
         plane, value = data.plane[:][self.outer], data.value[:][self.outer]
         misfit = _misfit(space, coefficients, plane, value)
         limit = self._limit(misfit)
@@ -298,7 +298,7 @@ class Periphery:
         total, field = 0, coefficients
         if not chased or not (misfit > limit).any():
             beyond = np.where(misfit > tolerance, misfit, 0.0)
-            return Beside(space, coefficients, self._frozen(space), 0, limit, self._notes(beyond, limit))
+            return PeripheryFit(space, coefficients, self._frozen(space), 0, limit, self._notes(beyond, limit))
         while True:
             frozen = self._frozen(space)
             result = approximate(space, field, frozen, plane, value, tolerance, limit, rounds, self.settings.strict)
@@ -310,14 +310,14 @@ class Periphery:
             space, field = multiply_knots(space, field, at_u, at_v)
         beyond = np.where(result.misfit > tolerance, result.misfit, 0.0)
         notes = self._notes(beyond, limit, bool((result.released & (beyond > 0)).any()))
-        return Beside(space, result.coefficients, frozen, total, limit, notes)
+        return PeripheryFit(space, result.coefficients, frozen, total, limit, notes)
 
-    def _as_it_is(self, space: TensorSpace, coefficients: Floats) -> Beside:
+    def _unchanged(self, space: TensorSpace, coefficients: Floats) -> PeripheryFit:
         """Return the field's own surface, with what it leaves of the points: nothing but the distances is held."""
         misfit = _misfit(space, coefficients, self.data.plane, self.data.value)
         limit = self._limit(misfit)
         misfit[misfit <= self.settings.interior_tolerance] = 0.0
-        return Beside(space, coefficients, self._frozen(space), 0, limit, self._notes(misfit, limit))
+        return PeripheryFit(space, coefficients, self._frozen(space), 0, limit, self._notes(misfit, limit))
 
     @property
     def _chased(self) -> bool:

@@ -3,7 +3,7 @@
 A plane that dips as measured has the upward normal n; in a frame of heights its gradient is g = -(n_u, n_v) / n_w. An
 angular error of standard deviation a about any axis in the plane gives g the covariance a^2 (1 + g'g) (I + g g'): the
 derivative of g by n, squared. Divided by its Cholesky factor, each measurement is two rows of unit variance, which join
-the normal equations of the field beside the heights (gradient data of a Gaussian field: C. E. Rasmussen, C. K. I.
+the normal equations of the field as the heights do (gradient data of a Gaussian field: C. E. Rasmussen, C. K. I.
 Williams, *Gaussian Processes for Machine Learning*, 2006, sec. 9.4).
 """
 

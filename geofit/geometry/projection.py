@@ -37,7 +37,7 @@ FIRST_LOOK, LAST_LOOK = 8, 512
 #: Wanted number of places in the tree, and the steps of a span.
 PLACES, MOST_STEPS = 16_000, 16
 #: A tree place within so many lattice steps of a known foot belongs to that foot's basin.
-BESIDE = 1.6
+SAME_FOOT = 1.6
 MOST_WALKS = 24
 #: Points that are searched for together (memory), and from how many on compiled loops are worth loading.
 CHUNK, COMPILED = 20_000, 5_000
@@ -335,7 +335,7 @@ def _explore(
     pairs = _Pairs(np.repeat(todo, near.shape[1]), near.ravel(), reach.ravel())
     pairs = pairs[pairs.within(surface, best.distance)]
     for basin in known:
-        pairs = pairs[~pairs.beside(surface, basin, best.distance)]
+        pairs = pairs[~pairs.settled(surface, basin, best.distance)]
     for _ in range(MOST_WALKS):
         if not pairs.point.size:
             return
@@ -346,7 +346,7 @@ def _explore(
         basin = _basin(surface, start, walks.place).spread(index, len(target))
         known.append(basin)
         pairs = pairs[pairs.within(surface, best.distance)]
-        pairs = pairs[~pairs.beside(surface, basin, best.distance)]
+        pairs = pairs[~pairs.settled(surface, basin, best.distance)]
 
 
 @dataclass(frozen=True, eq=False)
@@ -366,7 +366,7 @@ class _Pairs:
         room = surface.spacing[self.place] ** 2 * (1 + d * surface.curvature[self.place])
         return np.asarray(self.reach**2 <= d**2 + room)
 
-    def beside(self, surface: Searchable, basin: _Basin, distance: Floats) -> Bools:
+    def settled(self, surface: Searchable, basin: _Basin, distance: Floats) -> Bools:
         """Which places are next to the start or the foot of a walk: they lead to the same foot.
 
         Within the radius of curvature the squared distance is convex around the foot; beyond it two feet
@@ -376,7 +376,7 @@ class _Pairs:
         walk = basin[self.point]
         at_start = (patch == walk.patch) & (np.abs(lattice - walk.start) < 0.5).all(axis=0)
         convex = distance[self.point] * surface.curvature[self.place] < 0.5
-        margin = np.where(convex, BESIDE, 0.5)
+        margin = np.where(convex, SAME_FOOT, 0.5)
         at_foot = (patch == walk.foot_patch) & (np.abs(lattice - walk.foot).max(axis=0) <= margin)
         return np.asarray(at_start | at_foot)
 

@@ -23,7 +23,7 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 #: A place within so many lattice steps of a known foot belongs to its basin; walks for one point.
-BESIDE, MOST_WALKS = 1.6, 24
+SAME_FOOT, MOST_WALKS = 1.6, 24
 #: Steps of Newton's method along a piece of a loop, and the last one, of 0 to 1: it leaves an error near its square.
 NEWTON, REST = 60, 1e-7
 
@@ -161,7 +161,7 @@ def explore_tree(cells: Any, places: Any, tree: Any, loops: Any, target: Floats,
                 if far * far > best * best + spacing[one] ** 2 * (1 + best * curvature[one]):
                     continue
                 # Within the radius of curvature the squared distance is convex around a foot.
-                margin = BESIDE if best * curvature[one] < 0.5 else 0.5
+                margin = SAME_FOOT if best * curvature[one] < 0.5 else 0.5
                 if not _known(places, one, patch, at, count, margin):
                     _walked(cells, places, loops, one, i, x, found, patch, at, count, jet)
                     count += 1

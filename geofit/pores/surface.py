@@ -343,7 +343,7 @@ def _contact_field(volume: RockVolume) -> ContactField:
 def _rescued(body: ContactField, volume: RockVolume, near: NDArray[np.int64], middles: Floats) -> ContactField:
     """Return the body with the parts, tunnels and cavities of its voxels, as far as the middles of voxels tell.
 
-    Only voxels beside the wall, whose flat indices and middles are given, can have the wrong sign.
+    Only voxels next to the wall, whose flat indices and middles are given, can have the wrong sign.
     """
     from geofit.pores.topology import topology_faults
 

@@ -57,7 +57,7 @@ def _simple(near: NDArray[np.bool_]) -> bool:
 
 @njit(cache=True)
 def _parts(near: NDArray[np.bool_], pore: bool) -> int:
-    """Count the parts of one kind round the middle voxel: pores by faces and beside a face, rock by corners."""
+    """Count the parts of one kind round the middle voxel: pores by faces and next to a face, rock by corners."""
     seen = np.zeros((3, 3, 3), np.bool_)
     stack = np.empty((27, 3), np.int64)
     parts = 0

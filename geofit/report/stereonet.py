@@ -33,7 +33,7 @@ LEAST = 3
 
 @dataclass(frozen=True, eq=False)
 class StereonetContent:
-    """What a stereonet shows: n measured planes (degrees), a colour each, and planes of surfaces beside them.
+    """What a stereonet shows: n measured planes (degrees), a colour each, and planes of surfaces to compare them with.
 
     ``surface`` holds azimuth and dip of the surface at each measurement, nan where it has none; ``chosen`` is the
     number of the plane that stands out.

@@ -49,7 +49,7 @@ class CompareDialog(QDialog):
     Parameters
     ----------
     site : Site
-        What both views show beside the surfaces.
+        What both views show in addition to the surfaces.
     fits : sequence of ShownFit
         The fits of one horizon, the oldest first; at least two.
     present : Provenance

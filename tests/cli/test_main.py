@@ -216,6 +216,8 @@ def test_bad_input_ends_with_2_and_one_clear_line(content, words, tmp_path, monk
         (["--horizon", "T9"], ["no horizon 'T9'", "T3/T2"]),
         (["--boundary", "nowhere.csv"], ["nowhere.csv", "no such file"]),
         (["--seam", "loose"], ["loose", "tangent"]),
+        (["--stream", "--dips", "fit"], ["--dips is not for clouds", "one surface"]),
+        (["--stream", "--bands"], ["--bands is not for clouds", "one surface"]),
     ],
 )
 def test_bad_usage_ends_with_2_and_the_choices(arguments, words, picks, tmp_path, monkeypatch, capsys):
