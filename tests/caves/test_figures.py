@@ -100,7 +100,7 @@ def test_parts_add_up_where_horizons_cross_or_end():
     assert min(s.volume for s in found) >= 0
     assert found[-1].volume > 0
     assert not found[-1].known
-    with pytest.raises(SettingsError, match="no horizon"):
+    with pytest.raises(SettingsError, match="No horizon to cut with"):
         strata(body, {})
 
 
