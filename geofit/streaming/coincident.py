@@ -77,10 +77,16 @@ def coincident(plane: Rows, distance: float, folder: Path) -> Ints:
 
 
 def _later(pairs: Ints) -> Ints:
-    """Go through the pairs by their first point: where both are there still, the second one is dropped."""
-    pairs = np.sort(pairs, axis=1)
-    dropped: set[int] = set()
-    for first, second in pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))].tolist():
-        if first not in dropped:
-            dropped.add(second)
-    return np.array(sorted(dropped), np.int64)
+    """Go through the pairs by their first point: where both are there still, the second one is dropped.
+
+    A byte a point, and few pairs at a time as Python's numbers: a cloud of 1e8 points has millions of pairs.
+    """
+    ids = np.unique(pairs)
+    own = np.sort(np.searchsorted(ids, pairs), axis=1)
+    own = own[np.lexsort((own[:, 1], own[:, 0]))]
+    dropped = bytearray(len(ids))
+    for (part,) in blocks(own):
+        for first, second in part.tolist():
+            if not dropped[first]:
+                dropped[second] = 1
+    return ids[np.frombuffer(dropped, bool)]
