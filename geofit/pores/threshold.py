@@ -43,10 +43,11 @@ def histogram_of_counts(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Return the histogram of :func:`grey_histogram` from what :func:`value_counts` returns."""
     if len(counts) <= bins:
-        return counts, np.arange(first, first + len(counts) + 1) - 0.5
-    edges = np.asarray(np.linspace(first, first + len(counts) - 1, bins + 1), np.float64)
+        return counts, np.arange(first, first + len(counts) + 1, dtype=np.float64) - 0.5
+    edges = np.linspace(first, first + len(counts) - 1, bins + 1, dtype=np.float64)
     each = np.arange(first, first + len(counts))
-    return np.add.reduceat(counts, np.searchsorted(each, edges[:-1])), edges
+    folded = np.add.reduceat(counts, np.searchsorted(each, edges[:-1]))
+    return np.asarray(folded, np.int64), edges
 
 
 def grey_histogram(values: NDArray[Any], bins: int = _BINS) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
