@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from pores_sweep import kept
 
 __all__ = ["write_page"]
 
@@ -113,6 +114,8 @@ def write_page(
     parts.append(_TRUTHS)
     parts.append(_table(("number", "what", "asked", "measured", "test"), [tuple(line) for line in truths]))
     parts.append(_TRIED)
+    # The sweep of the parameters is measured apart from this page.
+    parts.append(kept(docs / "pores.md"))
     (docs / "pores.md").write_text("\n".join(parts), encoding="utf-8")
     _picture(own, docs / "images" / "pores.png")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -9,7 +10,7 @@ import typer
 
 from geofit.cli.app import app
 from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
-from geofit.cli.options import Json, Out
+from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
 
 if TYPE_CHECKING:
     from geofit.caves.strata import Stratum
@@ -39,6 +40,8 @@ def cave(
         list[Path] | None,
         typer.Option(help="Surface (STEP, IGES, BREP, TSurf) that cuts the passages; repeat from the top down."),
     ] = None,
+    report: Report = False,
+    lang: Lang = LanguageCode.EN,
     as_json: Json = False,
 ) -> int:
     """Adjust a cave survey; give volume, surface, strata and distance to an excavation."""
@@ -60,6 +63,11 @@ def cave(
             horizons=horizons,
             progress=progress,
         )
+        if report:
+            from geofit.data.languages import language
+            from geofit.project.cave_report import write_cave_report
+
+            run = replace(run, files=(*run.files, *write_cave_report(run, out, language(lang.value))))
     if as_json:
         print_json({**run.figures(), "files": [str(file) for file in run.files]})
     else:

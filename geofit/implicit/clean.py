@@ -69,7 +69,9 @@ def _touching(triangles: Ints, some: Ints) -> Ints:
 
 
 def _area_vectors(corners: Floats) -> Floats:
-    return np.asarray(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2)
+    (ax, ay, az), (bx, by, bz) = (corners[:, 1] - corners[:, 0]).T, (corners[:, 2] - corners[:, 0]).T
+    # np.cross spends more time on its axes than on the products of a few triangles.
+    return 0.5 * np.column_stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
 
 
 class _Patch:

@@ -35,7 +35,7 @@ SLIVER = 1e-7
 SIDES = ("-x", "+x", "-y", "+y", "-z", "+z")
 
 
-def isosurface(field: Field, lattice: Lattice, *, capped: bool = False) -> TriangleMesh:
+def isosurface(field: Field, lattice: Lattice, *, capped: bool = False, slivers: bool = False) -> TriangleMesh:
     """Return the surface on which a field is zero.
 
     Parameters
@@ -47,6 +47,8 @@ def isosurface(field: Field, lattice: Lattice, *, capped: bool = False) -> Trian
     capped : bool
         Close the body along the box of the lattice where it leaves it. Otherwise the mesh ends there, and
         :func:`open_sides` names the sides.
+    slivers : bool
+        Leave triangles without area in the mesh: enough where only its volume and area are wanted.
 
     Returns
     -------
@@ -74,6 +76,8 @@ def isosurface(field: Field, lattice: Lattice, *, capped: bool = False) -> Trian
     step = lattice.spacing * np.eye(3)[crossed.axis]
     share[between] = roots_between(field, start[between], step[between], crossed.low[between], crossed.high[between])
     mesh = TriangleMesh(start + share[:, None] * step, crossed.triangles)
+    if slivers:
+        return mesh
     return collapse_slivers(mesh, SLIVER * lattice.spacing**2, lattice.spacing)
 
 

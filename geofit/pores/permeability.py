@@ -105,7 +105,8 @@ def _conduits(network: PoreNetwork, section: NDArray[np.float64]) -> NDArray[np.
         share = 1.0 - _PORE_SHARE * np.minimum(throats.radius / pores.radius[pore], 1.0)
         resistance += throats.length[:, end] * share / section[pore]
         narrow += throats.length[:, end] * (1.0 - share)
-    conduits: NDArray[np.float64] = 1.0 / (resistance + narrow / throats.conductance)
+    with np.errstate(divide="ignore"):  # a throat too small for a section does not conduct: one over infinity
+        conduits: NDArray[np.float64] = 1.0 / (resistance + narrow / throats.conductance)
     return conduits
 
 

@@ -11,6 +11,7 @@ Coordinates are metres from the low corner of the sample, along the axes of the 
 from __future__ import annotations
 
 import itertools
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
@@ -31,6 +32,7 @@ from geofit.pores.contacts import contact_points
 from geofit.pores.distance import Border, squared_distance
 from geofit.pores.extraction import pore_network
 from geofit.pores.network import PoreNetwork
+from geofit.pores.threads import in_parts
 from geofit.pores.volume import RockVolume, VolumeError
 
 if TYPE_CHECKING:
@@ -47,6 +49,8 @@ _SUPPORT = 2.5
 BOXES, BOX, ROUNDS = 16, 32, 2
 #: Value of the field in a voxel that is held, and how often faults are looked for.
 _HOLD, RESCUES = 0.5, 4
+#: Fewest places that are worth a thread of their own.
+LEAST = 2000
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,19 +95,30 @@ class ContactField:
         order, start = sort_into_cells(points, lower, _SUPPORT, counts)
         return points[order], normals[order], values[order], start, lower, counts
 
-    def _both(self, xyz: Floats) -> tuple[Floats, Floats]:
-        from geofit.pores.contact_field import contact_values
-
-        places = np.ascontiguousarray(np.asarray(xyz, float) / self.unit)
-        return contact_values(places, *self._cells, _SUPPORT, self.pore, np.array(self.edges))
-
     def value(self, xyz: Floats) -> Floats:
         """Return the field at (n, 3) points."""
-        return np.asarray((self._both(xyz)[0] - self.shift) * self.unit)
+        from geofit.pores.contact_field import contact_values
+
+        out = np.empty(len(xyz))
+        self._in_parts(contact_values, xyz, out)
+        return np.asarray((out - self.shift) * self.unit)
 
     def gradient(self, xyz: Floats) -> Floats:
         """Return the gradient at (n, 3) points."""
-        return self._both(xyz)[1]
+        from geofit.pores.contact_field import contact_gradients
+
+        out = np.empty((len(xyz), 3))
+        self._in_parts(contact_gradients, xyz, out)
+        return out
+
+    def _in_parts(self, loop: Callable[..., None], xyz: Floats, out: Floats) -> None:
+        places = np.ascontiguousarray(np.asarray(xyz, float) / self.unit)
+        cells, edges = self._cells, np.array(self.edges)
+        in_parts(
+            lambda low, high: loop(places[low:high], *cells, _SUPPORT, self.pore, edges, out[low:high]),
+            len(places),
+            LEAST,
+        )
 
     @property
     def bounds(self) -> Box:
@@ -374,7 +389,7 @@ def _of_equal_volume(body: ContactField, volume: RockVolume) -> ContactField:
         lattice = Lattice(
             np.multiply(first, volume.voxel), volume.unit, (int(counts[0]), int(counts[1]), int(counts[2]))
         )
-        mesh = isosurface(body, lattice, capped=True)
+        mesh = isosurface(body, lattice, capped=True, slivers=True)
         missing += np.count_nonzero(voxels) * float(np.prod(volume.voxel)) - mesh.volume
         area += float(mesh.areas.sum())
     return replace(body, shift=body.shift + missing / (area * volume.unit)) if area else body

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from geofit.caves.strata import Horizon, Stratum
     from geofit.caves.survey import Survey
     from geofit.caves.uncertainty import VolumeEstimate
+    from geofit.implicit.mesh import TriangleMesh
 
 __all__ = ["CaveRun", "read_survey", "run_cave"]
 
@@ -29,7 +30,7 @@ COARSER = 3.0
 
 @dataclass(frozen=True, eq=False)
 class CaveRun:
-    """Passages of a survey, their volume, the spacing of their triangles (metres), and the files.
+    """Passages of a survey, their volume, their triangles with the spacing (metres), and the files.
 
     ``strata`` are the parts between horizons, ``clearance`` the distances of a planned excavation, if asked for.
     """
@@ -37,6 +38,7 @@ class CaveRun:
     body: PassageBody
     volume: VolumeEstimate
     spacing: float
+    triangles: TriangleMesh
     files: tuple[Path, ...]
     strata: tuple[Stratum, ...] = ()
     clearance: Clearance | None = None
@@ -179,7 +181,8 @@ def run_cave(
     stem = folder_for(out) / file_stems([name])[name]
     tables = (*_write_tables(body, stem), *_write_cuts(parts, away, stem))
     figures = stem.with_name(f"{stem.name}.json")
-    run = CaveRun(body, volume, step, (figures, *tables, *write_triangles(triangles, stem)), parts, away)
+    files = (figures, *tables, *write_triangles(triangles, stem))
+    run = CaveRun(body, volume, step, triangles, files, parts, away)
     write_figures(run.figures(), figures)
     return run
 

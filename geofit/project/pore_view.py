@@ -35,6 +35,8 @@ class GreyVolume:
         Histogram: voxels in each class, and the n + 1 limits of the classes.
     threshold : float or None
         Otsu's threshold.
+    each : tuple of int and array, or None
+        The smallest value, and how many voxels have it and each whole number above it; None where these are too many.
     """
 
     name: str
@@ -43,6 +45,16 @@ class GreyVolume:
     counts: NDArray[np.int64]
     edges: NDArray[np.float64]
     threshold: float | None
+    each: tuple[int, NDArray[np.int64]] | None = None
+
+    def share(self, low: float, high: float) -> float:
+        """Return the share of voxels whose values are between two values, both included."""
+        if self.each is not None:
+            first, counts = self.each
+            begin, end = (int(np.clip(at, 0, len(counts))) for at in (np.ceil(low) - first, np.floor(high) + 1 - first))
+            return float(counts[begin : max(end, begin)].sum() / counts.sum())
+        inside = sum(np.count_nonzero((slice_ >= low) & (slice_ <= high)) for slice_ in self.values)
+        return float(inside / self.values.size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +95,7 @@ def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
         As for :func:`geofit.read_volume`, if the file cannot be read or is not a volume.
     """
     from geofit.io.volumes import read_voxels
-    from geofit.pores.threshold import grey_histogram, otsu_threshold
+    from geofit.pores.threshold import grey_histogram, histogram_of_counts, otsu_of_histogram, value_counts
     from geofit.pores.volume import check_array
 
     tell(progress, "reading", 0.0)
@@ -92,9 +104,10 @@ def read_grey(path: Path, progress: Progress | None = None) -> GreyVolume:
     tell(progress, "histogram", 0.6)
     if values.dtype == bool:
         values = values.view(np.uint8)
-    counts, edges = grey_histogram(values)
-    threshold = otsu_threshold(values) if np.count_nonzero(counts) > 2 else None
-    return GreyVolume(path.name, values, voxel, counts, edges, threshold)
+    each = value_counts(values)
+    counts, edges = grey_histogram(values) if each is None else histogram_of_counts(*each)
+    threshold = otsu_of_histogram(counts, edges) if np.count_nonzero(counts) > 2 else None
+    return GreyVolume(path.name, values, voxel, counts, edges, threshold, each)
 
 
 def pore_view(

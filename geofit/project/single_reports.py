@@ -33,6 +33,7 @@ __all__ = [
     "reaching",
     "write_body_part",
     "write_body_report",
+    "write_document",
     "write_pores_report",
 ]
 
@@ -201,7 +202,7 @@ def write_body_report(
     view, subject = body_picture("view", run.body.name), t("Report of a geological body")
     picture = view if view in images else ""
     document = single_document(run.body.name, subject, chapter, picture, t, title=title, date=date)
-    return _written(document, images, out, run.body.name)
+    return write_document(document, images, out, run.body.name)
 
 
 def write_pores_report(
@@ -239,10 +240,11 @@ def write_pores_report(
     document = single_document(
         name, t("Report of a rock volume"), chapter, view if view in images else "", t, title=title, date=date
     )
-    return _written(document, images, out, name)
+    return write_document(document, images, out, name)
 
 
-def _written(document: ReportDocument, images: Mapping[str, bytes], out: Path, name: str) -> tuple[Path, Path]:
+def write_document(document: ReportDocument, images: Mapping[str, bytes], out: Path, name: str) -> tuple[Path, Path]:
+    """Write a report as ``NAME_report.html`` and ``NAME_report.pdf``; return both files."""
     from geofit.data.files import file_stems
     from geofit.report.html import write_html
     from geofit.report.pdf import write_pdf

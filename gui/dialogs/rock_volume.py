@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QSignalBlocker, Qt
 from PySide6.QtGui import QCloseEvent
 from PySide6.QtWidgets import (
     QCheckBox,
@@ -154,9 +154,14 @@ class RockVolumeDialog(TaskDialog):
         self.setWindowTitle(self.tr("Rock volume {name}").format(name=volume.name))
         # A threshold is a proposal that the picture shows; of labels none is likelier than another.
         grey = volume.threshold is not None
-        self.low.setValue(float(np.floor(volume.edges[0])) if grey else UNSTATED)
-        self.high.setValue(float(volume.threshold) if volume.threshold is not None else UNSTATED)
-        self.edge.setValue(volume.voxel[0] * MICRO if volume.voxel else 0.0)
+        stated = (
+            (self.low, float(np.floor(volume.edges[0])) if grey else UNSTATED),
+            (self.high, float(volume.threshold) if volume.threshold is not None else UNSTATED),
+            (self.edge, volume.voxel[0] * MICRO if volume.voxel else 0.0),
+        )
+        for box, value in stated:
+            with QSignalBlocker(box):  # they are shown together, below
+                box.setValue(value)
         self.slices.show_volume(volume)
         self._changed()
         self.say(
@@ -169,9 +174,7 @@ class RockVolumeDialog(TaskDialog):
         if self.volume is not None:
             low, high = self.low.value(), self.high.value()
             self.slices.show_range(low, high)
-            values = self.volume.values
-            share = float(np.mean([((slice_ >= low) & (slice_ <= high)).mean() for slice_ in values]))
-            self.porosity.setText(f"{100 * share:.2f} %")
+            self.porosity.setText(f"{100 * self.volume.share(low, high):.2f} %")
         self.refresh()
 
     def _find(self) -> None:

@@ -6,17 +6,18 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSlider, QVBoxLayout, QWidget
 
-from geofit.gui.panels.canvas import PlotCanvas, PlotColours, recolour
+from geofit.gui.panels.canvas import PlotCanvas, PlotColours, place_axes, recolour
+from geofit.gui.panels.slice_picture import SlicePicture
 from geofit.project.pore_view import GreyVolume
 
 __all__ = ["VolumeSlices"]
 
 PORE = "#1f77b4"
-#: A slice is shown with so many voxels a side at most: more than a screen has no use for.
-MOST = 600
+#: A slice is shown with at most this many voxels a side: a screen has no more.
+MOST = 1200
 
 
 class VolumeSlices(QWidget):
@@ -32,14 +33,16 @@ class VolumeSlices(QWidget):
         self.axis.addItems([self.tr("across axis {number}").format(number=number) for number in range(3)])
         self.axis.setAccessibleName(self.tr("Axis across the slices"))
         self.slider.setAccessibleName(self.tr("Slice"))
-        self.canvas = PlotCanvas(self._paint, self._arrange)
-        self.canvas.setAccessibleName(self.tr("Slice of the volume and histogram of its values"))
+        self.picture, self.canvas = SlicePicture(), PlotCanvas(self._paint, self._arrange)
+        self.picture.setAccessibleName(self.tr("Slice of the volume"))
+        self.canvas.setAccessibleName(self.tr("Histogram of the values of its voxels"))
         row = QHBoxLayout()
         row.addWidget(self.axis)
         row.addWidget(self.slider, 1)
         row.addWidget(self.place)
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
+        layout.addWidget(self.picture, 3)
         layout.addWidget(self.canvas, 1)
         layout.addLayout(row)
         self.axis.currentIndexChanged.connect(self._turn)
@@ -51,10 +54,12 @@ class VolumeSlices(QWidget):
         self.volume = volume
         self.setEnabled(True)
         self._turn()
+        self.canvas.repaint_figure()
 
     def show_range(self, low: float, high: float) -> None:
         """Colour the voxels whose values are between these, both included."""
         self.range = low, high
+        self._draw_slice()
         self.canvas.repaint_figure()
 
     def slice(self) -> NDArray[Any]:
@@ -66,47 +71,43 @@ class VolumeSlices(QWidget):
         if self.volume is None:
             return
         count = self.volume.values.shape[self.axis.currentIndex()]
-        self.slider.setRange(0, count - 1)
-        self.slider.setValue(count // 2)
+        with QSignalBlocker(self.slider):  # the slice is drawn once, below
+            self.slider.setRange(0, count - 1)
+            self.slider.setValue(count // 2)
         self._move()
 
     def _move(self) -> None:
         self.place.setText(f"{self.slider.value()} / {self.slider.maximum()}")
-        self.canvas.repaint_figure()
+        self._draw_slice()
         self.moved.emit()
+
+    def _draw_slice(self) -> None:
+        if self.volume is None:
+            return
+        values, edges = self.slice(), self.volume.edges
+        step = max(-(-max(values.shape) // MOST), 1)
+        self.picture.show_slice(values[::step, ::step], (float(edges[0]), float(edges[-1])), self.range)
 
     def _paint(self, colours: PlotColours) -> None:
         if self.volume is None:
             return
-        picture, histogram = self.canvas.axes(2)
-        values = self.slice()
-        step = max(-(-max(values.shape) // MOST), 1)
-        values = values[::step, ::step]
-        edges = self.volume.edges
-        picture.imshow(values, cmap="gray", vmin=edges[0], vmax=edges[-1], interpolation="nearest", aspect="equal")
+        (histogram,) = self.canvas.axes(1)
+        counts, edges = self.volume.counts, self.volume.edges
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        inside = np.zeros(len(middle), bool)
         if self.range is not None:
-            pore = (values >= self.range[0]) & (values <= self.range[1])
-            over = np.zeros((*pore.shape, 4))
-            over[pore] = (0.12, 0.47, 0.71, 0.65)
-            picture.imshow(over, interpolation="nearest", aspect="equal")
-        picture.set_xticks([])
-        picture.set_yticks([])
-        counts = self.volume.counts
-        middle, width = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
-        inside = np.zeros(len(middle), bool) if self.range is None else self._within(middle)
-        shades = np.where(inside, colours.of(PORE), colours.muted)
-        histogram.bar(middle, counts / counts.sum() * 100, 0.9 * width, color=shades.tolist())
+            inside = (middle >= self.range[0]) & (middle <= self.range[1])
+        percent = counts / counts.sum() * 100
+        # Two outlines, not hundreds of bars: these take longer to make than all else.
+        for which, colour in ((~inside, colours.muted), (inside, colours.of(PORE))):
+            histogram.stairs(np.where(which, percent, 0.0), edges, fill=True, color=colour, linewidth=0)
+        beside = 0.01 * (edges[-1] - edges[0])
+        histogram.set_xlim(edges[0] - beside, edges[-1] + beside)
+        histogram.set_ylim(0, 1.05 * percent.max())
         histogram.set_ylabel(self.tr("voxels, %"))
         histogram.set_xlabel(self.tr("value of a voxel"))
-        for axes in (picture, histogram):
-            recolour(axes, colours)
-
-    def _within(self, middle: NDArray[np.float64]) -> NDArray[np.bool_]:
-        assert self.range is not None
-        return (middle >= self.range[0]) & (middle <= self.range[1])
+        recolour(histogram, colours)
 
     def _arrange(self, colours: PlotColours) -> None:
-        if len(self.canvas.figure.axes) == 2:
-            picture, histogram = self.canvas.figure.axes
-            picture.set_position((0.02, 0.36, 0.96, 0.62))
-            histogram.set_position((0.14, 0.12, 0.82, 0.2))
+        for histogram in self.canvas.figure.axes:
+            place_axes(histogram, 0.0, 0.0, self.canvas.width(), self.canvas.height())

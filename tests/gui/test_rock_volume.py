@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -77,6 +78,61 @@ def test_slices_go_through_all_axes_and_the_histogram_counts_all_voxels(qtbot, d
     assert dialog.volume.threshold == pytest.approx(104.5, abs=1)
     assert dialog.high.value() == pytest.approx(dialog.volume.threshold, abs=0.05)
     assert dialog.porosity.text() == "50.00 %"
+
+
+def test_the_picture_shows_each_voxel_in_its_grey_and_pores_in_colour(qtbot, dialog, tmp_path):
+    values = np.arange(4 * 5 * 6, dtype=np.uint8).reshape(4, 5, 6)
+    np.save(tmp_path / "grey.npy", values)
+    read(qtbot, dialog, tmp_path / "grey.npy")
+    dialog.low.setValue(0)
+    dialog.high.setValue(70)
+    slices = dialog.slices
+    slices.slider.setValue(2)
+    image = slices.picture.image
+    assert (image.width(), image.height()) == (6, 5)
+    for row, column in np.ndindex(5, 6):
+        colour = image.pixelColor(column, row)
+        blue = colour.blue() > colour.red()
+        assert blue == (values[2, row, column] <= 70)
+        if not blue:
+            assert colour.red() == pytest.approx(255 * (values[2, row, column] + 0.5) / 120, abs=1)
+    place = slices.picture.place()
+    assert place.width() * 5 == pytest.approx(place.height() * 6, abs=6)
+    assert slices.picture.rect().contains(place)
+
+
+def test_a_slice_of_a_large_volume_follows_the_slider(qtbot, dialog, tmp_path):
+    values = np.random.default_rng(3).integers(0, 255, (400, 400, 400), np.uint8)
+    np.save(tmp_path / "large.npy", values)
+    began = time.process_time()
+    read(qtbot, dialog, tmp_path / "large.npy")
+    assert time.process_time() - began < 3
+    qtbot.wait(50)
+    took = []
+    for axis in range(3):
+        dialog.slices.axis.setCurrentIndex(axis)
+        for place in range(50, 350, 30):
+            began = time.process_time()
+            dialog.slices.slider.setValue(place)
+            dialog.slices.picture.repaint()
+            took.append(time.process_time() - began)
+    assert np.median(took) < 0.05
+    # Nothing is kept of the slices before: the last ones are as quick as the first.
+    assert np.median(took[-10:]) < 0.05
+    began = time.process_time()
+    dialog.high.setValue(99)
+    dialog.slices.canvas.draw()
+    assert time.process_time() - began < 0.25
+    assert dialog.porosity.text() == f"{100 * (values <= 99).mean():.2f} %"
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.int16, np.uint16, np.float32])
+def test_the_share_between_two_values_is_that_of_the_voxels(tmp_path, kind):
+    values = (np.random.default_rng(2).random((6, 7, 8)) * 250 - (100 if kind is np.int16 else 0)).astype(kind)
+    np.save(tmp_path / "a.npy", values)
+    volume = read_grey(tmp_path / "a.npy")
+    for low, high in ((0, 100), (-1e12, 17.5), (40.5, 40.6), (30, 20), (values.min(), values.max()), (-50, 1e12)):
+        assert volume.share(low, high) == pytest.approx(((values >= low) & (values <= high)).mean())
 
 
 def test_a_file_that_is_no_volume_is_an_error_in_words(qtbot, dialog, tmp_path):

@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from brute import blobs
+from scipy import ndimage
 from shapes import capsules
 
-from geofit.pores import RockVolume, maximal_balls, pore_network
+from geofit.pores import RockVolume, maximal_balls, network_permeability, pore_network
 
 
 def literal_families(balls):
@@ -61,3 +62,23 @@ def test_two_bulbs_apart_are_two_super_balls_with_a_throat():
     # Taken literally the rule also makes pores of the tube between them; the merge tree does not.
     assert len(network.pores) >= 2
     assert len(pore_network(RockVolume(capsules((41, 41, 76), sticks), pore=True, voxel=1)).pores) == 2
+
+
+def gaussian_blobs(seed):
+    field = ndimage.gaussian_filter(np.random.default_rng(seed).random((90, 90, 90)), 3.0)
+    return field < np.quantile(field, 0.3)
+
+
+@pytest.mark.parametrize("source", ["berea_200", "ketton_256", 1, 2])
+def test_tau_and_the_smallest_pore_change_the_count_of_pores_and_tau_hardly_changes_the_flow(source, rock):
+    """The sweep of docs/pores.md in short, on crops of two rocks and on blobs."""
+    pore = gaussian_blobs(source) if isinstance(source, int) else rock(source).pore[:120, :120, :120]
+    volume = RockVolume(pore, pore=True, voxel=1e-6)
+    by_tau = [pore_network(volume, tau=tau) for tau in (0.6, 0.8, 0.9, 1.0)]
+    by_r_min = [pore_network(volume, r_min=r_min) for r_min in (0.0, 1.25, 2.0, 3.0)]
+    assert np.all(np.diff([len(network.pores) for network in by_tau]) > 0)
+    assert np.all(np.diff([len(network.pores) for network in by_r_min]) < 0)
+    assert len(by_tau[2].pores) > 1.3 * len(by_tau[1].pores)
+    k = np.array([network_permeability(network).square_metres for network in by_tau[1:3]])
+    assert (k > 0).any()
+    assert np.exp(np.abs(np.log(k[1, k[0] > 0] / k[0, k[0] > 0])).mean()) < 1.25

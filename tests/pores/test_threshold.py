@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from geofit.pores.threshold import grey_histogram, otsu_threshold
+from geofit.pores.threshold import grey_histogram, otsu_threshold, value_counts
 from geofit.pores.volume import VolumeError
 
 
@@ -40,7 +40,7 @@ def test_a_rock_with_noise_is_parted_to_within_a_percent(seed):
 
 
 def test_a_volume_of_one_value_has_no_threshold():
-    with pytest.raises(VolumeError, match="no threshold"):
+    with pytest.raises(VolumeError, match="the value 7; there is no threshold"):
         otsu_threshold(np.full((3, 3, 3), 7, np.uint8))
 
 
@@ -54,3 +54,17 @@ def test_the_histogram_counts_every_voxel_once(kind):
     assert len(edges) == len(counts) + 1
     assert edges[0] <= values.min()
     assert edges[-1] >= values.max()
+
+
+@pytest.mark.parametrize(("kind", "low", "high"), [(np.uint8, 3, 250), (np.int16, -900, 4000), (np.uint16, 7, 263)])
+def test_whole_numbers_are_counted_into_the_classes_of_numpy(kind, low, high):
+    values = np.random.default_rng(5).integers(low, high + 1, (9, 10, 11)).astype(kind)
+    counts, edges = grey_histogram(values)
+    np.testing.assert_array_equal(counts, np.histogram(values, edges)[0])
+    first, each = value_counts(values)
+    np.testing.assert_array_equal(each, [(values == first + k).sum() for k in range(len(each))])
+
+
+def test_values_that_are_not_whole_or_too_many_are_not_counted_one_by_one():
+    assert value_counts(np.full((2, 2, 2), 0.5)) is None
+    assert value_counts(np.array([[[0, 1 << 20]]])) is None
