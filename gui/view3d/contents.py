@@ -12,6 +12,7 @@ from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.view3d.cloud import PointCloud
 from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.view3d.horizon_items import control_item, points_item, seams_item, shape_item, suggestions_item
 from geofit.gui.view3d.item import Item, Look
@@ -27,6 +28,9 @@ __all__ = ["Contents"]
 
 Floats = NDArray[np.float64]
 
+#: So many points are drawn in every view; of more, as many as it has room for.
+FEW = 10_000
+
 
 class Contents:
     """What the scene shows: at most one site, and the surfaces of its horizons (or of none)."""
@@ -40,6 +44,7 @@ class Contents:
         self.drawn: dict[str, Drawn] = {}
         self.listed: dict[str, Listing] = {}
         self.faded = True
+        self._clouds: list[PointCloud] = []
 
     def set_faded(self, on: bool) -> None:
         """Fade what lies above the ground or beyond the points of its surface, or draw it in full."""
@@ -152,6 +157,7 @@ class Contents:
         self.site = None
         for known in (self.points, self.surfaces, self.drawn, self.control, self.listed):
             known.clear()
+        self._clouds.clear()
         self.stage.layers.clear()
 
     def show_seams(self, name: str) -> None:
@@ -244,7 +250,21 @@ class Contents:
         choices = ("kind", *(("deviation",) if residuals is not None else ()), "elevation", "plain")
         layer = Layer(f"points:{name}", "points", name, self.colour(name), choices=choices, colour_by="kind")
         excluded = None if listed is None else listed.excluded
-        self.stage.show(layer, lambda a, b: points_item(points, residuals, settings, a, b, excluded))
+        self.stage.show(
+            layer, lambda a, b: points_item(points, residuals, settings, a, b, excluded, self._cloud(points.xyz))
+        )
+
+    def _cloud(self, xyz: Floats) -> PointCloud | None:
+        """Return many points in blocks; they are sorted once, whoever shows them."""
+        if len(xyz) <= FEW:
+            return None
+        known = {id(points.xyz) for points in self.points.values()}
+        self._clouds = [cloud for cloud in self._clouds if id(cloud.xyz) in known]
+        for cloud in self._clouds:
+            if cloud.xyz is xyz:
+                return cloud
+        self._clouds.append(PointCloud.of(xyz))
+        return self._clouds[-1]
 
     def _values(self, name: str, by: str) -> tuple[Floats, Floats] | None:
         """Return what a surface is coloured by, at the vertices of its fine and coarse triangles."""

@@ -100,6 +100,7 @@ class SceneView(QWidget):
         canvas.viewpoint_changed.connect(self._viewpoint_moved)
         canvas.detail_changed.connect(self._set_detail)
         canvas.pixels_changed.connect(self._stage.set_pixels)
+        canvas.prepare = self._stage.renew
         pointer = self.pointer
         pointer.point_picked.connect(self.point_picked)
         pointer.control_picked.connect(self.control_picked)
