@@ -104,7 +104,7 @@ class PointCloud:
     def _beginnings(self, starts: Ints, step: int, counts: Ints) -> Ints:
         ends = np.cumsum(counts)
         number = np.arange(ends[-1] if len(ends) else 0) - np.repeat(ends - counts, counts)
-        return self.order[np.repeat(starts, counts) + step * number].astype(np.int64)
+        return np.asarray(self.order[np.repeat(starts, counts) + step * number], np.int64)
 
     def under(self, view: Projector, column: float, row: float, reach: float) -> Ints:
         """Return the indices, ascending, of all points that can be drawn within ``reach`` pixels of a pixel."""
@@ -139,7 +139,7 @@ def _pixels(boxes: Floats, view: Projector) -> Floats:
     size = np.array([view.width, view.height])
     corners = _corners(boxes, view)
     seen = _within(corners, np.zeros(2), np.ones(2))
-    around = (corners[:, 2] <= 0).any(axis=1)[:, None]
+    around = np.any(corners[:, 2] <= 0, axis=1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
         place = (corners[:, :2] / corners[:, 2:] + 1) / 2 * size[:, None]
     # A box that the viewpoint is in may fill the picture; one that is seen from its edge is there all the same.
@@ -155,9 +155,9 @@ def _within(corners: Floats, middle: Floats, reach: Floats) -> NDArray[np.bool_]
     homogeneous coordinates").
     """
     place, w = corners[:, :2], corners[:, 2:]
-    below = (place < (middle - reach)[:, None] * w).all(axis=2)
-    above = (place > (middle + reach)[:, None] * w).all(axis=2)
-    return np.asarray(~below.any(axis=1) & ~above.any(axis=1) & (w > 0).any(axis=(1, 2)))
+    below = np.all(place < (middle - reach)[:, None] * w, axis=2)
+    above = np.all(place > (middle + reach)[:, None] * w, axis=2)
+    return np.asarray(~np.any(below, axis=1) & ~np.any(above, axis=1) & np.any(w > 0, axis=(1, 2)))
 
 
 def shares(sizes: Ints, weights: Floats, budget: int) -> Ints:

@@ -125,7 +125,9 @@ def points_by(
 
 
 def _by_bands(d: Floats, settings: FitSettings, dark: bool) -> PointColours:
-    code, shades, sizes = np.zeros(len(d), np.uint8), [], []
+    code = np.zeros(len(d), np.uint8)
+    shades: list[tuple[int, int, int]] = []
+    sizes: list[float] = []
     above: list[Swatch] = []
     below: list[Swatch] = []
     for k, band in enumerate(bands(settings, dark=dark)):

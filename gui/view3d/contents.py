@@ -17,7 +17,8 @@ from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.view3d.horizon_items import control_item, points_item, seams_item, shape_item, suggestions_item
 from geofit.gui.view3d.item import Item, Look
 from geofit.gui.view3d.layers import Layer
-from geofit.gui.view3d.shape import next_below, seam_lines
+from geofit.gui.view3d.shape import next_below, seam_lines, too_coarse
+from geofit.gui.view3d.sight import Sight
 from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, holes_item, sections_item
 from geofit.gui.view3d.stage import Stage
 from geofit.project.listing import Listing
@@ -118,11 +119,11 @@ class Contents:
         self.stage.show(
             Layer(f"surface:{name}", "surface", name, colour, choices=tuple(choices), isolines=False),
             lambda layer, look: shape_item(
-                drawn.shape,
+                self.drawn[name].shape,
                 self._values(name, layer.colour_by),
                 layer,
                 look,
-                drawn.supported if self.faded else None,
+                self.drawn[name].supported if self.faded else None,
             ),
         )
         for kind, bound in (("upper", drawn.upper), ("lower", drawn.lower)):
@@ -138,6 +139,17 @@ class Contents:
         for layer in layers:
             if layer.colour_by == "thickness" and layer.horizon != name:
                 self.stage.rebuild(layer.key)
+
+    def too_coarse(self, sight: Sight) -> list[str]:
+        """Return the horizons whose surfaces, as far as they are drawn, need more triangles for a view."""
+        shown = [layer.horizon for layer, _ in self.stage.items() if layer.kind == "surface"]
+        return [name for name in shown if too_coarse(self.surfaces[name], sight, self.drawn[name].sight)]
+
+    def sharpen(self, surface: HorizonFit, drawn: Drawn) -> None:
+        """Draw a surface that is shown with other triangles; another fit of it stays as it is."""
+        if self.surfaces.get(surface.name) is surface:
+            self.drawn[surface.name] = drawn
+            self.stage.rebuild(f"surface:{surface.name}")
 
     def remove_surface(self, name: str) -> None:
         """Take away a surface with all that belongs to it; its points stay if they are of the site."""

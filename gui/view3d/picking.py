@@ -79,10 +79,16 @@ def nearest_way(items: Iterable[tuple[Layer, Item]], view: Projector, column: fl
 
 
 class Sights:
-    """Finds where a line of sight meets the surfaces; the search tree of each is made when it is first needed."""
+    """Finds where a line of sight meets the surfaces; the search tree of each is kept."""
 
     def __init__(self) -> None:
         self._trees: WeakKeyDictionary[Shape, tuple[Any, Floats]] = WeakKeyDictionary()
+
+    def prepare(self, items: Iterable[Item]) -> None:
+        """Make the search trees of surfaces."""
+        for item in items:
+            if item.shape is not None and len(item.shape.triangles):
+                self._tree(item.shape)
 
     def first(
         self, items: Iterable[tuple[Layer, Item]], view: Projector, column: float, row: float, box: Floats | None
