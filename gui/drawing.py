@@ -11,7 +11,8 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.drawn import Drawn, drawn_of
-from geofit.gui.worker import run_in_process
+from geofit.gui.view3d.sight import Sight
+from geofit.gui.worker import run, run_in_process
 
 __all__ = ["SurfaceDrawing"]
 
@@ -69,6 +70,33 @@ class SurfaceDrawing(QObject):
 
         self._wanted[surface.name] = show
         run_in_process(self, drawn_of, surface, uncertainty, ground, on_done=done, on_failed=fail)
+
+    def sharpen(
+        self,
+        surface: HorizonFit,
+        uncertainty: Uncertainty | None,
+        ground: Ground | None,
+        sight: Sight,
+        show: Callable[[Drawn], object],
+    ) -> None:
+        """Call ``show`` with what is drawn for a view, unless another is still being made of this surface.
+
+        It takes a tenth of a second, in a thread: what another process would need of a surface takes longer to send.
+        """
+        if surface.name in self._wanted:
+            return
+
+        def done(drawn: Drawn) -> None:
+            if self._wanted.get(surface.name) is show:
+                del self._wanted[surface.name]
+                show(drawn)
+
+        def fail(error: Exception) -> None:
+            self.forget(surface.name)
+            self.failed.emit(error)
+
+        self._wanted[surface.name] = show
+        run(self, drawn_of, surface, uncertainty, ground, sight, on_done=done, on_failed=fail)
 
     def forget(self, name: str) -> None:
         """Take back what was asked for of a horizon; its process is let be."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from typing import cast
 
 from numpy.typing import ArrayLike
@@ -16,6 +17,7 @@ from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.drawing import SurfaceDrawing
 from geofit.gui.view3d.drawn import Drawn
+from geofit.gui.view3d.sight import Sight
 from geofit.gui.workspace import Workspace
 from geofit.project.document import Document
 from geofit.site.order import Order
@@ -56,6 +58,7 @@ class Showing(QObject):
         self._read_back: dict[str, tuple[HorizonFit, ReadBack]] = {}
         self._later = QTimer(self, singleShot=True, interval=0)
         self._later.timeout.connect(self.now)
+        workspace.view.sharper_wanted.connect(self._sharpen)
         self._ends: list[Callable[[], None]] = []
         for signal, listener in (
             (document.site_changed, self._on_site),
@@ -72,6 +75,7 @@ class Showing(QObject):
     def close(self) -> None:
         """Listen no more; the document may live longer than the window."""
         self._later.stop()
+        self._panels.view.sharper_wanted.disconnect(self._sharpen)
         for end in self._ends:
             end()
         self._ends.clear()
@@ -180,6 +184,13 @@ class Showing(QObject):
             self.drawn.emit(name)
 
         self.drawing.draw(surface, uncertainty, self._document.site.ground, show)
+
+    def _sharpen(self, name: str, sight: Sight) -> None:
+        surface, prediction = self._document.surface(name), self._document.prediction(name)
+        if surface is not None:
+            uncertainty = None if prediction is None else prediction.uncertainty
+            show = partial(self._panels.view.sharpen, surface)
+            self.drawing.sharpen(surface, uncertainty, self._document.site.ground, sight, show)
 
     def _show_tree(self) -> None:
         document = self._document

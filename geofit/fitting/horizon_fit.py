@@ -17,7 +17,7 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.fitting import edit
 from geofit.fitting.model import Model
-from geofit.geometry.mesh import Mesh
+from geofit.geometry.mesh import Mesh, Tolerance
 from geofit.geometry.projection import Projection
 from geofit.geometry.trim_loops import Loops
 from geofit.splines.patch import Patch
@@ -147,7 +147,7 @@ class HorizonFit:
         """Return the signed orthogonal distance of (n, 3) map coordinates, metres, positive above."""
         return self.surface.distance(xyz)
 
-    def triangulate(self, tolerance: float = 0.05) -> Mesh:
+    def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Return triangles within a tolerance (m), trimmed to where the surface ends."""
         return self.surface.triangulate(tolerance)
 

@@ -100,6 +100,12 @@ class Cells:
         parts = [self._jet(place[k : k + BATCH], 2) for k in range(0, max(len(place.cell), 1), BATCH)]
         return [np.concatenate(columns, axis=1) for columns in zip(*parts, strict=True)]
 
+    def slopes(self, place: Place) -> tuple[Floats, Floats]:
+        """Return S_s, S_t at places, each (3, n), in local coordinates."""
+        parts = [self._jet(place[k : k + BATCH], 2)[1:3] for k in range(0, max(len(place.cell), 1), BATCH)]
+        along, across = (np.concatenate(columns, axis=1) for columns in zip(*parts, strict=True))
+        return along, across
+
     def _jet(self, place: Place, order: int) -> list[Floats]:
         c = self.coefficients.take(place.cell, axis=2)
         s, t = place.local

@@ -12,6 +12,8 @@ __all__ = ["clip", "inside"]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+#: Cells of a raster along the longer side of an outline.
+CELLS = 256
 #: Vertices nearer to the outline than this (metres) are on it.
 ON = 1e-7
 
@@ -39,7 +41,9 @@ def clip(points: Floats, triangles: Ints, uv: Floats, *outlines: Floats) -> tupl
         Vertices (the old ones first), triangles, the triangle that each comes from, its corners' ``uv``.
     """
     rings = [_distinct(outline) for outline in outlines]
-    touched = np.any([_touched(points[triangles, :2], ring) for ring in rings], axis=0)
+    plan = np.ascontiguousarray(points[:, :2])
+    corners = [plan[triangles[:, k]] for k in range(3)]
+    touched = np.any([_touched(corners, ring) for ring in rings], axis=0)
     rest, near = np.flatnonzero(~touched), np.flatnonzero(touched)
     # Only the triangles along the outlines are worked on, with their own vertices.
     used, numbers = np.unique(triangles[near], return_inverse=True)
@@ -54,24 +58,58 @@ def clip(points: Floats, triangles: Ints, uv: Floats, *outlines: Floats) -> tupl
     every = np.concatenate([points, work.points[len(used) :]])
     cut = np.concatenate([triangles[rest], back[work.triangles]]).astype(np.int64)
     parent = np.concatenate([rest, near[work.parent]])
-    middle = every[cut, :2].mean(axis=1)
-    keep = np.logical_xor.reduce([inside(ring, middle) for ring in rings])
+    # A triangle that no outline touches is inside where its corners are.
+    sides = np.logical_xor.reduce([inside(ring, plan) for ring in rings])
+    middle = every[cut[len(rest) :], :2].mean(axis=1)
+    keep = np.concatenate([sides[triangles[rest, 0]], np.logical_xor.reduce([inside(ring, middle) for ring in rings])])
     return every, cut[keep], parent[keep], np.concatenate([uv[rest], work.uv])[keep]
 
 
-def _touched(plan: Floats, outline: Floats) -> NDArray[np.bool_]:
-    """Which triangles (m, 3, 2) a side of the outline may run through or along: some too many, never too few."""
-    a, b, c = plan[:, 0], plan[:, 1], plan[:, 2]
+def _touched(corners: list[Floats], outline: Floats) -> NDArray[np.bool_]:
+    """Which triangles, three times (m, 2), a side of the outline may run through or along: never too few."""
+    a, b, c = corners
     low, high = np.minimum(np.minimum(a, b), c) - ON, np.maximum(np.maximum(a, b), c) + ON
-    touched = np.zeros(len(plan), bool)
+    touched = np.zeros(len(a), bool)
+    known = np.flatnonzero(_Raster(outline).near(low, high))
+    low, high, plan = low[known], high[known], np.stack([a[known], b[known], c[known]], axis=1)
     for start, end in zip(outline, np.roll(outline, -1, axis=0), strict=True):
         (x0, y0), (x1, y1) = np.minimum(start, end), np.maximum(start, end)
         box = (low[:, 0] <= x1) & (high[:, 0] >= x0) & (low[:, 1] <= y1) & (high[:, 1] >= y0)
-        some = np.flatnonzero(box & ~touched)
+        some = np.flatnonzero(box & ~touched[known])
         way = (end - start) / np.linalg.norm(end - start)
         off = (plan[some] - start) @ np.array([-way[1], way[0]])
-        touched[some] = (off.min(axis=1) <= ON) & (off.max(axis=1) >= -ON)
+        touched[known[some]] = (off.min(axis=1) <= ON) & (off.max(axis=1) >= -ON)
     return touched
+
+
+class _Raster:
+    """The cells of a grid that an outline runs through or beside: of many triangles it is far from nearly all."""
+
+    def __init__(self, outline: Floats) -> None:
+        self._low = outline.min(axis=0)
+        self._cell = max(float(np.ptp(outline, axis=0).max()) / CELLS, 100 * ON)
+        way = np.roll(outline, -1, axis=0) - outline
+        # Places half a cell apart: what lies between two of them is in their cells or beside these.
+        pieces = 1 + (2 * np.linalg.norm(way, axis=1) / self._cell).astype(np.int64)
+        number = np.arange(pieces.sum()) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+        share = (number / np.repeat(pieces, pieces))[:, None]
+        x, y = self._cells(np.repeat(outline, pieces, axis=0) + share * np.repeat(way, pieces, axis=0)).T
+        marked = np.zeros((CELLS + 5, CELLS + 5), np.int64)
+        for i in (-1, 0, 1):
+            for j in (-1, 0, 1):
+                marked[x + i, y + j] = 1
+        self._sums = np.pad(marked.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+
+    def _cells(self, plan: Floats) -> Ints:
+        """Return the cells (n, 2) of places; those outside are at the rim, which no outline marks."""
+        cells: Ints = np.clip((plan - self._low) / self._cell + 2, 0, CELLS + 4).astype(np.int64)
+        return cells
+
+    def near(self, low: Floats, high: Floats) -> NDArray[np.bool_]:
+        """Which boxes, (n, 2) least and (n, 2) largest coordinates, have a marked cell."""
+        (x0, y0), (x1, y1) = self._cells(low).T, self._cells(high).T + 1
+        count = self._sums[x1, y1] - self._sums[x0, y1] - self._sums[x1, y0] + self._sums[x0, y0]
+        return np.asarray(count > 0)
 
 
 def inside(outline: Floats, plan: Floats) -> NDArray[np.bool_]:
@@ -133,7 +171,10 @@ class _Work:
     def insert(self, corner: Floats) -> None:
         """Make a corner of the outline a vertex of every sheet that stands over it."""
         plan = self.points[self.triangles, :2]
-        near = (plan.min(axis=1) - ON <= corner).all(axis=1) & (plan.max(axis=1) + ON >= corner).all(axis=1)
+        one, two, three = plan[:, 0], plan[:, 1], plan[:, 2]
+        low, high = np.minimum(np.minimum(one, two), three) - ON, np.maximum(np.maximum(one, two), three) + ON
+        x, y = corner
+        near = (low[:, 0] <= x) & (low[:, 1] <= y) & (high[:, 0] >= x) & (high[:, 1] >= y)
         divided: dict[tuple[int, int], int] = {}
         for k in np.flatnonzero(near):
             distance, share = _heights(plan[k], corner)
@@ -163,20 +204,25 @@ class _Work:
         off = direction[0] * plan[:, 1] - direction[1] * plan[:, 0]
         along = plan @ direction
         sign = np.where(np.abs(off) <= ON, 0, np.sign(off)).astype(int)
-        signs, ahead = sign[self.triangles], along[self.triangles]
-        beside = (ahead.max(axis=1) <= 0) | (ahead.min(axis=1) >= length)
-        crossed = np.flatnonzero((signs.min(axis=1) < 0) & (signs.max(axis=1) > 0) & ~beside)
+        a, b, c = (sign[self.triangles[:, corner]] for corner in range(3))
+        least, most = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
+        crossed = np.flatnonzero((least < 0) & (most > 0))
+        ahead = along[self.triangles[crossed]]
+        crossed = crossed[(ahead.max(axis=1) > 0) & (ahead.min(axis=1) < length)]
         # Plain numbers from here on: one at a time, an array's elements cost several times as much.
-        off, along, sign = off.tolist(), along.tolist(), sign.tolist()
+        used = np.unique(self.triangles[crossed])
+        offs, alongs, signs = (
+            dict(zip(used.tolist(), values[used].tolist(), strict=True)) for values in (off, along, sign)
+        )
         divided: dict[tuple[int, int], tuple[int, float]] = {}
         for k, numbers in zip(crossed.tolist(), self.triangles[crossed].tolist(), strict=True):
-            ends = [along[n] for n in numbers if sign[n] == 0]
+            ends = [alongs[n] for n in numbers if signs[n] == 0]
             cuts = []
             for i in range(3):
                 a, b = numbers[i], numbers[(i + 1) % 3]
-                if sign[a] * sign[b] < 0:
-                    t = off[a] / (off[a] - off[b])
-                    ends.append(along[a] + t * (along[b] - along[a]))
+                if signs[a] * signs[b] < 0:
+                    t = offs[a] / (offs[a] - offs[b])
+                    ends.append(alongs[a] + t * (alongs[b] - alongs[a]))
                     cuts.append(i)
             if not 0 < 0.5 * (ends[0] + ends[1]) < length:
                 continue
@@ -185,7 +231,7 @@ class _Work:
                 a, b = numbers[i], numbers[(i + 1) % 3]
                 key = (min(a, b), max(a, b))
                 if key not in divided:
-                    t = off[key[0]] / (off[key[0]] - off[key[1]])
+                    t = offs[key[0]] / (offs[key[0]] - offs[key[1]])
                     first, second = self.points[key[0]], self.points[key[1]]
                     divided[key] = self._new(first + t * (second - first)), t
                 number, t = divided[key]

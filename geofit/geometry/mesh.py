@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,10 +15,13 @@ from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.splines.patch import Patch
 
-__all__ = ["Mesh", "triangulate", "trim_to_outline"]
+__all__ = ["Mesh", "Tolerance", "cell_boxes", "triangle_count", "triangulate", "trim_to_outline"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+#: Metres everywhere; or, from the least and the largest map coordinates of n boxes, (n, 3) each, the metres in each.
+Tolerance = float | Callable[[Floats, Floats], Floats]
 
 #: Corners and edges of patches nearer than this (metres) are one, as in the sewn shell.
 WELD = 1e-6
@@ -62,12 +65,17 @@ class Mesh:
 
     def only(self, keep: NDArray[np.bool_]) -> Mesh:
         """Return some of the triangles, with the vertices that they use."""
-        triangles = self.triangles[keep]
-        used, numbers = np.unique(triangles, return_inverse=True)
-        return Mesh(self.points[used], numbers.reshape(-1, 3), self.patch[keep], self.uv[keep], self.origin, self.names)
+        whole = bool(keep.all())
+        some = slice(None) if whole else np.flatnonzero(keep)
+        triangles, patch, uv = self.triangles[some], self.patch[some], self.uv[some]
+        used = np.zeros(len(self.points), bool)
+        used[triangles] = True
+        if not used.all():
+            triangles = (np.cumsum(used) - 1)[triangles]
+        return Mesh(self.points[used], triangles, patch, uv, self.origin, self.names)
 
 
-def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.05) -> Mesh:
+def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: Tolerance = 0.05) -> Mesh:
     """Return triangles of whole patches.
 
     Every knot span is cut so finely that a triangle leaves the surface by about ``tolerance`` at most; spans
@@ -80,8 +88,9 @@ def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.0
         Any patches, steep and overturned ones included.
     origin : (3,) array
         Offset that turns the patches' coordinates into map coordinates, metres.
-    tolerance : float
-        Largest distance between triangle and surface in metres.
+    tolerance : float or callable
+        Largest distance between triangle and surface in metres. A function gives it for the cells between
+        neighbouring knots, from boxes that hold them: a view asks for more where it is near.
 
     Raises
     ------
@@ -94,7 +103,7 @@ def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.0
     (h_u^2 |S_uu.n| + 2 h_u h_v |S_uv.n| + h_v^2 |S_vv.n|) / 8 (Filip, Magedson, Markot 1986, "Surface
     algorithms using bounds on derivatives"). Second derivatives of a cubic are largest at the ends of spans.
     """
-    if not is_finite(tolerance) or tolerance <= 0:
+    if not callable(tolerance) and (not is_finite(tolerance) or tolerance <= 0):
         raise SettingsError(
             message(
                 "geometry.chordal-tolerance-not-positive",
@@ -102,15 +111,16 @@ def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.0
                 tolerance=shown(tolerance),
             )
         )
-    lines = [_lines(patch, tolerance) for patch in patches]
-    count = sum(2 * (len(u) - 1) * (len(v) - 1) for u, v in lines)
+    origin = np.asarray(origin, float)
+    lines = [_lines(patch, _in_cells(patch, origin, tolerance)) for patch in patches]
+    count = _count(lines)
     if count > MOST:
         raise SettingsError(
             message(
                 "geometry.too-many-triangles",
                 "A chordal tolerance of {tolerance:.3g} m makes {count:.2g} triangles; at most {most:.0e} are made. "
                 "Give a larger tolerance.",
-                tolerance=tolerance,
+                tolerance=min(float(np.min(_in_cells(patch, origin, tolerance))) for patch in patches),
                 count=count,
                 most=MOST,
             )
@@ -123,15 +133,45 @@ def triangulate(patches: Sequence[Patch], origin: Floats, tolerance: float = 0.0
         triangles=np.concatenate([triangles for triangles, _ in parts]),
         patch=np.repeat(np.arange(len(parts)), [len(triangles) for triangles, _ in parts]),
         uv=np.concatenate([uv for _, uv in parts]),
-        origin=np.asarray(origin, float),
+        origin=origin,
         names=tuple(patch.name for patch in patches),
     )
     t = mesh.triangles
     return mesh.only((t[:, 0] != t[:, 1]) & (t[:, 1] != t[:, 2]) & (t[:, 2] != t[:, 0]))
 
 
-def _lines(patch: Patch, tolerance: float) -> tuple[Floats, Floats]:
-    """Choose the parameter lines in u and v: every knot, and as many between as the curvature asks."""
+def triangle_count(patches: Sequence[Patch], origin: Floats, tolerance: Tolerance) -> int:
+    """Return about how many triangles :func:`triangulate` makes of whole patches."""
+    return _count([_lines(patch, _in_cells(patch, np.asarray(origin, float), tolerance)) for patch in patches])
+
+
+def _count(lines: list[tuple[Floats, Floats]]) -> int:
+    return sum(2 * (len(u) - 1) * (len(v) - 1) for u, v in lines)
+
+
+def cell_boxes(patch: Patch, origin: Floats) -> tuple[Floats, Floats]:
+    """Return the least and the largest map coordinates, (nu, nv, 3), of each cell's control points, which hold it."""
+    first = [
+        np.searchsorted(knots, np.unique(knots)[:-1], side="right") - 1 - degree
+        for knots, degree in zip((patch.knots_u, patch.knots_v), patch.degree, strict=True)
+    ]
+    ends = []
+    for least in (np.minimum, np.maximum):
+        rows = least.reduce([patch.control[first[0] + k] for k in range(patch.degree[0] + 1)])
+        ends.append(least.reduce([rows[:, first[1] + k] for k in range(patch.degree[1] + 1)]) + origin)
+    return ends[0], ends[1]
+
+
+def _in_cells(patch: Patch, origin: Floats, tolerance: Tolerance) -> Floats:
+    """Return the tolerance in each cell (nu, nv), or one for all (1, 1)."""
+    if not callable(tolerance):
+        return np.array([[tolerance]], float)
+    low, high = cell_boxes(patch, origin)
+    return tolerance(low.reshape(-1, 3), high.reshape(-1, 3)).reshape(low.shape[:2])
+
+
+def _lines(patch: Patch, tolerance: Floats) -> tuple[Floats, Floats]:
+    """Choose the parameter lines in u and v: every knot, and between as many as bend and tolerance (nu, nv) ask."""
     breaks = np.unique(patch.knots_u), np.unique(patch.knots_v)
     # Both ends of each span, from its inside: at double knots the second derivative jumps.
     u, v = (np.stack([b[:-1] + 1e-9 * np.diff(b), b[1:] - 1e-9 * np.diff(b)], axis=1).ravel() for b in breaks)
@@ -143,13 +183,14 @@ def _lines(patch: Patch, tolerance: float) -> tuple[Floats, Floats]:
         np.abs(np.einsum("abk,abk->ab", patch.evaluate(u, v, *order), normal)) for order in ((2, 0), (1, 1), (0, 2))
     )
     length_u, length_v = (np.maximum(np.linalg.norm(s, axis=-1), 1e-300) for s in (su, sv))
-    along_u = (uu + uv * length_u / length_v).max(axis=1).reshape(-1, 2).max(axis=1)
-    along_v = (vv + uv * length_v / length_u).max(axis=0).reshape(-1, 2).max(axis=1)
-    return _cut(breaks[0], along_u, tolerance), _cut(breaks[1], along_v, tolerance)
+    along_u, along_v = uu + uv * length_u / length_v, vv + uv * length_v / length_u
+    cells = (len(breaks[0]) - 1, 2, len(breaks[1]) - 1, 2)
+    asked = [along.reshape(cells).max(axis=(1, 3)) / (4 * tolerance) for along in (along_u, along_v)]
+    return _cut(breaks[0], asked[0].max(axis=1)), _cut(breaks[1], asked[1].max(axis=0))
 
 
-def _cut(breaks: Floats, bend: Floats, tolerance: float) -> Floats:
-    pieces = np.ceil(np.diff(breaks) * np.sqrt(bend / (4 * tolerance))).clip(1, FINEST).astype(int)
+def _cut(breaks: Floats, asked: Floats) -> Floats:
+    pieces = np.ceil(np.diff(breaks) * np.sqrt(asked)).clip(1, FINEST).astype(int)
     if pieces.sum() == 1:
         pieces[0] = 2  # the triangles between edge and inside need one line inside
     spans = zip(breaks[:-1], breaks[1:], pieces, strict=True)

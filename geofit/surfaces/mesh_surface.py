@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import measurable_places
-from geofit.geometry.mesh import Mesh
+from geofit.geometry.mesh import Mesh, Tolerance
 from geofit.geometry.mesh_projection import mesh_elevation, nearest_on_mesh
 from geofit.geometry.projection import Projection
 from geofit.geometry.trim_loops import Loops
@@ -71,6 +71,6 @@ class MeshSurface:
         """Return the signed distance of (n, 3) map coordinates to the nearest triangle, metres, positive above."""
         return self.project(xyz).distance
 
-    def triangulate(self, tolerance: float = 0.05) -> Mesh:
+    def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Return the mesh itself, whatever the tolerance."""
         return self.mesh

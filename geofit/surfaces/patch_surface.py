@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import measurable_places
 from geofit.geometry.elevation import elevation
-from geofit.geometry.mesh import Mesh, triangulate, trim_to_outline
+from geofit.geometry.mesh import Mesh, Tolerance, triangulate, trim_to_outline
 from geofit.geometry.projection import Projection, project
 from geofit.geometry.trim_loops import Loops
 from geofit.splines.patch import Patch, Patches
@@ -76,7 +76,7 @@ class PatchSurface:
         """Return the signed orthogonal distance of (n, 3) map coordinates, metres, positive above."""
         return self.project(xyz).distance
 
-    def triangulate(self, tolerance: float = 0.05) -> Mesh:
+    def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Return triangles within a tolerance (m); see :func:`geofit.geometry.mesh.triangulate`."""
         mesh = triangulate(self.patches, self.origin, tolerance)
         return mesh if self.outline is None else trim_to_outline(mesh, self.patches, self.outline)

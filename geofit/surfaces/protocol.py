@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from geofit.data.points import PointSet
     from geofit.data.settings import FitSettings
     from geofit.geometry.foot_points import Projection
-    from geofit.geometry.mesh import Mesh
+    from geofit.geometry.mesh import Mesh, Tolerance
     from geofit.geometry.trim_loops import Loops
     from geofit.splines.patch import Patch
 
@@ -69,7 +69,7 @@ class Surface(Protocol):
     def distance(self, xyz: ArrayLike) -> Floats:
         """Signed orthogonal distance of (n, 3) map coordinates, positive above."""
 
-    def triangulate(self, tolerance: float = 0.05) -> Mesh:
+    def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Triangles that leave the surface by at most about ``tolerance`` metres."""
 
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from geofit.data.columns import measurable_places
 from geofit.geometry.elevation import elevation
-from geofit.geometry.mesh import Mesh, triangulate
+from geofit.geometry.mesh import Mesh, Tolerance, triangulate
 from geofit.geometry.mesh_projection import ASIDE
 from geofit.geometry.projection import Projection
 from geofit.geometry.trim_loops import Loops, nearest_on_trimmed, trim
@@ -57,7 +57,7 @@ class TrimmedSurface(PatchSurface):
         """Return the foot points of (n, 3) map coordinates on the trimmed faces."""
         return nearest_on_trimmed(self.patches, measurable_places(xyz) - self.origin, self.loops)
 
-    def triangulate(self, tolerance: float = 0.05) -> Mesh:
+    def triangulate(self, tolerance: Tolerance = 0.05) -> Mesh:
         """Return triangles within a tolerance (m), cut along the loops."""
         return trim(triangulate(self.patches, self.origin, tolerance), self.patches, self.loops)
 

@@ -74,7 +74,7 @@ def poly(
     elif runs is not None:
         data.SetLines(_cells(list(runs), np.concatenate([[0], np.cumsum([len(run) for run in runs])])))
     else:
-        data.SetVerts(_cells([np.arange(len(points))], np.arange(len(points) + 1)))
+        data.SetVerts(_cells([np.arange(len(points))], np.array([0, len(points)])))
     if normals is not None:
         data.GetPointData().SetNormals(numpy_to_vtk(np.ascontiguousarray(normals, np.float32), deep=True))
     return data

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -52,7 +53,8 @@ class Canvas(QtInteractor):
     Left drag turns, middle or right drag (or Shift with left) moves sideways, the wheel comes nearer to what is under
     the pointer. ``clicked``, ``asked`` (the right button)
     and ``hovered`` tell the pointer's place in logical pixels. ``handle``, if set, is asked
-    first: ``press(pos) -> bool``, then ``drag(pos)`` and ``release()``.
+    first: ``press(pos) -> bool``, then ``drag(pos)`` and ``release()``. ``prepare`` is told of every frame before it is
+    drawn: how it is seen, and how many pixels it has.
     """
 
     clicked = Signal(QPointF)
@@ -75,6 +77,7 @@ class Canvas(QtInteractor):
         self.frames = 0
         self.shrink = 1
         self.handle: Any = None
+        self.prepare: Callable[[Projector, int], None] = lambda view, pixels: None
         self._held: str | None = None
         self.scheme: Scheme = "geofit"
         self._pressed = self._last = QPointF()
@@ -114,9 +117,11 @@ class Canvas(QtInteractor):
         interactor = self.ren_win.GetInteractor() if self.ren_win is not None else None
         if interactor is None or getattr(self, "_closed", False):
             return
-        self.place()
-        self._resize()
         began = time.perf_counter()
+        self._resize()
+        width, height = self.ren_win.GetSize()
+        self.prepare(self.projector(), width * height)
+        self.place()
         interactor.EnableRenderOn()
         super().paintGL()  # type: ignore[no-untyped-call]
         interactor.EnableRenderOff()

@@ -45,18 +45,34 @@ class Ramp:
 
     def of(self, values: Floats) -> Bytes:
         """Return the colour (n, 3) of each value; grey where it is nan."""
-        share = np.nan_to_num((values - self.low) / (self.high - self.low))
-        colours = self.table[np.clip((share * STEPS).astype(int), 0, STEPS - 1)]
-        return np.where(np.isfinite(values)[:, None], colours, np.uint8(160))
+        return np.where(np.isfinite(values)[:, None], self.table[self.steps(values)], np.uint8(160))
+
+    def steps(self, values: Floats) -> Bytes:
+        """Return the place (n,) of each value in the table; 0 where it is nan."""
+        share = values - self.low
+        share *= STEPS / (self.high - self.low)
+        np.nan_to_num(share, copy=False)
+        return np.clip(share, 0, STEPS - 1, out=share).astype(np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
 class PointColours:
-    """One colour (n, 3) and one size (n,) in pixels for each point."""
+    """A code (n,) for each point: its place among the ``shades`` (k, 3) and the ``sizes`` (k,) in pixels."""
 
-    colour: Bytes
-    size: Floats
+    code: NDArray[np.integer]
+    shades: Bytes
+    sizes: Floats
     legend: Legend | None
+
+    @property
+    def colour(self) -> Bytes:
+        """Colour of each point, (n, 3)."""
+        return np.asarray(self.shades[self.code])
+
+    @property
+    def size(self) -> Floats:
+        """Size of each point, (n,) pixels."""
+        return np.asarray(self.sizes[self.code])
 
 
 def legible_on(colour: str, dark: bool) -> str:
@@ -83,7 +99,9 @@ def ramp(by: str, values: Floats) -> Ramp:
 
 def plain_points(count: int, colour: str) -> PointColours:
     """Return one colour for all points."""
-    return PointColours(np.tile(np.array(rgb(colour), np.uint8), (count, 1)), np.full(count, SIZE), None)
+    return PointColours(
+        np.broadcast_to(np.uint8(0), (count,)), np.array([rgb(colour)], np.uint8), np.array([SIZE]), None
+    )
 
 
 def points_by(
@@ -91,33 +109,40 @@ def points_by(
 ) -> PointColours:
     """Return the points' colours by "kind", "deviation" (fixed tolerance bands), "elevation", or one for all."""
     if by == "kind":
-        kinds, of = np.unique(points.kind, return_inverse=True)
-        shades = [legible_on(kind_style(kind)[1], dark) for kind in kinds.tolist()]
-        legend = Legend("kind", "", tuple(Swatch(c, k, False) for c, k in zip(shades, kinds.tolist(), strict=True)))
+        labels = points.labels["kind"]
+        shades = [legible_on(kind_style(kind)[1], dark) for kind in labels.table]
+        used = np.bincount(labels.codes, minlength=len(shades)) > 0
+        known = sorted((kind, shade) for kind, shade, there in zip(labels.table, shades, used, strict=True) if there)
+        legend = Legend("kind", "", tuple(Swatch(shade, kind, False) for kind, shade in known))
         table = np.array([rgb(c) for c in shades], np.uint8).reshape(-1, 3)
-        return PointColours(table[of.ravel()], np.full(len(points), SIZE), legend)
+        return PointColours(labels.codes, table, np.full(len(table), SIZE), legend)
     if by == "deviation" and residuals is not None and len(residuals) == len(points):
         return _by_bands(residuals, settings, dark)
     if by == "elevation":
         made = ramp("elevation", points.xyz[:, 2])
-        return PointColours(made.of(points.xyz[:, 2]), np.full(len(points), SIZE), made.legend)
+        return PointColours(made.steps(points.xyz[:, 2]), made.table, np.full(STEPS, SIZE), made.legend)
     return plain_points(len(points), colour)
 
 
 def _by_bands(d: Floats, settings: FitSettings, dark: bool) -> PointColours:
-    colour, size = np.empty((len(d), 3), np.uint8), np.empty(len(d))
+    code = np.zeros(len(d), np.uint8)
+    shades: list[tuple[int, int, int]] = []
+    sizes: list[float] = []
     above: list[Swatch] = []
     below: list[Swatch] = []
     for k, band in enumerate(bands(settings, dark=dark)):
         for mask, shade in ((band.holds(d) & (d >= 0), band.above), (band.holds(d) & (d < 0), band.below)):
-            colour[mask], size[mask] = rgb(shade), SIZE * (0.75 + 0.4 * k)
+            code[mask] = len(shades)
+            shades.append(rgb(shade))
+            sizes.append(SIZE * (0.75 + 0.4 * k))
         label = band.label.removeprefix("|d| ").removesuffix(" m")
         if k == 0:
             middle = Swatch(band.above, f"± {label.removeprefix('< ')}")
         else:
             above.insert(0, Swatch(band.above, f"+ {label}"))
             below.append(Swatch(band.below, f"− {label}"))
-    return PointColours(colour, size, Legend("deviation", "m", (*above, middle, *below)))
+    legend = Legend("deviation", "m", (*above, middle, *below))
+    return PointColours(code, np.array(shades, np.uint8), np.array(sizes), legend)
 
 
 def seam_colours(seams: Sequence[Seam], by: str, dark: bool) -> tuple[tuple[str, ...], Legend]:

@@ -12,11 +12,13 @@ from geofit.data.prediction import Suggestion, Uncertainty
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.view3d.cloud import PointCloud
 from geofit.gui.view3d.drawn import Drawn, drawn_of
 from geofit.gui.view3d.horizon_items import control_item, points_item, seams_item, shape_item, suggestions_item
 from geofit.gui.view3d.item import Item, Look
 from geofit.gui.view3d.layers import Layer
-from geofit.gui.view3d.shape import next_below, seam_lines
+from geofit.gui.view3d.shape import next_below, seam_lines, too_coarse
+from geofit.gui.view3d.sight import Sight
 from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, holes_item, sections_item
 from geofit.gui.view3d.stage import Stage
 from geofit.project.listing import Listing
@@ -26,6 +28,9 @@ from geofit.site.hole_logs import log_files
 __all__ = ["Contents"]
 
 Floats = NDArray[np.float64]
+
+#: So many points are drawn in every view; of more, as many as it has room for.
+FEW = 10_000
 
 
 class Contents:
@@ -40,6 +45,7 @@ class Contents:
         self.drawn: dict[str, Drawn] = {}
         self.listed: dict[str, Listing] = {}
         self.faded = True
+        self._clouds: list[PointCloud] = []
 
     def set_faded(self, on: bool) -> None:
         """Fade what lies above the ground or beyond the points of its surface, or draw it in full."""
@@ -113,11 +119,11 @@ class Contents:
         self.stage.show(
             Layer(f"surface:{name}", "surface", name, colour, choices=tuple(choices), isolines=False),
             lambda layer, look: shape_item(
-                drawn.shape,
+                self.drawn[name].shape,
                 self._values(name, layer.colour_by),
                 layer,
                 look,
-                drawn.supported if self.faded else None,
+                self.drawn[name].supported if self.faded else None,
             ),
         )
         for kind, bound in (("upper", drawn.upper), ("lower", drawn.lower)):
@@ -133,6 +139,17 @@ class Contents:
         for layer in layers:
             if layer.colour_by == "thickness" and layer.horizon != name:
                 self.stage.rebuild(layer.key)
+
+    def too_coarse(self, sight: Sight) -> list[str]:
+        """Return the horizons whose surfaces, as far as they are drawn, need more triangles for a view."""
+        shown = [layer.horizon for layer, _ in self.stage.items() if layer.kind == "surface"]
+        return [name for name in shown if too_coarse(self.surfaces[name], sight, self.drawn[name].sight)]
+
+    def sharpen(self, surface: HorizonFit, drawn: Drawn) -> None:
+        """Draw a surface that is shown with other triangles; another fit of it stays as it is."""
+        if self.surfaces.get(surface.name) is surface:
+            self.drawn[surface.name] = drawn
+            self.stage.rebuild(f"surface:{surface.name}")
 
     def remove_surface(self, name: str) -> None:
         """Take away a surface with all that belongs to it; its points stay if they are of the site."""
@@ -152,6 +169,7 @@ class Contents:
         self.site = None
         for known in (self.points, self.surfaces, self.drawn, self.control, self.listed):
             known.clear()
+        self._clouds.clear()
         self.stage.layers.clear()
 
     def show_seams(self, name: str) -> None:
@@ -244,7 +262,21 @@ class Contents:
         choices = ("kind", *(("deviation",) if residuals is not None else ()), "elevation", "plain")
         layer = Layer(f"points:{name}", "points", name, self.colour(name), choices=choices, colour_by="kind")
         excluded = None if listed is None else listed.excluded
-        self.stage.show(layer, lambda a, b: points_item(points, residuals, settings, a, b, excluded))
+        self.stage.show(
+            layer, lambda a, b: points_item(points, residuals, settings, a, b, excluded, self._cloud(points.xyz))
+        )
+
+    def _cloud(self, xyz: Floats) -> PointCloud | None:
+        """Return many points in blocks; they are sorted once, whoever shows them."""
+        if len(xyz) <= FEW:
+            return None
+        known = {id(points.xyz) for points in self.points.values()}
+        self._clouds = [cloud for cloud in self._clouds if id(cloud.xyz) in known]
+        for cloud in self._clouds:
+            if cloud.xyz is xyz:
+                return cloud
+        self._clouds.append(PointCloud.of(xyz))
+        return self._clouds[-1]
 
     def _values(self, name: str, by: str) -> tuple[Floats, Floats] | None:
         """Return what a surface is coloured by, at the vertices of its fine and coarse triangles."""

@@ -12,6 +12,7 @@ from geofit.data.progress import Progress, tell
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.shape import Shape, sd_at, sd_direction, shape_of, split
+from geofit.gui.view3d.sight import Sight
 from geofit.prediction.bands import band, prediction_sd
 from geofit.site.support import support_of
 
@@ -29,6 +30,7 @@ class Drawn:
     """A surface as triangles; ``sd`` at the vertices of the fine and the coarse ones, metres, and the 90 % bounds.
 
     ``supported`` names which triangles, fine and coarse, lie below the ground and within the hull of the points.
+    ``sight`` is the view that it was made for; None: any.
     """
 
     shape: Shape
@@ -36,12 +38,14 @@ class Drawn:
     upper: Shape | None = None
     lower: Shape | None = None
     supported: tuple[Bools, Bools] | None = None
+    sight: Sight | None = None
 
 
 def drawn_of(
     surface: HorizonFit,
     uncertainty: Uncertainty | None = None,
     ground: Ground | None = None,
+    sight: Sight | None = None,
     *,
     progress: Progress | None = None,
 ) -> Drawn:
@@ -51,7 +55,7 @@ def drawn_of(
     its triangles are moved, by what the grid of standard deviations says.
     """
     tell(progress, "triangles", 0.0)
-    shape = shape_of(surface)
+    shape = shape_of(surface, sight)
     if len(surface.points):
         support = support_of(surface.points.xyz, ground)
         divided, rough = split(shape, support.depth(shape.xyz)), shape.coarse or shape
@@ -59,14 +63,14 @@ def drawn_of(
     coarse = shape.coarse or shape
     held = _supported(surface, ground, shape), _supported(surface, ground, coarse)
     if uncertainty is None:
-        return Drawn(shape, supported=held)
+        return Drawn(shape, supported=held, sight=sight)
     if surface.model is None:
         fine, few = (sd_at(surface, uncertainty, one.xyz) for one in (shape, coarse))
         upper, lower = (_lifted(surface, uncertainty, shape, fine, few, sign) for sign in (BAND, -BAND))
     else:
         fine, few = (prediction_sd(surface, uncertainty, one.xyz) for one in (shape, coarse))
         upper, lower = (shape_of(bound) for bound in band(surface, uncertainty))
-    return Drawn(shape, (fine, few), upper, lower, held)
+    return Drawn(shape, (fine, few), upper, lower, held, sight)
 
 
 def _supported(surface: HorizonFit, ground: Ground | None, shape: Shape) -> Bools:

@@ -17,7 +17,9 @@ from geofit.data.prediction import Suggestion
 from geofit.data.settings import FitSettings
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.actors import ActorPart, coloured, dots, lines, poly, ramped, shaded, triangles
-from geofit.gui.view3d.colouring import SIZE, PointColours, points_by, ramp, seam_colours
+from geofit.gui.view3d.cloud import PointCloud
+from geofit.gui.view3d.colouring import SIZE, points_by, ramp, seam_colours
+from geofit.gui.view3d.crowd import GHOSTLY, Crowd
 from geofit.gui.view3d.item import Item, Look, corners_of
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.shape import Shape
@@ -29,11 +31,8 @@ __all__ = ["control_item", "points_item", "seams_item", "shape_item", "suggestio
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
-#: More points than BALLS are drawn flat and small, more than THIN thinned while the picture moves.
-BALLS, THIN = 20_000, 10_000
-SMALL = 2.0
-#: Colour by day and by night, and opacity, of points that take no part in the fit.
-GHOST, GHOSTLY = ("#5d6b7a", "#b9c4cf"), 0.3
+#: Colour by day and by night of points that take no part in the fit.
+GHOST = "#5d6b7a", "#b9c4cf"
 #: Opacity of a surface above the ground or beyond its points.
 FADED = 0.28
 #: Diameter of a control point, logical pixels.
@@ -49,42 +48,27 @@ def points_item(
     layer: Layer,
     look: Look,
     excluded: Bools | None = None,
+    cloud: PointCloud | None = None,
 ) -> Item:
-    """Points of a horizon, coloured as the layer says; those of excluded rows are ghosts."""
+    """Points of a horizon, coloured as the layer says; those of excluded rows are ghosts.
+
+    Of a ``cloud`` of these points each view draws as many as it has room for.
+    """
     made = points_by(layer.colour_by, points, layer.colour, residuals, settings, look.dark)
-    many = len(points) > BALLS
+    if cloud is not None:
+        crowd = Crowd(cloud, made, excluded, look.origin, GHOST[look.dark], look.points)
+        return Item(crowd.parts, cloud.box, targets=points.xyz, crowd=crowd, legend=made.legend)
     used = np.ones(len(points), bool) if excluded is None else ~excluded
-    parts = [
-        part
-        for size in np.unique(made.size[used])
-        for part in _cloud(points.xyz, made, used & (made.size == size), many, look)
-    ]
+    parts = []
+    for size in np.unique(made.size[used]):
+        mine = used & (made.size == size)
+        actor = dots(poly(points.xyz[mine] - look.origin), "#000000", balls=True)
+        coloured(actor, made.colour[mine])
+        parts.append(ActorPart(actor, size=float(size) * look.points))
     if not used.all():
-        ghosts = dots(poly(points.xyz[~used] - look.origin), GHOST[look.dark], balls=not many)
+        ghosts = dots(poly(points.xyz[~used] - look.origin), GHOST[look.dark], balls=True)
         parts.append(ActorPart(ghosts, size=SIZE * look.points, opacity=GHOSTLY))
     return Item(parts, corners_of(points.xyz), targets=points.xyz, legend=made.legend)
-
-
-def _cloud(xyz: Floats, made: PointColours, mask: NDArray[np.bool_], many: bool, look: Look) -> list[ActorPart]:
-    size = float(made.size[mask][0])
-    chosen = np.flatnonzero(mask)
-    share = min(THIN / len(mask), 1.0)
-    if share == 1:
-        return [_dots(xyz, made, chosen, size, many, "both", look)]
-    few = np.random.default_rng(0).permutation(chosen)[: max(math.ceil(share * len(chosen)), 1)]
-    small = SMALL * size / float(made.size.min())
-    return [
-        _dots(xyz, made, chosen, small, True, "full", look),
-        _dots(xyz, made, few, 1.5 * small, True, "coarse", look),
-    ]
-
-
-def _dots(
-    xyz: Floats, made: PointColours, which: NDArray[np.int64], size: float, flat: bool, detail: str, look: Look
-) -> ActorPart:
-    actor = dots(poly(xyz[which] - look.origin), "#000000", balls=not flat)
-    coloured(actor, made.colour[which])
-    return ActorPart(actor, detail, size=size * look.points)
 
 
 def shape_item(

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.gui.view3d.actors import ActorPart
+from geofit.gui.view3d.crowd import Crowd
 from geofit.gui.view3d.layers import Legend
 from geofit.gui.view3d.shape import Shape
 
@@ -39,7 +40,8 @@ class Item:
     """Actors of a layer; all places in map coordinates.
 
     ``names`` are written at ``places`` (n, 3). ``targets`` (n, 3) can be clicked, each known by its number; so can
-    ``ways``, lines with a name. ``shape`` is hit by the line of sight. ``box`` (2, 3) holds all of it.
+    ``ways``, lines with a name. ``shape`` is hit by the line of sight. ``box`` (2, 3) holds all of it. ``crowd`` draws
+    as many of the targets as a view has room for; all of them can be clicked.
     """
 
     parts: list[ActorPart]
@@ -49,6 +51,7 @@ class Item:
     targets: Floats | None = None
     ways: Sequence[tuple[str, Floats]] = ()
     shape: Shape | None = None
+    crowd: Crowd | None = None
     legend: Legend | None = None
 
 

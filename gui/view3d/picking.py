@@ -48,14 +48,17 @@ def nearest_target(
     for layer, item in items:
         if item.targets is None:
             continue
-        seen = view.screen(item.targets)
+        some = slice(None) if item.crowd is None else item.crowd.cloud.under(view, column, row, REACH)
+        targets = item.targets[some]
+        seen = view.screen(targets)
         away = np.hypot(seen[:, 0] - column, seen[:, 1] - row)
         near = np.flatnonzero(away <= REACH)
         if box is not None:
-            near = near[((item.targets[near] >= box[0]) & (item.targets[near] <= box[1])).all(axis=1)]
+            near = near[((targets[near] >= box[0]) & (targets[near] <= box[1])).all(axis=1)]
         if near.size:
             best = near[np.lexsort([seen[near, 2], away[near] > EXACT])[0]]
-            hits.append(Hit(layer, int(best), item.targets[best], float(seen[best, 2]), float(away[best])))
+            which = int(best) if isinstance(some, slice) else int(some[best])
+            hits.append(Hit(layer, which, targets[best], float(seen[best, 2]), float(away[best])))
     return min(hits, key=lambda hit: (hit.away > EXACT, hit.depth), default=None)
 
 
@@ -76,10 +79,16 @@ def nearest_way(items: Iterable[tuple[Layer, Item]], view: Projector, column: fl
 
 
 class Sights:
-    """Finds where a line of sight meets the surfaces; the search tree of each is made when it is first needed."""
+    """Finds where a line of sight meets the surfaces; the search tree of each is kept."""
 
     def __init__(self) -> None:
         self._trees: WeakKeyDictionary[Shape, tuple[Any, Floats]] = WeakKeyDictionary()
+
+    def prepare(self, items: Iterable[Item]) -> None:
+        """Make the search trees of surfaces."""
+        for item in items:
+            if item.shape is not None and len(item.shape.triangles):
+                self._tree(item.shape)
 
     def first(
         self, items: Iterable[tuple[Layer, Item]], view: Projector, column: float, row: float, box: Floats | None

@@ -86,6 +86,10 @@ class Pointer(QObject):
         hit = self._sights.first(self._stage.items(), self._canvas.projector(), column, row, self._clip.box)
         return None if hit is None else hit.xyz
 
+    def get_ready(self) -> None:
+        """Prepare to find the surfaces that are seen, so that the first question is answered as fast as the next."""
+        self._sights.prepare(item for _, item in self._stage.items())
+
     def choose(self, horizon: str, row: Row | None) -> None:
         """Put a ring about a point; it stays there when other rows come or go. None takes it away."""
         self._about = _nothing if row is None else partial(self._about_point, horizon, row)

@@ -78,6 +78,7 @@ def _rendered(canvas: Canvas, stage: Stage, width: int, height: int, scale: floa
     stage.set_pixels(scale)
     window.MakeCurrent()
     window.SetSize(width, height)
+    stage.renew(canvas.projector(), width * height)
     canvas.place()
     window.Render()
     grab = vtkWindowToImageFilter()

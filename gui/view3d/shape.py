@@ -14,18 +14,23 @@ from geofit.data.prediction import Uncertainty
 from geofit.data.site import Ground
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.geometry.cells import tabulate
-from geofit.geometry.mesh import Mesh
+from geofit.geometry.mesh import Mesh, Tolerance, cell_boxes, triangle_count
+from geofit.gui.view3d.sight import Sight
 from geofit.report.view import trimmed
 from geofit.splines.patch import Patch
 
-__all__ = ["Shape", "next_below", "sd_at", "sd_direction", "seam_lines", "shape_of", "split", "thinned"]
+__all__ = ["Shape", "next_below", "sd_at", "sd_direction", "seam_lines", "shape_of", "split", "thinned", "too_coarse"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Chordal tolerance of the still picture as a share of the surface's width; triangles of the moving one, at most
-#: about: software draws some 20,000 in the time of a frame.
-FINE, FEW = 1 / 8_000, 1_000
+#: Chordal tolerance of the still picture as a share of the surface's width, and of what the moving one is made from;
+#: triangles of the moving one, at most about: software draws some 20,000 in the time of a frame.
+FINE, ROUGH, FEW = 1 / 8_000, 1 / 500, 1_000
+#: More triangles than these are not thinned: to make rough ones takes less.
+MANY = 10_000
+#: Where a view asks for more triangles of one surface its tolerance is doubled, at most to so many times.
+MOST, LAST = 300_000, 2.0**20
 #: Vertices at which two horizons are compared to find the one below.
 PROBES = 200
 #: The one below lies under at least this share of them: a short fault is not meant.
@@ -54,10 +59,37 @@ class Shape:
         return Shape(self.xyz[known] + by[known, None] * way, number[keep], self.normals[known])
 
 
-def shape_of(surface: HorizonFit) -> Shape:
-    """Return the triangles of a surface, fine and coarse."""
-    fine = _shape(surface, surface.triangulate(FINE * _width(surface)))
-    return Shape(fine.xyz, fine.triangles, fine.normals, thinned(fine))
+def shape_of(surface: HorizonFit, sight: Sight | None = None, fine: float = FINE) -> Shape:
+    """Return triangles within ``fine`` of the width of a surface, in sight within half a pixel; and coarse ones."""
+    most, times = fine * _width(surface), 1.0
+    tolerance: Tolerance = most
+    if sight is not None:
+        tolerance = _looked_at(sight, times, most)
+        while triangle_count(surface.patches, surface.origin, tolerance) > MOST and times < LAST:
+            times *= 2
+            tolerance = _looked_at(sight, times, most)
+    shape = rough = _shape(surface, surface.triangulate(tolerance))
+    if len(shape.triangles) > MANY and surface.patches:
+        rough = _shape(surface, surface.triangulate(ROUGH * _width(surface)))
+    return Shape(shape.xyz, shape.triangles, shape.normals, thinned(rough))
+
+
+def _looked_at(sight: Sight, times: float, most: float) -> Tolerance:
+    return lambda low, high: np.minimum(times * sight.tolerance(low, high, most), most)
+
+
+def too_coarse(surface: HorizonFit, sight: Sight, before: Sight | None) -> bool:
+    """Return whether a surface that was triangulated for one view (None: for none) needs more triangles for another.
+
+    Somewhere in sight its tolerance is then more than twice what the view asks for.
+    """
+    most = FINE * _width(surface)
+    for patch in surface.patches:
+        low, high = (end.reshape(-1, 3) for end in cell_boxes(patch, surface.origin))
+        has = np.full(len(low), most) if before is None else before.tolerance(low, high, most)
+        if (has > 2 * sight.tolerance(low, high, most)).any():
+            return True
+    return False
 
 
 def thinned(shape: Shape) -> Shape:
@@ -127,16 +159,19 @@ def _shape(surface: HorizonFit, mesh: Mesh) -> Shape:
 
 def _patch_normals(patches: Sequence[Patch], mesh: Mesh) -> Floats:
     """Return normals of the surface itself, at one corner of each vertex."""
-    number, first = np.unique(mesh.triangles.ravel(), return_index=True)
-    patch, (u, v) = np.repeat(mesh.patch, 3)[first], mesh.uv.reshape(-1, 2)[first].T
+    # Of the corners of a vertex the first is assigned last.
+    corner = np.full(len(mesh.points), -1)
+    corner[mesh.triangles.ravel()[::-1]] = np.arange(mesh.triangles.size)[::-1]
     normals = np.full(mesh.points.shape, np.nan)
     cells = tabulate(patches)
+    patch = np.where(corner >= 0, mesh.patch[corner // 3], -1)
     for k in range(len(patches)):
         mine = np.flatnonzero(patch == k)
-        _, along, across, *_ = cells.jets(cells.locate(k, u[mine], v[mine]))
-        cross = np.cross(along, across, axis=0).T
+        u, v = mesh.uv.reshape(-1, 2)[corner[mine]].T
+        along, across = cells.slopes(cells.locate(k, u, v))
+        cross = np.stack([along[i] * across[j] - along[j] * across[i] for i, j in ((1, 2), (2, 0), (0, 1))], axis=1)
         length = np.linalg.norm(cross, axis=1, keepdims=True)
-        normals[number[mine]] = cross / np.where(length > 0, length, np.nan)
+        normals[mine] = cross / np.where(length > 0, length, np.nan)
     return normals
 
 

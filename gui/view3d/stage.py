@@ -11,11 +11,15 @@ from numpy.typing import NDArray
 from geofit.gui.view3d.actors import ActorPart
 from geofit.gui.view3d.item import Item, Look
 from geofit.gui.view3d.layers import Layer, Layers
+from geofit.gui.view3d.projector import Projector
 
 __all__ = ["Stage"]
 
 Floats = NDArray[np.float64]
 Builder = Callable[[Layer, Look], Item]
+
+#: Points of clouds that are drawn for each pixel of the still picture, and of the moving one.
+STILL, MOVING = 1.5, 0.25
 
 
 class Stage:
@@ -70,6 +74,14 @@ class Stage:
         """Choose between the still and the moving picture."""
         self._full = full
         self._apply_all()
+
+    def renew(self, view: Projector, pixels: int) -> None:
+        """Choose the points of the clouds in sight anew for a picture of so many pixels; together they share it."""
+        crowds = [item.crowd for _, item in self.items() if item.crowd is not None]
+        whole = sum(len(crowd.cloud) for crowd in crowds)
+        for crowd in crowds:
+            budget = round(pixels * (STILL if self._full else MOVING) * len(crowd.cloud) / whole)
+            crowd.renew(view, "full" if self._full else "coarse", budget)
 
     def set_stretch(self, stretch: float) -> None:
         """Set the vertical exaggeration."""

@@ -30,6 +30,7 @@ from geofit.gui.view3d.overlay import Content, merged
 from geofit.gui.view3d.pointer import Pointer
 from geofit.gui.view3d.projector import Projector
 from geofit.gui.view3d.screenshot import picture, write_screenshot
+from geofit.gui.view3d.sight import Sight
 from geofit.gui.view3d.stage import Stage
 from geofit.gui.view3d.tools import ClipBox, SectionTool
 from geofit.project.listing import Listing
@@ -44,6 +45,9 @@ Floats = NDArray[np.float64]
 CLOSE = 0.9
 #: A dragged section is reported at most so often, milliseconds.
 SECTION = 50
+#: Surfaces are made ready for a view that has rested so long, milliseconds; what is nearer to it than this share of its
+#: distance is taken to be as near.
+REST, NEAREST = 60, 0.1
 #: About so many coordinate lines cross the picture.
 LINES = 6
 
@@ -55,7 +59,8 @@ class SceneView(QWidget):
 
     Signals: ``point_picked(horizon, row)``, ``control_picked(horizon, patch, i, j)``, ``hole_picked(name)``,
     ``pointer_moved(x, y, z)`` (nan off every surface), ``measured(text)``, ``section_changed(line)`` with a (k, 2)
-    array.
+    array, ``sharper_wanted(horizon, sight)`` where the view has come to rest so near to a surface that its triangles
+    show: answer by :meth:`sharpen`.
 
     Raises
     ------
@@ -69,6 +74,7 @@ class SceneView(QWidget):
     pointer_moved = Signal(float, float, float)
     measured = Signal(str)
     section_changed = Signal(object)
+    sharper_wanted = Signal(str, object)
 
     def __init__(self, parent: QWidget | None = None, layers: Layers | None = None) -> None:
         require_opengl()
@@ -90,6 +96,8 @@ class SceneView(QWidget):
         self._telling.timeout.connect(self._tell_section)
         self._changes = QTimer(self, interval=0, singleShot=True)
         self._changes.timeout.connect(self._refresh)
+        self._resting = QTimer(self, interval=REST, singleShot=True)
+        self._resting.timeout.connect(self._look_closely)
         self._connect()
         self.setFocusProxy(self.canvas)
         self.set_dark(False)
@@ -100,6 +108,7 @@ class SceneView(QWidget):
         canvas.viewpoint_changed.connect(self._viewpoint_moved)
         canvas.detail_changed.connect(self._set_detail)
         canvas.pixels_changed.connect(self._stage.set_pixels)
+        canvas.prepare = self._stage.renew
         pointer = self.pointer
         pointer.point_picked.connect(self.point_picked)
         pointer.control_picked.connect(self.control_picked)
@@ -127,6 +136,11 @@ class SceneView(QWidget):
         self.contents.show_surface(surface, uncertainty, drawn)
         self._placed()
         self.pointer.renew()
+
+    def sharpen(self, surface: HorizonFit, drawn: Drawn) -> None:
+        """Draw a surface with triangles that were made for a view."""
+        self.contents.sharpen(surface, drawn)
+        self._changed()
 
     def remove_surface(self, name: str) -> None:
         """Take a surface away; its points stay."""
@@ -304,6 +318,15 @@ class SceneView(QWidget):
         self._changes.stop()
         self.canvas.render()
         self._annotations.update()
+        self._resting.start()
+
+    def _look_closely(self) -> None:
+        """Ask for more triangles of the surfaces that are too coarse for the view, once it rests."""
+        if not self._closed and self.canvas.full and self.canvas.target is self.canvas.viewpoint:
+            self.pointer.get_ready()
+            sight = Sight(self.canvas.projector(), NEAREST * self.canvas.viewpoint.distance)
+            for name in self.contents.too_coarse(sight):
+                self.sharper_wanted.emit(name, sight)
 
     def _placed(self) -> None:
         """Keep the scene's zero near the data, and bring the first things shown into the picture."""
@@ -325,6 +348,7 @@ class SceneView(QWidget):
     def _set_detail(self, full: bool) -> None:
         self._stage.set_detail(full)
         self._annotations.update()
+        self._resting.start()
 
     def _axes(self, force: bool = False) -> None:
         """Draw the coordinate lines anew where their spacing has changed."""
@@ -420,7 +444,7 @@ class SceneView(QWidget):
         """Stop the timers and free OpenGL's memory."""
         if not self._closed:
             self._closed = True
-            for timer in (self.pointer.timer, self.pointer.resting, self._telling, self._changes):
+            for timer in (self.pointer.timer, self.pointer.resting, self._telling, self._changes, self._resting):
                 timer.stop()
             self._stage.close()
             self.canvas.close()
