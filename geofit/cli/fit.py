@@ -12,11 +12,15 @@ from geofit.cli.console import listening, with_exit_code
 from geofit.cli.options import (
     FROM_SITE,
     Across,
+    Author,
+    Certificate,
     Crs,
     Decimal,
     DipsChoice,
     FrameChoice,
     Json,
+    Organisation,
+    OriginChoice,
     Out,
     Scheduler,
     SeamChoice,
@@ -29,6 +33,7 @@ from geofit.cli.options import (
     Z,
 )
 from geofit.cli.running import run_site
+from geofit.cli.signing import signed_by
 from geofit.cli.sources import read_source
 from geofit.data.setting_texts import SETTINGS
 
@@ -100,6 +105,10 @@ def fit(
         bool,
         typer.Option("--bands", help="Write NAME_upper90.step and NAME_lower90.step: 90 % of the rock between them."),
     ] = False,
+    author: Author = None,
+    organisation: Organisation = None,
+    certificate: Certificate = False,
+    origin: OriginChoice = "map",
     stream: Annotated[
         bool,
         typer.Option("--stream", help="Read the table as a cloud, never whole; tables above 512 MB always are."),
@@ -140,8 +149,9 @@ def fit(
         # What a cloud has no use for is refused, not ignored.
         used = (("--separate", separate), ("--bands", bands), ("--crs", crs), ("--dips", dips == DipsChoice.FIT))
         only = [word for word, given in used if given]
+        signed = signed_by(None, author, organisation, origin, certificate="en" if certificate else "")
         return fit_cloud_file(
-            source, out, columns, horizon, boundary, changes, only, scheduler or "local", workers, as_json
+            source, out, columns, horizon, boundary, changes, only, scheduler or "local", workers, as_json, signed
         )
     with listening() as progress:
         site = read_source(source, columns, boundary)
@@ -158,6 +168,7 @@ def fit(
             bands=bands,
             scheduler=where,
             workers=workers,
+            signed=signed_by(site, author, organisation, origin, certificate="en" if certificate else ""),
         )
 
 

@@ -69,6 +69,23 @@ Scheduler = Annotated[
 ]
 Workers = Annotated[int | None, typer.Option(min=1, help="Local processes. Default: one a processor.")]
 Tolerance = Annotated[float, typer.Option(help="Largest distance of triangles and lines from the surface, m.")]
+Author = Annotated[
+    str | None, typer.Option(help="Who answers for STEP files. Default: [report] of the site file, if there is one.")
+]
+Organisation = Annotated[
+    str | None, typer.Option(help="Organisation in STEP files. Default: [report] of the site file, if there is one.")
+]
+Certificate = Annotated[
+    bool, typer.Option("--certificate", help="Write FILE_certificate.pdf: what was read back from each STEP file.")
+]
+OriginChoice = Annotated[
+    str,
+    typer.Option(
+        metavar="ORIGIN",
+        help="Zero of STEP files: map, local (a round place below the data), datum ([site] datum of the site file), or "
+        "E,N,Z of the project datum, m. The file states the offset.",
+    ),
+]
 FORMATS = (
     "step, iges, brep, dxf (contours), dxf-mesh, ifc, landxml, tsurf, geoh5, omf, vtp, vtm, obj, ply, stl, glb, "
     "gpkg (contours), asc, grd, tif (grids)"
