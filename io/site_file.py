@@ -42,6 +42,7 @@ from geofit.io.site_rules import read_rule
 from geofit.io.source import Source
 from geofit.io.title_block import read_title_block
 from geofit.io.traces import load_traces
+from geofit.io.units import metres_of
 
 __all__ = ["build_site", "load_site", "read_site"]
 
@@ -134,9 +135,12 @@ def build_site(
     reader = Reader(path)
     reader.keys(top, TOP, "The site file")
     label = reader.get(top, "site", dict, "the site file") or {}
-    reader.keys(label, ("name", "crs", "mapping", "order", "datum"), "[site]")
+    reader.keys(label, ("name", "crs", "mapping", "order", "unit", "datum"), "[site]")
     crs = reader.get(label, "crs", str, "[site]") or ""
     reader.target = crs if is_code(crs) else None
+    if unit := reader.get(label, "unit", str, "[site]"):
+        metres_of(unit, reader.file)
+        reader.unit = unit
     if mappings is not None:
         reader.mappings = tuple(mappings)
     elif mapping := reader.get(label, "mapping", str, "[site]"):

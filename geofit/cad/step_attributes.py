@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from geofit import __version__
 from geofit.cad.step_origin import OFFSET_KEYS
-from geofit.cad.step_text import shaped
+from geofit.cad.step_text import shaped_products
 from geofit.data.accuracy import Accuracy
 from geofit.surfaces.protocol import FittedSurface
 
@@ -90,7 +90,7 @@ def _products(text: str) -> list[tuple[str, str]]:
     definitions = dict(
         re.findall(r"#(\d+) = PRODUCT_DEFINITION_SHAPE\(\s*'[^']*'\s*,\s*'[^']*'\s*,\s*#(\d+)\s*\)", text)
     )
-    return [(definitions[by_shape[shape]], context) for shape, _, context in shaped(text)]
+    return [(definitions[by_shape[shape]], context) for shape, _, context in shaped_products(text)]
 
 
 def attributes_at(label: Any) -> dict[str, str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["canonical", "shaped"]
+__all__ = ["canonical", "shaped_products"]
 
 #: Colours of the products in turn (red, green, blue): earth tones that stay apart.
 COLOURS = ((0.76, 0.60, 0.42), (0.55, 0.64, 0.45), (0.45, 0.56, 0.68), (0.70, 0.47, 0.43), (0.60, 0.52, 0.66))
@@ -49,7 +49,7 @@ def canonical(text: str, colour: str = "") -> str:
     return re.sub(r"[^\x00-\x7f]+", _encoded, _coloured(text, colour))
 
 
-def shaped(text: str) -> list[tuple[str, list[str], str]]:
+def shaped_products(text: str) -> list[tuple[str, list[str], str]]:
     """Return the representation, the shells or solids in it, and the context of each product that has any: numbers."""
     geometry = set(re.findall(rf"^#(\d+) = (?:{GEOMETRY})\(", text, re.M))
     found = re.findall(
@@ -66,7 +66,7 @@ def _coloured(text: str, colour: str) -> str:
     head, end, tail = text.rpartition("ENDSEC;")
     free = max(int(number) for number in re.findall(r"^#(\d+) =", head, re.M)) + 1
     styles: list[str] = []
-    for index, (_, items, context) in enumerate(shaped(head)):
+    for index, (_, items, context) in enumerate(shaped_products(head)):
         red, green, blue = _shares(colour) if colour else COLOURS[index % len(COLOURS)]
         for item in items:
             numbers = range(free + 9 * len(styles), free + 9 * len(styles) + 9)

@@ -42,7 +42,7 @@ def fit_cloud_file(
         )
     roles = {"x": columns.get("x"), "y": columns.get("y"), "z": columns.get("z"), "horizon": columns.get("surface")}
     name = horizons[0] if horizons else None
-    cloud = open_cloud(source, roles, name, columns.get("sep"), columns.get("decimal"))
+    cloud = open_cloud(source, roles, name, columns.get("sep"), columns.get("decimal"), columns.get("unit"))
     area = None if boundary is None else read_boundary(boundary)
     with listening() as progress:
         done = run_cloud(cloud, out, changes, area, progress, scheduler=scheduler, workers=workers, signed=signed)

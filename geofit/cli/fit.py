@@ -27,6 +27,7 @@ from geofit.cli.options import (
     SectionColumn,
     Sep,
     SurfaceColumn,
+    Unit,
     Workers,
     X,
     Y,
@@ -60,6 +61,7 @@ def fit(
     z: Z = None,
     surface: SurfaceColumn = None,
     section: SectionColumn = None,
+    unit: Unit = None,
     sep: Sep = None,
     decimal: Decimal = None,
     crs: Crs = None,
@@ -139,7 +141,7 @@ def fit(
     }
     changes: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "sep": sep, "decimal": decimal}
-    columns["crs"] = crs
+    columns |= {"crs": crs, "unit": unit}
     FitSettings(**changes)  # a bad value is reported before files are read
     from geofit.io.clouds import is_cloud
 

@@ -55,6 +55,12 @@ Y = Annotated[str | None, typer.Option("--y", help="CSV: column of the northing,
 Z = Annotated[str | None, typer.Option("--z", help="CSV: column of the elevation, m.")]
 SurfaceColumn = Annotated[str | None, typer.Option("--surface", help="CSV: column of the horizon's name.")]
 SectionColumn = Annotated[str | None, typer.Option("--section", help="CSV: column of the section's name.")]
+Unit = Annotated[
+    str | None,
+    typer.Option(
+        help="CSV: unit of all lengths: m, ft, ft-us (US survey foot), km, cm, mm. Default: as headers mark, else m."
+    ),
+]
 Sep = Annotated[str | None, typer.Option(help="CSV: separator: one character, 'tab' or 'space'. Default: found.")]
 Decimal = Annotated[str | None, typer.Option(help="CSV: decimal mark, '.' or ','. Default: found.")]
 Crs = Annotated[
