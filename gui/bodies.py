@@ -17,6 +17,7 @@ from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.activity import Activity, Work
 from geofit.gui.body_showing import BodyShowing
 from geofit.gui.body_styles import BodyStyles
+from geofit.gui.dialogs.step_fields import BodyStepDialog
 from geofit.gui.fitting import Fitting
 from geofit.gui.panels.body_source import MESH, OTHER, OUTLINES, POINTS
 from geofit.gui.preferences import Preferences
@@ -41,6 +42,7 @@ from geofit.project.body_saving import largest_difference
 from geofit.project.body_sources import outline_layers, site_codes
 from geofit.project.horizon_body import needed_horizons
 from geofit.project.provenance import Provenance
+from geofit.project.step_files import Signed
 
 __all__ = ["Bodies"]
 
@@ -117,14 +119,23 @@ class Bodies(QObject):
         )
         if path:
             target = Path(path)
-            self.export(name, target if target.suffix else target.with_suffix(filters[chosen]))
+            target = target if target.suffix else target.with_suffix(filters[chosen])
+            if target.suffix.casefold() not in (".step", ".stp"):
+                self.export(name, target)
+                return
+            dialog = BodyStepDialog(name, self._document.site, self._window)
+            if dialog.exec():
+                self.export(name, target, dialog.fields.signed())
 
-    def export(self, name: str, target: Path) -> None:
-        """Write a body in the format of a file's ending."""
+    def export(self, name: str, target: Path, signed: Signed | None = None) -> None:
+        """Write a body in the format of a file's ending; ``signed`` is what a STEP file states."""
         result = self._document.body(name)
         if result is not None:
             title = self.tr("Export {name}").format(name=target.name)
-            self._activity.do(title, export_body, result, name, target, on_done=self._exported, in_process=True)
+            record = self._document.state.bodies.get(name)
+            colour = "" if record is None else record.style.colour
+            work = (result, name, target, signed, colour)
+            self._activity.do(title, export_body, *work, on_done=self._exported, in_process=True)
 
     def read_file(self, kind: str, file: Path) -> None:
         """Take the file of a source into the panel, with the codes or layers that it offers."""
@@ -271,7 +282,8 @@ class Bodies(QObject):
     def _exported(self, written: BodyExport) -> None:
         path = str(written.path.resolve())
         _LOG.info(message("gui.log-file-written", "Wrote {file}", file=path))
-        text = self.tr("Wrote {names}.").format(names=path)
+        pages = [] if written.certificate is None else [str(written.certificate.resolve())]
+        text = self.tr("Wrote {names}.").format(names=", ".join([path, *pages]))
         back = written.read_back
         if back is not None:
             checks = "; ".join(translated(check.text) for check in back.checks if check.passed is False)

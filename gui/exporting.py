@@ -64,7 +64,8 @@ class Delivering(QObject):
         surfaces = self._surfaces()
         if surfaces:
             verdicts = {name: found for name in surfaces if (found := self._showing.verdict(name)) is not None}
-            dialog = ExportDialog(surfaces, self._window, verdicts, self._folder(), self._document.site.title)
+            site = self._document.site
+            dialog = ExportDialog(surfaces, self._window, verdicts, self._folder(), site.title, site.datum)
             dialog.exec()
             self._showing.show_read_back({name: back for file in dialog.files for name, back in file.read_back.items()})
             if dialog.files:

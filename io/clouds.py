@@ -18,6 +18,7 @@ from geofit.io.extra import need
 from geofit.io.journal import MOST, Journal
 from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
+from geofit.io.units import METRES, list_conversion, metres_of, unit_marked
 
 __all__ = ["STREAMED", "Cloud", "is_cloud", "open_cloud"]
 
@@ -43,6 +44,7 @@ class Cloud:
     horizon: str | None = None
     sep: str | None = None
     decimal: str | None = None
+    unit: str | None = None
     read: int = 0
     used: int = 0
     issues: list[ImportIssue] = field(default_factory=list)
@@ -51,7 +53,7 @@ class Cloud:
     def key(self) -> str:
         """What changes when the file does, or how it is read."""
         found = self.path.stat()
-        how = (sorted(self.columns.items()), self.horizon, self.sep, self.decimal)
+        how = (sorted(self.columns.items()), self.horizon, self.sep, self.decimal, self.unit)
         return f"{self.path.resolve()} {found.st_size} {found.st_mtime_ns} {how}"
 
     def chunks(self) -> Iterator[Floats]:
@@ -64,7 +66,7 @@ class Cloud:
         """
         match _form(self.path):
             case "las":
-                yield from _las(self.path)
+                yield from _in_metres(self, _las(self.path))
             case "parquet":
                 yield from _parquet(self)
             case _:
@@ -85,6 +87,7 @@ def open_cloud(
     horizon: str | None = None,
     sep: str | None = None,
     decimal: str | None = None,
+    unit: str | None = None,
 ) -> Cloud:
     """Return a file of points to be read in chunks.
 
@@ -98,6 +101,8 @@ def open_cloud(
         The horizon to be read of a text that has several.
     sep, decimal : str, optional
         Separator and decimal mark of a text, where the guess is wrong.
+    unit : str, optional
+        Unit of all coordinates; else what the headers of a table mark, else metres.
 
     Returns
     -------
@@ -116,6 +121,8 @@ def open_cloud(
     Formats: ``docs/formats_in.md``, "Clouds of points".
     """
     Source(path=path, sep=sep, decimal=decimal)
+    if unit is not None:
+        metres_of(unit, path.name)
     if not path.is_file():
         Source(path=path).read()  # raises, and states why
     given = {role: column for role, column in (columns or {}).items() if column is not None}
@@ -126,7 +133,7 @@ def open_cloud(
                 total = int(reader.header.point_count)
         case "parquet":
             total = int(_opened_parquet(path).metadata.num_rows)
-    return Cloud(path, total, given, horizon, sep, decimal)
+    return Cloud(path, total, given, horizon, sep, decimal, unit)
 
 
 def _form(path: Path) -> str:
@@ -178,6 +185,30 @@ def _las(path: Path) -> Iterator[Floats]:
             yield np.column_stack([np.asarray(points[name], np.float64) for name in ("x", "y", "z")])
 
 
+def _in_metres(cloud: Cloud, chunks: Iterator[Floats]) -> Iterator[Floats]:
+    """Convert chunks from the stated unit; a scanner's file marks none."""
+    if cloud.unit is None:
+        yield from chunks
+        return
+    journal = Journal()
+    list_conversion(cloud.unit, ("x", "y", "z"), cloud.path.name, journal)
+    cloud.issues[:] = journal.issues
+    metres = metres_of(cloud.unit, cloud.path.name)
+    for chunk in chunks:
+        yield chunk * metres
+
+
+def _marked_metres(cloud: Cloud, headers: list[str]) -> Floats:
+    """Return the metres of one unit of each column, stated or marked in its header; conversions are listed."""
+    units = [cloud.unit or unit_marked(plain_name(header)[1]) or "m" for header in headers]
+    journal = Journal()
+    for unit in dict.fromkeys(units):
+        roles = tuple(role for role, one in zip(("x", "y", "z"), units, strict=True) if one == unit)
+        list_conversion(unit, roles, cloud.path.name, journal)
+    cloud.issues[:] = journal.issues
+    return np.array([METRES[unit_marked(unit) or "m"] for unit in units])
+
+
 def _parquet(cloud: Cloud) -> Iterator[Floats]:
     file = _opened_parquet(cloud.path)
     names = file.schema_arrow.names
@@ -199,9 +230,13 @@ def _parquet(cloud: Cloud) -> Iterator[Floats]:
             )
         chosen.append(str(found))
     cloud.read = cloud.used = 0
+    metres = _marked_metres(cloud, chosen)
     try:
         for batch in file.iter_batches(CHUNK, columns=chosen):
-            xyz = np.column_stack([np.asarray(batch.column(name).to_numpy(False), np.float64) for name in chosen])
+            xyz = (
+                np.column_stack([np.asarray(batch.column(name).to_numpy(False), np.float64) for name in chosen])
+                * metres
+            )
             finite = np.isfinite(xyz).all(axis=1)
             cloud.read, cloud.used = cloud.read + len(xyz), cloud.used + int(finite.sum())
             yield xyz if finite.all() else xyz[finite]
@@ -244,7 +279,12 @@ def _text(cloud: Cloud) -> Iterator[Floats]:
 def _rows(cloud: Cloud, piece: bytes, header: bytes, before: int) -> tuple[Floats, bytes]:
     """Return the points of some lines, and the header that the lines below them are read under."""
     source = _Piece(
-        path=cloud.path, sep=cloud.sep, decimal=cloud.decimal, columns=dict(cloud.columns), data=header + piece
+        path=cloud.path,
+        sep=cloud.sep,
+        decimal=cloud.decimal,
+        unit=cloud.unit,
+        columns=dict(cloud.columns),
+        data=header + piece,
     )
     journal = Journal()
     rows = read_rows(source, Schema("picks", PICKS.required, PICKS.optional), journal)

@@ -195,7 +195,9 @@ SCHEMAS = {
 
 GEOGRAPHIC = set(_spelled("lon long longitude lng lat latitude 经度 纬度"))
 _BRACKETS = re.compile(r"[\[(（【<]([^\])）】>]*)[\])）】>]")
-_SUFFIX = re.compile(r"[_ ](m|ft|feet|ft[_-]us|km|cm|mm|deg|metres?|meters?)$")
+_SUFFIX = re.compile(
+    r"(?:[_ ]|,\s*)(m|(?:us[-_ ]?)?(?:survey[-_ ]?)?(?:ft|feet|foot)\.?|ft[-_ ]?us|km|cm|mm|deg|metres?|meters?)$"
+)
 
 
 def plain_name(header: str) -> tuple[str, str]:

@@ -28,10 +28,13 @@ def is_code(label: str | None) -> bool:
     )
 
 
-def project_places(x: Floats, y: Floats, source: str, target: str, file: str) -> tuple[Floats, Floats]:
+def project_places(
+    x: Floats, y: Floats, source: str, target: str, file: str, *, metres: bool = False
+) -> tuple[Floats, Floats]:
     """Return easting and northing (n,) in metres; nan where a place is outside the projection.
 
-    ``x`` is the easting or longitude, ``y`` the northing or latitude, whatever order the system itself has.
+    ``x`` is the easting or longitude, ``y`` the northing or latitude, whatever order the system itself has; in the
+    system's own unit, or with ``metres`` in metres, to which marked columns were converted.
 
     Raises
     ------
@@ -55,6 +58,9 @@ def project_places(x: Floats, y: Floats, source: str, target: str, file: str) ->
         )
     if before == after:
         return x, y
+    if metres and before.is_projected:
+        own = before.axis_info[0].unit_conversion_factor
+        x, y = x / own, y / own
     moved = pyproj.Transformer.from_crs(before, after, always_xy=True).transform(x, y)
     east, north = (np.asarray(values, dtype=np.float64).copy() for values in moved)
     lost = ~(np.isfinite(east) & np.isfinite(north))

@@ -15,7 +15,7 @@ from geofit.data.errors import InputError
 from geofit.data.messages import EMPTY, Message, message
 from geofit.io.journal import Journal
 from geofit.io.source import Source
-from geofit.io.units import metres_of
+from geofit.io.units import list_conversion, metres_of
 
 __all__ = ["LINES", "ClosedLine", "Entity", "closed_lines", "count_points", "on_layers", "open_drawing", "problem"]
 
@@ -68,7 +68,10 @@ def open_drawing(source: Source, journal: Journal, *, scale_stated: bool = True)
         If the file is missing, or no drawing that can be read.
     """
     journal.read(source)
-    factor = 1.0 if source.unit is None else metres_of(source.unit, source.name)
+    stated = source.unit or source.usual_unit
+    factor = 1.0 if stated is None else metres_of(stated, source.name)
+    if stated is not None:
+        list_conversion(stated, ("x", "y", "z"), source.name, journal)
     with _readable(source):
         document = _document(source)
         entities, first = [], 1
@@ -162,7 +165,7 @@ def _readable(source: Source) -> Iterator[None]:
 
 
 def _warn_of_unit(unit: int, source: Source, journal: Journal, scale_stated: bool) -> None:
-    if unit in _UNITS and not scale_stated and source.unit is None:
+    if unit in _UNITS and not scale_stated and (source.unit or source.usual_unit) is None:
         name, per_metre = _UNITS[unit]
         journal.add(
             "warning",

@@ -180,7 +180,7 @@ def _read_esri(data: bytes, source: Source, journal: Journal) -> Ground:
         )
     journal.count(source.name, len(body), 0)
     x, y = np.arange(columns, dtype=np.float64), np.arange(rows, dtype=np.float64)
-    scale = grid_unit(source)
+    scale = grid_unit(source, journal)
     return Ground(scale * (west + dx * x), scale * (south + dy * y), scale * z.reshape(rows, columns)[::-1].copy())
 
 

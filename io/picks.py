@@ -52,6 +52,7 @@ def read_points(
     progress: Progress | None = None,
     mapping: ColumnMapping | None = None,
     crs: str | None = None,
+    unit: str | None = None,
 ) -> Picks:
     """Read a text table of points.
 
@@ -70,6 +71,9 @@ def read_points(
         How the table is read, where the other arguments do not report it.
     crs : str, optional
         Projected coordinate system of the site; longitudes and latitudes are brought to it.
+    unit : str, optional
+        Unit of all lengths: "m", "ft", "ft-us" (US survey foot), "km", "cm" or "mm"; else
+        what headers mark, else metres.
 
     Returns
     -------
@@ -93,6 +97,7 @@ def read_points(
         encoding=encoding,
         columns={role: column for role, column in given.items() if column is not None},
         target=crs,
+        unit=unit,
     )
     if mapping is not None:
         source = mapping.fill(source)

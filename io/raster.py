@@ -87,7 +87,7 @@ def read_raster(source: Source, journal: Journal) -> Ground:
         )
     rows, columns = z.shape
     journal.count(source.name, rows, 0)
-    scale = grid_unit(source)
+    scale = grid_unit(source, journal)
     x = place.c + place.a * (np.arange(columns) + 0.5)
     y = place.f + place.e * (np.arange(rows)[::-1] + 0.5)
     return Ground(scale * x, scale * y, scale * z)

@@ -118,7 +118,8 @@ class Rows:
             refuse_degrees(crs, self.file)
         if not (is_code(crs) and is_code(target)) or crs is None or target is None:
             return x, y
-        east, north = project_places(x, y, crs, target, self.file)
+        metres = "x" in self.factors or "y" in self.factors
+        east, north = project_places(x, y, crs, target, self.file, metres=metres)
         lost = np.isnan(east) & np.isfinite(x) & np.isfinite(y)
         for i in np.flatnonzero(lost & self.ok).tolist():
             reason = message(

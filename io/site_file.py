@@ -37,11 +37,12 @@ from geofit.io.picks import load_picks
 from geofit.io.places import list_places
 from geofit.io.site_drawings import gather, read_sections
 from geofit.io.site_keys import HORIZON, SETTINGS, TOP, Reader
-from geofit.io.site_relations import read_relations
+from geofit.io.site_relations import read_datum, read_relations
 from geofit.io.site_rules import read_rule
 from geofit.io.source import Source
 from geofit.io.title_block import read_title_block
 from geofit.io.traces import load_traces
+from geofit.io.units import metres_of
 
 __all__ = ["build_site", "load_site", "read_site"]
 
@@ -134,9 +135,12 @@ def build_site(
     reader = Reader(path)
     reader.keys(top, TOP, "The site file")
     label = reader.get(top, "site", dict, "the site file") or {}
-    reader.keys(label, ("name", "crs", "mapping", "order"), "[site]")
+    reader.keys(label, ("name", "crs", "mapping", "order", "unit", "datum"), "[site]")
     crs = reader.get(label, "crs", str, "[site]") or ""
     reader.target = crs if is_code(crs) else None
+    if unit := reader.get(label, "unit", str, "[site]"):
+        metres_of(unit, reader.file)
+        reader.unit = unit
     if mappings is not None:
         reader.mappings = tuple(mappings)
     elif mapping := reader.get(label, "mapping", str, "[site]"):
@@ -208,6 +212,7 @@ def build_site(
         faults=faults,
         boreholes=tuple(LoggedHoles(c.paths, c.ends, c.logs) for c in boreholes),
         title=title,
+        datum=read_datum(reader, label),
     )
 
 

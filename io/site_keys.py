@@ -53,13 +53,15 @@ _KINDS = {
 class Reader:
     """Takes typed values out of one site file; every complaint names the file and the key.
 
-    ``mappings`` fill in what the site file does not state of a table, ``target`` is the site's coordinate system.
+    ``mappings`` fill in what the site file does not state of a table, ``target`` is the site's coordinate system,
+    ``unit`` that of lengths in tables which do not mark theirs.
     """
 
     def __init__(self, path: Path) -> None:
         self.path, self.file = path, path.name
         self.mappings: tuple[ColumnMapping, ...] = ()
         self.target: str | None = None
+        self.unit: str | None = None
 
     def fail(self, reason: Message, remedy: Message, key: str | None = None, value: Any = None) -> InputError:
         """Return the error for a key."""
@@ -170,6 +172,7 @@ class Reader:
             measure=self.get(value, "measure", str, where),
             crs=self.get(value, "crs", str, where),
             target=self.target,
+            usual_unit=self.unit,
         )
         for mapping in self.mappings:
             if mapping.suits(file, source.table, kind):

@@ -1,15 +1,32 @@
-"""What a site file says of its horizons together: the order of the strata, and which of them each fault cuts."""
+"""What a site file says of the whole site: the order of the strata, what each fault cuts, the project datum."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
+from geofit.data.columns import LARGEST
 from geofit.data.messages import Untranslated, message
+from geofit.data.numbers import is_finite
 from geofit.io.hints import nearest_name
 from geofit.io.site_keys import Reader
 
-__all__ = ["read_relations"]
+__all__ = ["read_datum", "read_relations"]
+
+
+def read_datum(reader: Reader, label: Mapping[str, Any]) -> tuple[float, float, float] | None:
+    """Return the project datum under ``[site]``: easting, northing, elevation, metres; None if there is none."""
+    datum = reader.get(label, "datum", list, "[site]")
+    if datum is None:
+        return None
+    if len(datum) != 3 or not all(is_finite(value) and abs(value) <= LARGEST for value in datum):
+        raise reader.fail(
+            message("io.datum-unusable", "The project datum is not three numbers"),
+            message("io.write-datum", "Write easting, northing and elevation in metres: datum = [500000, 3100000, 0]."),
+            "datum",
+            datum,
+        )
+    return float(datum[0]), float(datum[1]), float(datum[2])
 
 
 def read_relations(

@@ -40,7 +40,8 @@ def write_snapshot(site: Site, path: Path) -> None:
     """
     arrays: Arrays = {}
     words = {
-        "format": FORMAT, "version": VERSION, "name": site.name, "crs": site.crs, "inputs": dict(site.inputs),
+        "format": FORMAT, "version": VERSION, "name": site.name, "crs": site.crs, "datum": site.datum,
+        "inputs": dict(site.inputs),
         "order": list(site.order), "faults": {fault: list(cut) for fault, cut in site.faults.items()},
         "horizons": [_points(f"horizon{k}", name, points, arrays)
                      for k, (name, points) in enumerate(site.horizons.items())],
@@ -120,6 +121,7 @@ def _site(words: dict[str, Any], arrays: Arrays) -> Site:
         ),
         sections=tuple(Section(name, arrays[f"section{k}.line"]) for k, name in enumerate(words["sections"])),
         crs=words["crs"],
+        datum=tuple(words["datum"]) if words.get("datum") else None,
         inputs=words["inputs"],
         orientations=_group(Orientations, "orientations", arrays),
         order=tuple(words["order"]),

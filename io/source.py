@@ -39,6 +39,8 @@ class Source:
     crs, target : str, optional
         Coordinate system of x and y, and the one that is wanted: where both are codes that differ, the places
         are projected (extra ``gis``).
+    usual_unit : str, optional
+        Unit of the columns that are not marked with one: that of the whole site.
     """
 
     path: Path
@@ -53,6 +55,7 @@ class Source:
     horizons: Sequence[str | int] = ()
     crs: str | None = None
     target: str | None = None
+    usual_unit: str | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))

@@ -92,7 +92,7 @@ def read_surfer(data: bytes, source: Source, journal: Journal) -> Ground:
             ),
         )
     journal.count(source.name, rows, 0)
-    scale = grid_unit(source)
+    scale = grid_unit(source, journal)
     x, y = np.linspace(west, east, columns), np.linspace(south, north, rows)
     return Ground(scale * x, scale * y, scale * z.reshape(rows, columns))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 
 from geofit.data.errors import InputError
@@ -11,20 +12,24 @@ from geofit.io.journal import Journal
 from geofit.io.source import Source
 from geofit.io.tables import Table
 
-__all__ = ["LENGTHS", "METRES", "grid_unit", "length_factors", "metres_of"]
+__all__ = ["LENGTHS", "METRES", "grid_unit", "length_factors", "list_conversion", "metres_of", "unit_marked"]
 
 #: Metres of one unit. The US survey foot differs by 2 in a million: 1.4 m at a state-plane northing of 2.3e6 ft.
 METRES = {"m": 1.0, "ft": 0.3048, "ft-us": 1200.0 / 3937.0, "km": 1000.0, "cm": 0.01, "mm": 0.001}
 
+#: What a unit is called, without case, blanks and marks.
 _WORDS = {
     "m": "m metre metres meter meters 米",
-    "ft": "ft feet foot f 英尺",
-    "ft-us": "ft-us ftus us-ft usft ft(us) ussft",
-    "km": "km kilometre kilometres 千米 公里",
-    "cm": "cm centimetre centimetres 厘米",
-    "mm": "mm millimetre millimetres 毫米",
+    "ft": "ft feet foot f ift intft internationalft internationalfeet internationalfoot 英尺 国际英尺",
+    "ft-us": "ftus usft usfeet usfoot ft(us) ussft sft surveyft surveyfeet surveyfoot ussurveyft ussurveyfeet "
+    "ussurveyfoot 美制测量英尺 测量英尺",
+    "km": "km kilometre kilometres kilometer kilometers 千米 公里",
+    "cm": "cm centimetre centimetres centimeter centimeters 厘米",
+    "mm": "mm millimetre millimetres millimeter millimeters 毫米",
 }
 _UNITS = {word: unit for unit, words in _WORDS.items() for word in words.split()}
+#: What conversions call a unit.
+_NAMES = {"ft": "feet", "ft-us": "US survey feet"}
 
 #: Roles that are lengths.
 LENGTHS = frozenset(
@@ -32,9 +37,25 @@ LENGTHS = frozenset(
 )
 
 
+def unit_marked(mark: str) -> str | None:
+    """Return the unit that a mark names, alone or with words behind it ("ft bgl", "US survey feet"); None if none.
+
+    Examples
+    --------
+    >>> [unit_marked(mark) for mark in ("Feet", "ft. AMSL", "US Survey ft", "m", "deg")]
+    ['ft', 'ft', 'ft-us', 'm', None]
+    """
+    words = mark.casefold().strip().strip("[]()<>").replace(",", " ").split()
+    for count in range(len(words), 0, -1):
+        found = _UNITS.get(re.sub(r"[\s_.\-]", "", "".join(words[:count])))
+        if found is not None:
+            return found
+    return None
+
+
 def metres_of(unit: str, file: str | None = None) -> float:
     """Return the metres of a unit that the user states."""
-    known = _UNITS.get(unit.strip().casefold())
+    known = unit_marked(unit)
     if known is None:
         raise InputError(
             message("io.unit-unknown", "The unit '{unit}' is unknown", unit=unit),
@@ -46,41 +67,68 @@ def metres_of(unit: str, file: str | None = None) -> float:
 
 
 def length_factors(table: Table, columns: Mapping[str, int], source: Source, journal: Journal) -> dict[str, float]:
-    """Return the metres of one unit of each length column that is not in metres.
+    """Return the metres of one unit of each length column that is not in metres; every conversion is listed.
 
-    What the source states holds for all of them; else the mark in the header or the units row, which is listed.
+    What the source states holds for all of them; else the mark in the header or the units row, else the site's unit.
     """
     stated = None if source.unit is None else metres_of(source.unit, source.name)
+    usual = None if source.usual_unit is None else metres_of(source.usual_unit, source.name)
     factors: dict[str, float] = {}
     for role, j in columns.items():
         if role not in LENGTHS:
             continue
-        if stated is not None:
-            factors[role] = stated
-            continue
         mark = plain_name(table.header[j])[1] or (table.units[j] if j < len(table.units) else "")
-        unit = _UNITS.get(mark.strip().strip("[]()<>").casefold(), "m")
-        if unit == "m":
-            continue
-        factors[role] = METRES[unit]
-        name = "feet" if unit == "ft" else "US survey feet" if unit == "ft-us" else unit
-        journal.add(
-            "warning",
-            table.name,
-            message(
-                "io.unit-converted",
-                "The {role} is marked as {mark}; it is converted to metres (1 {unit} = {metres:.10g} m)",
-                role=role,
-                mark=name,
-                unit=unit,
-                metres=METRES[unit],
-            ),
-            message("io.state-unit-metres", 'State unit = "m" where it is metres already.'),
-            column=table.header[j],
-        )
-    return {role: factor for role, factor in factors.items() if factor != 1.0}
+        unit = unit_marked(mark)
+        if stated is None and unit is not None:
+            factors[role] = METRES[unit]
+            if unit != "m":
+                _list_mark(table, j, role, unit, journal)
+        elif stated is not None or usual is not None:
+            factors[role] = (stated if stated is not None else usual) or 1.0
+    factors = {role: factor for role, factor in factors.items() if factor != 1.0}
+    given = source.unit or source.usual_unit
+    if given is not None and (roles := [role for role, factor in factors.items() if factor in (stated, usual)]):
+        list_conversion(given, tuple(roles), source.name, journal)
+    return factors
 
 
-def grid_unit(source: Source) -> float:
+def _list_mark(table: Table, j: int, role: str, unit: str, journal: Journal) -> None:
+    journal.add(
+        "warning",
+        table.name,
+        message(
+            "io.unit-converted",
+            "The {role} is marked as {mark}; it is converted to metres (1 {unit} = {metres:.10g} m)",
+            role=role,
+            mark=_NAMES.get(unit, unit),
+            unit=unit,
+            metres=METRES[unit],
+        ),
+        message("io.state-unit-metres", 'State unit = "m" where it is metres already.'),
+        column=table.header[j],
+    )
+
+
+def list_conversion(unit: str, roles: tuple[str, ...], file: str, journal: Journal) -> None:
+    """List that lengths of a file were converted, for the record of what was done to the data."""
+    known = unit_marked(unit) or "m"
+    if known == "m":
+        return
+    text = message(
+        "io.stated-unit-converted",
+        "Lengths in {mark}, converted to metres (1 {unit} = {metres:.10g} m): {roles}",
+        mark=_NAMES.get(known, known),
+        unit=known,
+        metres=METRES[known],
+        roles=roles,
+    )
+    journal.add("note", file, text)
+
+
+def grid_unit(source: Source, journal: Journal) -> float:
     """Return the metres of the unit that the user states; a grid does not say its own."""
-    return 1.0 if source.unit is None else metres_of(source.unit, source.name)
+    unit = source.unit or source.usual_unit
+    if unit is None:
+        return 1.0
+    list_conversion(unit, ("x", "y", "z"), source.name, journal)
+    return metres_of(unit, source.name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,7 @@ from geofit.implicit.quadric import Plane
 if TYPE_CHECKING:
     from geofit.bodies.implicit_body import ImplicitBody
     from geofit.cad.solid_read_back import SolidReadBack
+    from geofit.cad.step_origin import StepFields
 
 __all__ = ["creased_solid", "write_solid"]
 
@@ -33,16 +34,19 @@ CELLS = 48
 ROOM = 0.05
 
 
-def write_solid(body: ImplicitBody, path: str | PathLike[str]) -> SolidReadBack:
-    """Write a body as a NURBS solid, or as triangles where that cannot be done, read it back and check it."""
+def write_solid(body: ImplicitBody, path: str | PathLike[str], **stated: Unpack[StepFields]) -> SolidReadBack:
+    """Write a body as a NURBS solid, or as triangles where that cannot be done, read it back and check it.
+
+    ``stated`` as for :func:`geofit.cad.solid.write_body`.
+    """
     from geofit.cad.solid import write_body
 
     try:
         if sharp_union(body.field) is not None:
-            return write_body(body, path, shape=creased_solid(body))
-        return write_body(body, path, patched_surface(body).components)
+            return write_body(body, path, shape=creased_solid(body), **stated)
+        return write_body(body, path, patched_surface(body).components, **stated)
     except (FitError, StitchError) as error:
-        return write_body(body, path, reason=str(error))
+        return write_body(body, path, reason=str(error), **stated)
 
 
 def creased_solid(body: ImplicitBody) -> Any:

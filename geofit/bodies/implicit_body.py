@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,7 @@ from geofit.implicit.mesh import TriangleMesh
 if TYPE_CHECKING:
     from geofit.bodies.cut import BodyPiece
     from geofit.cad.solid_read_back import SolidReadBack
+    from geofit.cad.step_origin import StepFields
     from geofit.implicit.field import Field
 
 __all__ = ["ImplicitBody", "OwnField"]
@@ -141,7 +142,7 @@ class ImplicitBody:
 
         return cut_body(self, surfaces, spacing)
 
-    def write_step(self, path: str | PathLike[str], nurbs: bool = True) -> SolidReadBack:
+    def write_step(self, path: str | PathLike[str], nurbs: bool = True, **stated: Unpack[StepFields]) -> SolidReadBack:
         """Write the body as a STEP AP242 solid, read it back, and return what the reader found.
 
         Parameters
@@ -151,11 +152,14 @@ class ImplicitBody:
         nurbs : bool
             NURBS patches within :attr:`epsilon` of the surface; otherwise, and where patches cannot follow the body, a
             tessellated solid.
+        **stated : StepFields
+            ``author`` and ``organisation`` for the file's head; ``origin``: "map", "local" or the project datum (3,) in
+            map coordinates, metres, as for :func:`geofit.cad.step.write_step`; ``colour``, ``#rrggbb``.
         """
         from geofit.bodies.creased import write_solid
         from geofit.cad.solid import write_body
 
-        return write_solid(self, path) if nurbs else write_body(self, path)
+        return write_solid(self, path, **stated) if nurbs else write_body(self, path, **stated)
 
     def _lattice(self, spacing: float) -> Lattice:
         """Return the nodes of a mesh: the body's box, and two cells around it."""

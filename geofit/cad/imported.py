@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from geofit.cad.faces import edge_places, edges_with_faces, explore, faces_of, from_geom
+from geofit.cad.faces import edge_places, edges_with_faces, explore, faces_of, from_geom, placement
 from geofit.cad.step_attributes import attributes_at
+from geofit.cad.step_origin import offset_at
 from geofit.cad.trimming import is_height_field, needed
 from geofit.data.errors import InputError
 from geofit.data.files import is_file
@@ -41,7 +42,7 @@ WHOLE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class FileShape:
-    """A product of a file: its shape in its own coordinates (m), where it stands, its faces' names, our attributes."""
+    """A product of a file: shape in its own coordinates (m), place in the map, names of the faces, our attributes."""
 
     name: str
     shape: Any
@@ -97,7 +98,9 @@ def products(document: Any, stem: str) -> Iterator[FileShape]:
                 continue
             name = unique_name(_label_name(label) or stem, taken)
             taken.add(name)
-            yield FileShape(name, shape, location.Multiplied(own), names, attributes_at(label))
+            attributes = attributes_at(label)
+            stands = placement(offset_at(attributes)).Multiplied(location.Multiplied(own))
+            yield FileShape(name, shape, stands, names, attributes)
 
 
 def unique_name(base: str, taken: Container[str]) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections import defaultdict
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,7 @@ from geofit.surfaces.protocol import FittedSurface, Surface
 if TYPE_CHECKING:
     from geofit.cad.imported import FileShape
 
-__all__ = ["read_back", "self_intersects"]
+__all__ = ["attribute_check", "read_back", "self_intersects"]
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +33,14 @@ SAMPLES = 200
 MEASURED = 2000
 
 
-def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written: Any, path: Path) -> ReadBack:
+def read_back(
+    surface: FittedSurface,
+    shape: FileShape,
+    found: Surface,
+    written: Any,
+    path: Path,
+    stated: Mapping[str, str] | None = None,
+) -> ReadBack:
     """Check a horizon as written in the file against the one that was written.
 
     Parameters
@@ -48,6 +56,8 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
         The shell that was handed to the writer.
     path : Path
         The file.
+    stated : mapping of str to str, optional
+        Attributes of the product beside those of the surface: the offset of the file's coordinates.
 
     Returns
     -------
@@ -156,7 +166,7 @@ def read_back(surface: FittedSurface, shape: FileShape, found: Surface, written:
             ),
         ),
         _normal_check(found, seams),
-        _attribute_check(surface, shape),
+        attribute_check(attributes_of(surface) | dict(stated or {}), shape),
     )
     return ReadBack(
         file=path.name,
@@ -353,9 +363,8 @@ def _outline_check(surface: FittedSurface, shape: FileShape, free: list[Any]) ->
     return Check(name, True if off <= limit else None, off, limit, "m", reach)
 
 
-def _attribute_check(surface: FittedSurface, shape: FileShape) -> Check:
-    """Check that the product has the attributes that were written: sigma, epsilon, the hash of the data."""
-    written = attributes_of(surface)
+def attribute_check(written: Mapping[str, str], shape: FileShape) -> Check:
+    """Check that the product has the attributes that were written: sigma, epsilon, the hash of the data, the offset."""
     wrong = [key for key, value in written.items() if shape.attributes.get(key) != value]
     text = message(
         "cad.attributes-of-product",

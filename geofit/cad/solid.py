@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 from geofit.cad.faces import placement
 from geofit.cad.solid_read_back import SolidReadBack, read_back_body
 from geofit.cad.solid_shapes import patch_solid, triangle_solid
+from geofit.cad.step_attributes import attributes_of_body, with_attributes
+from geofit.cad.step_origin import StepFields, offset_attributes, offset_of, offset_words
 from geofit.data.accuracy import Check
 from geofit.data.errors import InputError, StitchError
 from geofit.data.files import cannot_write
@@ -44,6 +46,7 @@ def write_body(
     patches: Sequence[Sequence[Patch]] = (),
     reason: str = "",
     shape: Any = None,
+    **stated: Unpack[StepFields],
 ) -> SolidReadBack:
     """Write a body as a STEP AP242 solid, read it back and check it.
 
@@ -60,13 +63,19 @@ def write_body(
         Why patches could not be written although requested; the check "grade" reports it.
     shape : TopoDS_Shape, optional
         The solid itself, about the body's local origin, in place of patches: its faces may be trimmed.
+    **stated : StepFields
+        ``author`` and ``organisation`` for the file's head; ``origin`` as for
+        :func:`~geofit.cad.step.write_step`; ``colour`` of the solids, ``#rrggbb``.
 
     Raises
     ------
     InputError
         If the body is empty, or the file cannot be written.
+    SettingsError
+        If the origin is neither a known word nor three numbers.
     """
     target = Path(path)
+    offset = offset_of(stated.get("origin", "map"), [body.extent[0] + body.origin])
     if not len(body.overview.triangles):
         raise InputError(
             message("cad.body-empty", "The body '{name}' is empty", name=body.name),
@@ -80,8 +89,9 @@ def write_body(
         except StitchError as error:
             reason = str(error)
     smooth = shape is not None
-    _write(shape if smooth else triangle_solid(body.overview), body.name, body.origin, target, nurbs=smooth)
-    found = read_back_body(body, target, nurbs=smooth, trimmed=trimmed)
+    attributes = attributes_of_body(body) | offset_attributes(offset)
+    _write(shape if smooth else triangle_solid(body.overview), body, target, offset, attributes, stated, nurbs=smooth)
+    found = read_back_body(body, target, attributes, nurbs=smooth, trimmed=trimmed)
     if not reason:
         return found
     text = message(
@@ -112,7 +122,10 @@ def _parameters(*, nurbs: bool) -> Iterator[None]:
             setter(name, value)
 
 
-def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) -> None:
+def _write(
+    shape: Any, body: ImplicitBody, target: Path, offset: Floats, attributes: Mapping[str, str], stated: StepFields, *,
+    nurbs: bool,
+) -> None:  # fmt: skip
     from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
     from OCP.IFSelect import IFSelect_RetDone
     from OCP.STEPCAFControl import STEPCAFControl_Writer
@@ -136,8 +149,8 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
             assembly, product = tool.NewShape(), tool.AddShape(shape, False)
             for label, text in (
                 (assembly, "bodies"),
-                (product, name),
-                (tool.AddComponent(assembly, product, placement(origin)), name),
+                (product, body.name),
+                (tool.AddComponent(assembly, product, placement(body.origin - offset)), body.name),
             ):
                 TDataStd_Name.Set_s(label, TCollection_ExtendedString(text, True))
             tool.UpdateAssemblies()
@@ -147,16 +160,19 @@ def _write(shape: Any, name: str, origin: Floats, target: Path, *, nurbs: bool) 
             header = APIHeaderSection_MakeHeader(writer.ChangeWriter().Model())
             header.SetName(TCollection_HAsciiString("bodies"))
             header.SetTimeStamp(TCollection_HAsciiString(TIMESTAMP))
-            header.SetAuthorValue(1, TCollection_HAsciiString("geofit"))
-            header.SetOrganizationValue(1, TCollection_HAsciiString(""))
+            header.SetAuthorValue(1, TCollection_HAsciiString(stated.get("author") or "geofit"))
+            header.SetOrganizationValue(1, TCollection_HAsciiString(stated.get("organisation", "")))
             header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
+            if about := offset_words(offset):
+                header.SetDescriptionValue(1, TCollection_HAsciiString(about))
             if writer.Write(temporary) != IFSelect_RetDone:
                 raise InputError(
                     message("cad.file-not-written-by-opencascade", "OpenCASCADE cannot write the file"),
                     message("cad.check-disk", "Check the disk."),
                     file=str(target),
                 )
-        Path(temporary).write_text(canonical(Path(temporary).read_text("utf-8")), "ascii", newline="\n")
+        text = canonical(Path(temporary).read_text("utf-8"), stated.get("colour", ""))
+        Path(temporary).write_text(with_attributes(text, [attributes]), "ascii", newline="\n")
         os.chmod(temporary, 0o644)
         os.replace(temporary, target)
     finally:

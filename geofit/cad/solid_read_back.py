@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from geofit.cad.faces import explore, faces_of, free_edges, from_geom
+from geofit.cad.read_back import attribute_check
 from geofit.cad.solid_shapes import volume_of
 from geofit.data.accuracy import Check
 from geofit.data.errors import StitchError
@@ -19,11 +21,14 @@ from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
     from geofit.bodies.implicit_body import ImplicitBody
+    from geofit.cad.imported import FileShape
 
 __all__ = ["SolidReadBack", "read_back_body"]
 
 Floats = NDArray[np.float64]
 
+#: Largest distance of a body in the file from its place in the map, metres.
+PLACE = 1e-6
 #: Largest difference of volumes between the file and the triangulated body, relative: NURBS, triangles.
 VOLUME = {"nurbs": 2e-3, "triangles": 1e-6}
 
@@ -57,8 +62,10 @@ class SolidReadBack:
         return all(check.passed is not False for check in self.checks)
 
 
-def read_back_body(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bool) -> SolidReadBack:
-    """Read the file of a body and check it: NURBS or triangles, faces trimmed or whole."""
+def read_back_body(
+    body: ImplicitBody, target: Path, attributes: Mapping[str, str], *, nurbs: bool, trimmed: bool
+) -> SolidReadBack:
+    """Read the file of a body and check it: NURBS or triangles, faces trimmed or whole; and its ``attributes``."""
     from OCP.BRep import BRep_Tool
     from OCP.BRepCheck import BRepCheck_Analyzer
     from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
@@ -69,7 +76,8 @@ def read_back_body(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bo
     from geofit.geometry.projection import project
 
     # In the product's own coordinates: the body's local ones.
-    shape = read_shapes(target)[0].shape
+    product = read_shapes(target)[0]
+    shape = product.shape
     faces = faces_of(shape)
     solids = list(explore(shape, TopAbs_SOLID))
     if trimmed:
@@ -171,6 +179,8 @@ def read_back_body(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bo
                 best=best,
             ),
         ),
+        _place_check(body, product),
+        attribute_check(attributes, product),
     )
     return SolidReadBack(
         file=str(target),
@@ -187,6 +197,16 @@ def read_back_body(body: ImplicitBody, target: Path, *, nurbs: bool, trimmed: bo
         edge_tolerance=edge,
         checks=checks,
     )
+
+
+def _place_check(body: ImplicitBody, product: FileShape) -> Check:
+    """Check that the file, with the offset that it states, puts the body where it is in the map."""
+    part = product.location.Transformation().TranslationPart()
+    off = float(np.abs(np.array([part.X(), part.Y(), part.Z()]) - body.origin).max())
+    text = message(
+        "cad.body-place", "With the offset in the file, the body lies {off:.2g} m from its map coordinates", off=off
+    )
+    return Check("place", off <= PLACE, off, PLACE, "m", text)
 
 
 def _reference_volume(body: ImplicitBody) -> float:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit import __version__
 from geofit.cad.faces import faces_of, placement
@@ -25,6 +26,7 @@ from geofit.cad.imported import FileShape, empty_document, existing, no_faces, p
 from geofit.cad.read_back import read_back
 from geofit.cad.sewing import shell
 from geofit.cad.step_attributes import attributes_of, with_attributes
+from geofit.cad.step_origin import Origin, offset_attributes, offset_of, offset_words
 from geofit.cad.step_text import canonical
 from geofit.data.accuracy import ReadBack
 from geofit.data.columns import LARGEST
@@ -64,6 +66,7 @@ def write_step(
     unit: Unit = "m",
     author: str = "",
     organisation: str = "",
+    origin: Origin = "map",
 ) -> dict[str, ReadBack]:
     """Write horizons as one STEP AP242 assembly, read it back with OpenCASCADE and check it.
 
@@ -81,6 +84,9 @@ def write_step(
         In which the file gives lengths. It reports it, and CAD systems convert: the surfaces are the same.
     author, organisation : str
         Who answers for the file, for its header.
+    origin : {"map", "local"} or (3,) array_like
+        Zero of the file: that of the map; a round place below the data; or the project datum in map coordinates,
+        metres. The file states the offset, and :func:`read_step` restores map coordinates.
 
     Returns
     -------
@@ -93,11 +99,14 @@ def write_step(
         If patches do not make one valid shell.
     InputError
         If there is nothing to write, the unit is unknown, or the file cannot be written.
+    SettingsError
+        If the origin is neither a known word nor three numbers.
     """
-    target = Path(path)
-    shells = store_step(surfaces, target, unit=unit, author=author, organisation=organisation)
+    target, offset = Path(path), _offset(surfaces, origin)
+    shells = store_step(surfaces, target, unit=unit, author=author, organisation=organisation, origin=offset)
+    stated = offset_attributes(offset)
     return {
-        name: read_back(as_fitted(surface), shape, surface_of(shape, whole=True), shells[name], target)
+        name: read_back(as_fitted(surface), shape, surface_of(shape, whole=True), shells[name], target, stated)
         for (name, surface), shape in zip(surfaces.items(), read_shapes(target), strict=True)
     }
 
@@ -109,6 +118,7 @@ def store_step(
     unit: Unit = "m",
     author: str = "",
     organisation: str = "",
+    origin: Origin = "map",
 ) -> dict[str, Any]:
     """Write the same file without reading it back, for a project of one's own; return the shells by horizon.
 
@@ -141,14 +151,21 @@ def store_step(
                 message("cad.fit-in-grid-metres", "Fit the surface to points in the metres of the site's grid."),
                 file=str(target),
             )
+    offset = _offset(surfaces, origin)
     shells = {name: shell(surface) for name, surface in surfaces.items()}
     with _parameters(unit):
         filled = empty_document()
-        _fill(filled, surfaces, shells)
+        _fill(filled, surfaces, shells, offset)
         names = [_patch_names(shells[name], s.patches) for name, s in surfaces.items()]
-        attributes = [attributes_of(as_fitted(surface)) for surface in surfaces.values()]
-        _save(filled, names, target, attributes, (author or "geofit", organisation))
+        stated = offset_attributes(offset)
+        attributes = [attributes_of(as_fitted(surface)) | stated for surface in surfaces.values()]
+        _save(filled, names, target, attributes, (author or "geofit", organisation), offset_words(offset))
     return shells
+
+
+def _offset(surfaces: Mapping[str, Surface], origin: Origin) -> NDArray[np.float64]:
+    corners = [surface.bounds[0] for surface in surfaces.values() if surface.patches] or [np.zeros(3)]
+    return offset_of(origin, corners)
 
 
 def read_step(path: str | PathLike[str]) -> dict[str, PatchSurface]:
@@ -167,8 +184,8 @@ def read_step(path: str | PathLike[str]) -> dict[str, PatchSurface]:
     Returns
     -------
     dict of str to PatchSurface
-        Without points. The origin is the product's placement, or for a product in map coordinates
-        itself, a rounded corner near its first control point.
+        Without points. An offset that the file states is added. The origin is the product's placement, or for a
+        product in map coordinates itself, a rounded corner near its first control point.
 
     Raises
     ------
@@ -244,7 +261,9 @@ def _parameters(unit: Unit = "m") -> Iterator[None]:
             getattr(Interface_Static, setter)(name, value)
 
 
-def _fill(document: Any, surfaces: Mapping[str, Surface], shells: Mapping[str, Any]) -> None:
+def _fill(
+    document: Any, surfaces: Mapping[str, Surface], shells: Mapping[str, Any], offset: NDArray[np.float64]
+) -> None:
     from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
     tool = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
@@ -253,7 +272,7 @@ def _fill(document: Any, surfaces: Mapping[str, Surface], shells: Mapping[str, A
     for name, surface in surfaces.items():
         product = tool.AddShape(shells[name], False)
         _name(product, name)
-        _name(tool.AddComponent(assembly, product, placement(surface.origin)), name)
+        _name(tool.AddComponent(assembly, product, placement(surface.origin - offset)), name)
     tool.UpdateAssemblies()
 
 
@@ -291,6 +310,7 @@ def _save(
     target: Path,
     attributes: Sequence[Mapping[str, str]],
     signed: tuple[str, str],
+    about: str,
 ) -> None:
     from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
     from OCP.IFSelect import IFSelect_RetDone
@@ -317,6 +337,8 @@ def _save(
             header.SetAuthorValue(1, TCollection_HAsciiString(signed[0]))
             header.SetOrganizationValue(1, TCollection_HAsciiString(signed[1]))
             header.SetOriginatingSystem(TCollection_HAsciiString(f"geofit {__version__}"))
+            if about:
+                header.SetDescriptionValue(1, TCollection_HAsciiString(about))
             done = writer.Write(temporary) == IFSelect_RetDone
         if not done:
             raise InputError(

@@ -9,14 +9,22 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from geofit import __version__
+from geofit.cad.step_origin import OFFSET_KEYS
+from geofit.cad.step_text import shaped_products
+from geofit.data.accuracy import Accuracy
 from geofit.surfaces.protocol import FittedSurface
 
-__all__ = ["KEYS", "attributes_at", "attributes_of", "data_hash", "with_attributes"]
+if TYPE_CHECKING:
+    from geofit.bodies.accuracy import BodyAccuracy
+    from geofit.bodies.implicit_body import ImplicitBody
+
+__all__ = ["KEYS", "attributes_at", "attributes_of", "attributes_of_body", "places_hash", "with_attributes"]
 
 #: Names of the attributes, in the order of the file.
 KEYS = ("sigma_m", "epsilon_m", "largest_residual_m", "points", "data_sha256", "geofit_version")
@@ -36,7 +44,19 @@ def attributes_of(surface: FittedSurface) -> dict[str, str]:
     """Return the attributes of a fitted surface; without points or a check those of them are missing."""
     found, accuracy = {"geofit_version": __version__}, surface.accuracy
     if len(surface.points):
-        found |= {"points": str(len(surface.points)), "data_sha256": data_hash(surface)}
+        found |= {"points": str(len(surface.points)), "data_sha256": places_hash(surface.points.xyz)}
+    return _in_order(found, accuracy)
+
+
+def attributes_of_body(body: ImplicitBody) -> dict[str, str]:
+    """Return the attributes of a body: its points are the contacts; what was not fitted has no sigma."""
+    found = {"geofit_version": __version__}
+    if len(body.contacts):
+        found |= {"points": str(len(body.contacts)), "data_sha256": places_hash(body.contacts)}
+    return _in_order(found, getattr(body, "accuracy", None))
+
+
+def _in_order(found: dict[str, str], accuracy: Accuracy | BodyAccuracy | None) -> dict[str, str]:
     if accuracy is not None and accuracy.n:
         found["sigma_m"] = f"{accuracy.sigma:.6g}"
         found["epsilon_m"] = f"{accuracy.epsilon:.6g}"
@@ -44,9 +64,9 @@ def attributes_of(surface: FittedSurface) -> dict[str, str]:
     return {key: found[key] for key in KEYS if key in found}
 
 
-def data_hash(surface: FittedSurface) -> str:
-    """Return the SHA-256 of the points that the surface was fitted to: easting, northing and elevation as float64."""
-    return hashlib.sha256(np.ascontiguousarray(surface.points.xyz, dtype="<f8").tobytes()).hexdigest()
+def places_hash(xyz: NDArray[np.float64]) -> str:
+    """Return the SHA-256 of the points (n, 3) of a fit: easting, northing and elevation as float64."""
+    return hashlib.sha256(np.ascontiguousarray(xyz, dtype="<f8").tobytes()).hexdigest()
 
 
 def with_attributes(text: str, attributes: Sequence[Mapping[str, str]]) -> str:
@@ -64,16 +84,13 @@ def with_attributes(text: str, attributes: Sequence[Mapping[str, str]]) -> str:
 
 
 def _products(text: str) -> list[tuple[str, str]]:
-    """Return the numbers of the definition and of the context of each product that is a sewn shell."""
+    """Return the numbers of the definition and of the context of each product that is a sewn shell or a solid."""
     shapes = dict(re.findall(r"SHAPE_DEFINITION_REPRESENTATION\(\s*#(\d+)\s*,\s*#(\d+)\s*\)", text))
     by_shape = {shape: definition for definition, shape in shapes.items()}
     definitions = dict(
         re.findall(r"#(\d+) = PRODUCT_DEFINITION_SHAPE\(\s*'[^']*'\s*,\s*'[^']*'\s*,\s*#(\d+)\s*\)", text)
     )
-    shells = re.findall(
-        r"#(\d+) = MANIFOLD_SURFACE_SHAPE_REPRESENTATION\(\s*'[^']*'\s*,\s*\([^)]*\)\s*,\s*#(\d+)", text
-    )
-    return [(definitions[by_shape[shape]], context) for shape, context in shells]
+    return [(definitions[by_shape[shape]], context) for shape, _, context in shaped_products(text)]
 
 
 def attributes_at(label: Any) -> dict[str, str]:
@@ -85,7 +102,7 @@ def attributes_at(label: Any) -> dict[str, str]:
     if not label.FindAttribute(TDataStd_NamedData.GetID_s(), data):
         return {}
     found = {}
-    for key in KEYS:
+    for key in (*KEYS, *OFFSET_KEYS):
         name = TCollection_ExtendedString(key)
         if data.HasString(name):
             found[key] = str(data.GetString(name).ToExtString())

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import re
 
-__all__ = ["canonical"]
+__all__ = ["canonical", "shaped_products"]
 
 #: Colours of the products in turn (red, green, blue): earth tones that stay apart.
 COLOURS = ((0.76, 0.60, 0.42), (0.55, 0.64, 0.45), (0.45, 0.56, 0.68), (0.70, 0.47, 0.43), (0.60, 0.52, 0.66))
+
+#: What has faces in a representation: sewn shells, solids of faces or of triangles.
+GEOMETRY = "SHELL_BASED_SURFACE_MODEL|MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|TESSELLATED_SOLID|TESSELLATED_SHELL"
 
 STYLE = """\
 #{0} = MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',(#{1}),#{context});
@@ -22,7 +25,7 @@ STYLE = """\
 """
 
 
-def canonical(text: str) -> str:
+def canonical(text: str, colour: str = "") -> str:
     """Return the text of a STEP file that is the same whenever and wherever it was written.
 
     What OpenCASCADE counts through the life of its process is counted anew; colours, which it writes in the
@@ -32,31 +35,48 @@ def canonical(text: str) -> str:
     ----------
     text : str
         A file by OpenCASCADE without colours.
+    colour : str
+        Colour of all products, ``#rrggbb``; empty: a colour of :data:`COLOURS` for each.
 
     Returns
     -------
     str
-        ASCII, with a coloured style for each sewn shell.
+        ASCII, with a coloured style for each sewn shell and each solid.
     """
     count = iter(range(1, len(text)))
     text = re.sub(r"(NEXT_ASSEMBLY_USAGE_OCCURRENCE\(')\d+'", lambda m: f"{m[1]}{next(count)}'", text)
     text = re.sub(r"(Open CASCADE STEP translator [\d.]+) \d+(\.\d+)*", r"\1", text)
-    return re.sub(r"[^\x00-\x7f]+", _encoded, _coloured(text))
+    return re.sub(r"[^\x00-\x7f]+", _encoded, _coloured(text, colour))
 
 
-def _coloured(text: str) -> str:
+def shaped_products(text: str) -> list[tuple[str, list[str], str]]:
+    """Return the representation, the shells or solids in it, and the context of each product that has any: numbers."""
+    geometry = set(re.findall(rf"^#(\d+) = (?:{GEOMETRY})\(", text, re.M))
+    found = re.findall(
+        r"#(\d+) = (?:MANIFOLD_SURFACE_|ADVANCED_BREP_)?SHAPE_REPRESENTATION"
+        r"\(\s*'[^']*'\s*,\s*\(([^)]*)\)\s*,\s*#(\d+)",
+        text,
+    )
+    listed = [(number, re.findall(r"#(\d+)", items), context) for number, items, context in found]
+    held = [(number, [item for item in items if item in geometry], context) for number, items, context in listed]
+    return [(number, items, context) for number, items, context in held if items]
+
+
+def _coloured(text: str, colour: str) -> str:
     head, end, tail = text.rpartition("ENDSEC;")
     free = max(int(number) for number in re.findall(r"^#(\d+) =", head, re.M)) + 1
-    products = re.findall(
-        r"MANIFOLD_SURFACE_SHAPE_REPRESENTATION\(\s*'[^']*'\s*,\s*\(\s*#\d+\s*,\s*#(\d+)\s*\)\s*,\s*#(\d+)",
-        head,
-    )
-    styles = []
-    for index, (item, context) in enumerate(products):
-        red, green, blue = COLOURS[index % len(COLOURS)]
-        numbers = range(free + 9 * index, free + 9 * index + 9)
-        styles.append(STYLE.format(*numbers, item=item, context=context, red=red, green=green, blue=blue))
+    styles: list[str] = []
+    for index, (_, items, context) in enumerate(shaped_products(head)):
+        red, green, blue = _shares(colour) if colour else COLOURS[index % len(COLOURS)]
+        for item in items:
+            numbers = range(free + 9 * len(styles), free + 9 * len(styles) + 9)
+            styles.append(STYLE.format(*numbers, item=item, context=context, red=red, green=green, blue=blue))
     return head + "".join(styles) + end + tail
+
+
+def _shares(colour: str) -> tuple[float, ...]:
+    """Return red, green and blue of ``#rrggbb``, 0 to 1."""
+    return tuple(round(value / 255, 4) for value in bytes.fromhex(colour.removeprefix("#")))
 
 
 def _encoded(match: re.Match[str]) -> str:

@@ -10,7 +10,8 @@ import typer
 
 from geofit.cli.app import app
 from geofit.cli.console import listening, print_counts, print_issues, print_json, print_table, say, with_exit_code
-from geofit.cli.options import Json, Lang, LanguageCode, Out, Report
+from geofit.cli.options import Author, Certificate, Json, Lang, LanguageCode, Organisation, OriginChoice, Out, Report
+from geofit.cli.signing import signed_by
 from geofit.data.errors import InputError
 from geofit.data.messages import Message, message
 
@@ -47,6 +48,10 @@ def body(
         list[Path] | None, typer.Option(help="With a collar table: logged intervals; may be repeated.")
     ] = None,
     epsilon: Annotated[float, typer.Option(help="Control error for sigma, m.")] = 0.5,
+    author: Author = None,
+    organisation: Organisation = None,
+    certificate: Certificate = False,
+    origin: OriginChoice = "map",
     report: Report = False,
     lang: Lang = LanguageCode.EN,
     as_json: Json = False,
@@ -54,20 +59,24 @@ def body(
     """Fit a closed body to logged intervals, outlines or points: STEP, triangles, volumes, residuals."""
     from geofit.bodies.questions import section_questions
     from geofit.bodies.settings import BodySettings
+    from geofit.io.boreholes import Boreholes
     from geofit.project.body_run import run_body
 
     settings = BodySettings(epsilon=epsilon)
-    title = None
+    title, page = None, lang.value if certificate else ""
     with listening() as progress:
         drawn = _drawn(source, bool(code or survey or intervals), layer or [], settings)
         if drawn is not None:
-            run = run_body(drawn.data, out, name=source.stem, settings=settings, progress=progress)
+            signed = signed_by(None, author, organisation, origin, certificate=page)
+            run = run_body(drawn.data, out, name=source.stem, settings=settings, progress=progress, signed=signed)
         else:
             holes = _read(source, survey, intervals or [])
             print_issues(holes.issues)
             print_counts(holes.counts)
             title = getattr(holes, "title", None)
-            run = run_body(holes, out, codes=code, settings=settings, progress=progress)
+            site = None if isinstance(holes, Boreholes) else holes
+            signed = signed_by(site, author, organisation, origin, certificate=page)
+            run = run_body(holes, out, codes=code, settings=settings, progress=progress, signed=signed)
         if report:
             from geofit.data.languages import language
             from geofit.project.single_reports import write_body_report

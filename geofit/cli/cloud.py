@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from geofit.cli.console import listening, print_issues, print_json, say
 from geofit.data.errors import InputError
 from geofit.data.messages import message
+
+if TYPE_CHECKING:
+    from geofit.project.step_files import Signed
 
 __all__ = ["fit_cloud_file"]
 
@@ -24,6 +27,7 @@ def fit_cloud_file(
     scheduler: str,
     workers: int | None,
     as_json: bool,
+    signed: Signed,
 ) -> int:
     """Fit one surface to a file of points that need not fit into the memory; return the exit code."""
     from geofit.io.boundary import read_boundary
@@ -38,10 +42,10 @@ def fit_cloud_file(
         )
     roles = {"x": columns.get("x"), "y": columns.get("y"), "z": columns.get("z"), "horizon": columns.get("surface")}
     name = horizons[0] if horizons else None
-    cloud = open_cloud(source, roles, name, columns.get("sep"), columns.get("decimal"))
+    cloud = open_cloud(source, roles, name, columns.get("sep"), columns.get("decimal"), columns.get("unit"))
     area = None if boundary is None else read_boundary(boundary)
     with listening() as progress:
-        done = run_cloud(cloud, out, changes, area, progress, scheduler=scheduler, workers=workers)
+        done = run_cloud(cloud, out, changes, area, progress, scheduler=scheduler, workers=workers, signed=signed)
     print_issues(cloud.issues, str(out / f"{done.files[0].stem}_import_issues.csv"))
     accuracy = done.accuracy
     if as_json:

@@ -12,23 +12,29 @@ from geofit.cli.console import listening, with_exit_code
 from geofit.cli.options import (
     FROM_SITE,
     Across,
+    Author,
+    Certificate,
     Crs,
     Decimal,
     DipsChoice,
     FrameChoice,
     Json,
+    Organisation,
+    OriginChoice,
     Out,
     Scheduler,
     SeamChoice,
     SectionColumn,
     Sep,
     SurfaceColumn,
+    Unit,
     Workers,
     X,
     Y,
     Z,
 )
 from geofit.cli.running import run_site
+from geofit.cli.signing import signed_by
 from geofit.cli.sources import read_source
 from geofit.data.setting_texts import SETTINGS
 
@@ -55,6 +61,7 @@ def fit(
     z: Z = None,
     surface: SurfaceColumn = None,
     section: SectionColumn = None,
+    unit: Unit = None,
     sep: Sep = None,
     decimal: Decimal = None,
     crs: Crs = None,
@@ -100,6 +107,10 @@ def fit(
         bool,
         typer.Option("--bands", help="Write NAME_upper90.step and NAME_lower90.step: 90 % of the rock between them."),
     ] = False,
+    author: Author = None,
+    organisation: Organisation = None,
+    certificate: Certificate = False,
+    origin: OriginChoice = "map",
     stream: Annotated[
         bool,
         typer.Option("--stream", help="Read the table as a cloud, never whole; tables above 512 MB always are."),
@@ -130,7 +141,7 @@ def fit(
     }
     changes: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
     columns = {"x": x, "y": y, "z": z, "surface": surface, "section": section, "sep": sep, "decimal": decimal}
-    columns["crs"] = crs
+    columns |= {"crs": crs, "unit": unit}
     FitSettings(**changes)  # a bad value is reported before files are read
     from geofit.io.clouds import is_cloud
 
@@ -140,8 +151,9 @@ def fit(
         # What a cloud has no use for is refused, not ignored.
         used = (("--separate", separate), ("--bands", bands), ("--crs", crs), ("--dips", dips == DipsChoice.FIT))
         only = [word for word, given in used if given]
+        signed = signed_by(None, author, organisation, origin, certificate="en" if certificate else "")
         return fit_cloud_file(
-            source, out, columns, horizon, boundary, changes, only, scheduler or "local", workers, as_json
+            source, out, columns, horizon, boundary, changes, only, scheduler or "local", workers, as_json, signed
         )
     with listening() as progress:
         site = read_source(source, columns, boundary)
@@ -158,6 +170,7 @@ def fit(
             bands=bands,
             scheduler=where,
             workers=workers,
+            signed=signed_by(site, author, organisation, origin, certificate="en" if certificate else ""),
         )
 
 

@@ -55,6 +55,12 @@ Y = Annotated[str | None, typer.Option("--y", help="CSV: column of the northing,
 Z = Annotated[str | None, typer.Option("--z", help="CSV: column of the elevation, m.")]
 SurfaceColumn = Annotated[str | None, typer.Option("--surface", help="CSV: column of the horizon's name.")]
 SectionColumn = Annotated[str | None, typer.Option("--section", help="CSV: column of the section's name.")]
+Unit = Annotated[
+    str | None,
+    typer.Option(
+        help="CSV: unit of all lengths: m, ft, ft-us (US survey foot), km, cm, mm. Default: as headers mark, else m."
+    ),
+]
 Sep = Annotated[str | None, typer.Option(help="CSV: separator: one character, 'tab' or 'space'. Default: found.")]
 Decimal = Annotated[str | None, typer.Option(help="CSV: decimal mark, '.' or ','. Default: found.")]
 Crs = Annotated[
@@ -69,6 +75,23 @@ Scheduler = Annotated[
 ]
 Workers = Annotated[int | None, typer.Option(min=1, help="Local processes. Default: one a processor.")]
 Tolerance = Annotated[float, typer.Option(help="Largest distance of triangles and lines from the surface, m.")]
+Author = Annotated[
+    str | None, typer.Option(help="Who answers for STEP files. Default: [report] of the site file, if there is one.")
+]
+Organisation = Annotated[
+    str | None, typer.Option(help="Organisation in STEP files. Default: [report] of the site file, if there is one.")
+]
+Certificate = Annotated[
+    bool, typer.Option("--certificate", help="Write FILE_certificate.pdf: what was read back from each STEP file.")
+]
+OriginChoice = Annotated[
+    str,
+    typer.Option(
+        metavar="ORIGIN",
+        help="Zero of STEP files: map, local (a round place below the data), datum ([site] datum of the site file), or "
+        "E,N,Z of the project datum, m. The file states the offset.",
+    ),
+]
 FORMATS = (
     "step, iges, brep, dxf (contours), dxf-mesh, ifc, landxml, tsurf, geoh5, omf, vtp, vtm, obj, ply, stl, glb, "
     "gpkg (contours), asc, grd, tif (grids)"

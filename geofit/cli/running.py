@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from geofit.data.languages import Language
     from geofit.data.progress import Progress
     from geofit.data.site import Site
+    from geofit.project.step_files import Signed
 
 __all__ = ["run_site"]
 
@@ -30,6 +31,7 @@ def run_site(
     scheduler: str | None = None,
     workers: int | None = None,
     bodies: tuple[str, ...] = (),
+    signed: Signed | None = None,
 ) -> int:
     """Fit, write and report the horizons of a site; print what was found; return the exit code."""
     from geofit.data.languages import EN
@@ -41,7 +43,7 @@ def run_site(
     print_counts(site.counts)
     result = run_horizons(
         site, out, horizons, changes, progress, language=language or EN, pdf=pdf, separate=separate, bands=bands,
-        bodies=bodies, scheduler=scheduler, workers=workers or available(),
+        bodies=bodies, scheduler=scheduler, workers=workers or available(), signed=signed,
     )  # fmt: skip
     if as_json:
         found = report_document(result.report) if result.report else failed_document(result.failures)

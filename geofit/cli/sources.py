@@ -46,6 +46,7 @@ def read_source(source: Path, columns: dict[str, str | None], boundary: Path | N
         sep=columns.get("sep"),
         decimal=columns.get("decimal"),
         crs=columns.get("crs"),
+        unit=columns.get("unit"),
     )
     return Site(
         name=legible(source.stem),

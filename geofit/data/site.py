@@ -146,6 +146,8 @@ class Site:
         Paths and interval tables of the boreholes, one entry a campaign.
     title : TitleBlock
         What the report's cover says: project, client, document, status, revisions.
+    datum : (3,) tuple of float or None
+        Project datum: easting, northing and elevation in map coordinates, metres; an origin for STEP files.
     """
 
     name: str
@@ -164,6 +166,7 @@ class Site:
     faults: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     boreholes: tuple[LoggedHoles, ...] = ()
     title: TitleBlock = field(default_factory=TitleBlock)
+    datum: tuple[float, float, float] | None = None
 
     def __repr__(self) -> str:
         return f"<Site {self.name}: {', '.join(f'{key} {value}' for key, value in self._counted().items())}>"

@@ -216,6 +216,7 @@ TERMS: frozenset[str] = frozenset(
         "read",
         "read-back core",
         "read-back free edges",
+        "place",
         "read-back attributes",
         "read-back normals",
         "read-back outline",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,6 +23,9 @@ from geofit.geometry.trim_loops import Loops
 from geofit.splines.patch import Patch
 from geofit.surfaces.mesh_surface import MeshSurface
 from geofit.surfaces.patch_surface import PatchSurface
+
+if TYPE_CHECKING:
+    from geofit.cad.step_origin import Origin
 
 __all__ = ["HorizonFit", "fit_of"]
 
@@ -169,11 +172,25 @@ class HorizonFit:
 
         return to_shape(self)
 
-    def write_step(self, path: str | PathLike[str]) -> ReadBack:
-        """Write the shell as STEP AP242, read it back, and return what the reader found."""
+    def write_step(
+        self, path: str | PathLike[str], *, author: str = "", organisation: str = "", origin: Origin = "map"
+    ) -> ReadBack:
+        """Write the shell as STEP AP242, read it back, and return what the reader found.
+
+        Parameters
+        ----------
+        path : path
+            The file, usually ``*.step``.
+        author, organisation : str
+            Who answers for the file, for its header.
+        origin : {"map", "local"} or (3,) array_like
+            Zero of the file: that of the map; a round place below the data; or the project datum in map coordinates,
+            metres. The file states the offset, and :func:`geofit.read_surface` adds it.
+        """
         from geofit.cad.step import write_step
 
-        return write_step({self.name: self}, path)[self.name]
+        found = write_step({self.name: self}, path, author=author, organisation=organisation, origin=origin)
+        return found[self.name]
 
     def checked(self, conflicts: tuple[Conflict, ...], notes: tuple[Any, ...]) -> HorizonFit:
         """Return the fit with its surface measured and checked anew."""

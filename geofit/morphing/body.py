@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from datetime import date
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Unpack
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ from geofit.implicit.mesh import TriangleMesh
 
 if TYPE_CHECKING:
     from geofit.cad.solid_read_back import SolidReadBack
+    from geofit.cad.step_origin import StepFields
 
 __all__ = ["GEOMETRY_ONLY", "MorphBody"]
 
@@ -140,6 +141,6 @@ class MorphBody(ImplicitBody):
         mesh = self.local_mesh(spacing)
         return TriangleMesh(mesh.vertices + self.origin, mesh.triangles)
 
-    def write_step(self, path: str | PathLike[str], nurbs: bool = True) -> SolidReadBack:
+    def write_step(self, path: str | PathLike[str], nurbs: bool = True, **stated: Unpack[StepFields]) -> SolidReadBack:
         """Write the body as a STEP AP242 solid; an end that was given as triangles stays triangles."""
-        return super().write_step(path, nurbs=nurbs and self.given_mesh is None)
+        return super().write_step(path, nurbs=nurbs and self.given_mesh is None, **stated)

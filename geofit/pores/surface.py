@@ -15,7 +15,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal, Unpack
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -37,6 +37,7 @@ from geofit.pores.volume import RockVolume, VolumeError
 
 if TYPE_CHECKING:
     from geofit.cad.solid_read_back import SolidReadBack
+    from geofit.cad.step_origin import StepFields
 
 __all__ = ["Construction", "ContactField", "PoreSurface", "pore_surface"]
 
@@ -217,9 +218,9 @@ class PoreSurface(OwnField):
         counts = np.maximum(np.rint(self.bounds[1] / spacing).astype(int), 1)
         return Lattice(np.zeros(3), spacing, (int(counts[0]) + 1, int(counts[1]) + 1, int(counts[2]) + 1))
 
-    def write_step(self, path: str | PathLike[str], nurbs: bool = False) -> SolidReadBack:
+    def write_step(self, path: str | PathLike[str], nurbs: bool = False, **stated: Unpack[StepFields]) -> SolidReadBack:
         """Write the pores as a STEP AP242 solid, of triangles by default: 500 patches do not follow a pore space."""
-        return super().write_step(path, nurbs)
+        return super().write_step(path, nurbs, **stated)
 
     @cached_property
     def porosity(self) -> float:

@@ -14,6 +14,7 @@ from geofit.data.messages import message
 from geofit.data.progress import Progress, tell
 from geofit.project.body_building import BodyResult
 from geofit.project.mesh_body import MeshBody
+from geofit.project.step_files import Signed, certified
 
 if TYPE_CHECKING:
     from geofit.cad.solid_read_back import SolidReadBack
@@ -31,13 +32,16 @@ CELLS = 96
 
 @dataclass(frozen=True, eq=False)
 class BodyExport:
-    """What was written, and what the reader found in a STEP file."""
+    """What was written, what the reader found in a STEP file, and its certificate."""
 
     path: Path
     read_back: SolidReadBack | None = None
+    certificate: Path | None = None
 
 
-def export_body(result: BodyResult, name: str, target: Path, *, progress: Progress) -> BodyExport:
+def export_body(
+    result: BodyResult, name: str, target: Path, signed: Signed | None = None, colour: str = "", *, progress: Progress
+) -> BodyExport:
     """Write a body in the format of the file's ending.
 
     Parameters
@@ -50,6 +54,10 @@ def export_body(result: BodyResult, name: str, target: Path, *, progress: Progre
         ``.step``: a solid of NURBS patches within epsilon, or of triangles where they cannot follow the body or
         nothing was fitted; ``.stl``, ``.obj``, ``.ply``, ``.glb``, ``.vtp``, ``.ts``: triangles; ``.csv``, ``.omf``,
         ``.geoh5``: block model; ``.vti``: field.
+    signed : Signed, optional
+        What a STEP file states, and whether it gets a certificate.
+    colour : str
+        Colour of the body in a STEP file, ``#rrggbb``; empty: that of the first product.
 
     Raises
     ------
@@ -61,7 +69,9 @@ def export_body(result: BodyResult, name: str, target: Path, *, progress: Progre
     if ending in (".step", ".stp"):
         made = result.body
         body = _with_field(made, name) if isinstance(made, MeshBody) else replace(made, name=name)
-        return BodyExport(target, body.write_step(target))
+        stated = (signed or Signed()).about([body.extent[0] + body.origin])
+        found = body.write_step(target, **stated.fields, colour=colour)
+        return BodyExport(target, found, certified(target, {name: found}, {name: body.epsilon}, stated))
     if ending in TRIANGLE_ENDINGS:
         _triangles(result, name, target)
     elif ending in BLOCK_ENDINGS and fitted is not None:

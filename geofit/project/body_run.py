@@ -16,6 +16,7 @@ from geofit.data.messages import Message
 from geofit.data.progress import Progress, tell
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.project.body_files import write_figures, write_triangles
+from geofit.project.step_files import Signed, certified
 
 if TYPE_CHECKING:
     from geofit.bodies.accuracy import BodyAccuracy
@@ -98,6 +99,7 @@ def run_body(
     name: str = "",
     settings: BodySettings | None = None,
     progress: Progress | None = None,
+    signed: Signed | None = None,
 ) -> BodyRun:
     """Fit a body, examine it, and write ``NAME.step``, ``.stl``, ``.vtp``, ``.json`` and ``NAME_contacts.csv``.
 
@@ -109,6 +111,8 @@ def run_body(
         Folder for the files; created if missing. Each file is whole or absent.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
+    signed : Signed, optional
+        What the STEP file states, and whether it gets a certificate.
 
     Raises
     ------
@@ -129,11 +133,14 @@ def run_body(
     left_out = left_out_body(body)
     tell(progress, "STEP", 0.6)
     step, contacts = stem.with_name(f"{stem.name}.step"), stem.with_name(f"{stem.name}_contacts.csv")
-    read_back = body.write_step(step)
+    stated = (signed or Signed()).about([body.extent[0] + body.origin])
+    read_back = body.write_step(step, **stated.fields)
+    page = certified(step, {body.name: read_back}, {body.name: body.epsilon}, stated)
     tell(progress, "files", 0.9)
     write_contacts(body, contacts)
     figures = stem.with_name(f"{stem.name}.json")
     files = (step, figures, contacts, *write_triangles(body.overview, stem, body.origin))
+    files = files if page is None else (*files, page)
     run = BodyRun(body, volumes, read_back, files, left_out)
     write_figures(run.figures(), figures)
     return run

@@ -20,6 +20,7 @@ from geofit.data.settings import FitSettings
 if TYPE_CHECKING:
     from geofit.data.accuracy import ReadBack
     from geofit.io.clouds import Cloud
+    from geofit.project.step_files import Signed
     from geofit.streaming.fit import CloudFit
     from geofit.streaming.residuals import CloudAccuracy
 
@@ -54,6 +55,7 @@ def run_cloud(
     *,
     scheduler: str = "local",
     workers: int | None = None,
+    signed: Signed | None = None,
 ) -> CloudResult:
     """Fit a cloud and write its surface, its figures and its distances.
 
@@ -76,6 +78,8 @@ def run_cloud(
         Called as ``progress(stage, fraction)``.
     scheduler, workers : str, int
         See :func:`geofit.streaming.executors.run_tasks`.
+    signed : Signed, optional
+        What the STEP file states, and whether it gets a certificate.
 
     Raises
     ------
@@ -90,6 +94,7 @@ def run_cloud(
     """
     from geofit.cad.step import write_step
     from geofit.fitting.horizon_fit import HorizonFit
+    from geofit.project.step_files import Signed, certified
     from geofit.streaming.fit import fit_cloud
     from geofit.streaming.residuals import measure
     from geofit.streaming.spool import spooled
@@ -115,14 +120,18 @@ def run_cloud(
     )
     tell(progress, "STEP and read-back", 0.95)
     step = stem.with_name(stem.name + ".step")
-    readback = write_step({name: HorizonFit(fit.surface, settings=settings, name=name)}, step)[name]
+    stated = (signed or Signed()).about([fit.surface.bounds[0]])
+    back = write_step({name: HorizonFit(fit.surface, settings=settings, name=name)}, step, **stated.fields)
+    readback, page = back[name], certified(step, back, {name: settings.epsilon}, stated)
     found = figures(cloud.path.name, rows, fit, accuracy, readback)
     tables = _write(found, accuracy, stem)
     for file in ("points.f64", "points.json", "rows.json"):
         (state / file).unlink(missing_ok=True)
     state.rmdir()
     tell(progress, "done", 1.0)
-    return CloudResult(fit, accuracy, readback, found, (step, *tables, *sorted(distances.glob("*.parquet"))))
+    pages = () if page is None else (page,)
+    files = (step, *tables, *pages, *sorted(distances.glob("*.parquet")))
+    return CloudResult(fit, accuracy, readback, found, files)
 
 
 def _within(progress: Progress | None, low: float, high: float) -> Progress:

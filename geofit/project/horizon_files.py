@@ -14,6 +14,7 @@ from geofit.data.languages import Language, language
 from geofit.data.messages import Message, message
 from geofit.data.progress import Progress
 from geofit.data.site import Section, Site
+from geofit.project.step_files import Signed, certified
 from geofit.report.result import HorizonResult
 from geofit.streaming.executors import HERE, Where
 
@@ -44,6 +45,7 @@ def write_horizon(
     bands: bool,
     sections: Sequence[Section],
     where: Where = HERE,
+    signed: Signed | None = None,
     progress: Progress | None = None,
 ) -> Made | Message:
     """Examine a surface, and write what belongs to it: ``.step``, ``.png``, ``.json`` and ``_residuals.csv``.
@@ -66,6 +68,8 @@ def write_horizon(
         Lines along which the report cuts the horizon.
     where : Where
         Where fits without a fold of the cross-validation are made.
+    signed : Signed, optional
+        What the STEP files state, and whether they get a certificate.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
 
@@ -77,7 +81,9 @@ def write_horizon(
     failed: list[Message] = []
     t = language(code)
     made = guarded(
-        lambda: _written(surface, site, stem, progress or _deaf, t, seconds, bands, sections, where),
+        lambda: _written(
+            surface, site, stem, progress or _deaf, t, seconds, bands, sections, where, signed or Signed()
+        ),
         None,
         failed.append,
     )
@@ -90,7 +96,7 @@ def _deaf(stage: str | Message, fraction: float, /) -> None:
 
 def _written(
     surface: HorizonFit, site: Site, stem: Path, progress: Progress, t: Language, fit: float, bands: bool,
-    sections: Sequence[Section], where: Where,
+    sections: Sequence[Section], where: Where, signed: Signed,
 ) -> Made:  # fmt: skip
     from geofit.cad.step import write_step
     from geofit.prediction.examine import examine
@@ -105,8 +111,10 @@ def _written(
     clock.stop("examination")
     progress("STEP and read-back", 0.45)
     path = stem.with_name(stem.name + ".step")
-    back = write_step({surface.name: surface}, path)[surface.name]
-    warnings = _write_bands(surface, prediction, stem) if bands else ()
+    found = write_step({surface.name: surface}, path, **signed.fields)
+    back = found[surface.name]
+    certified(path, found, {surface.name: surface.settings.epsilon}, signed)
+    warnings = _write_bands(surface, prediction, stem, signed) if bands else ()
     clock.stop("STEP and read-back")
     progress("pictures", 0.7)
     storage, missing = storage_compared(surface)
@@ -165,7 +173,7 @@ def storage_compared(surface: HorizonFit) -> tuple[Storage | None, tuple[Message
     return found, tuple(missing)
 
 
-def _write_bands(surface: HorizonFit, prediction: PredictionResult, stem: Path) -> tuple[Message, ...]:
+def _write_bands(surface: HorizonFit, prediction: PredictionResult, stem: Path, signed: Signed) -> tuple[Message, ...]:
     """Write the surfaces that bound the 90 % prediction band; return why there are none."""
     from geofit.cad.step import write_step
     from geofit.prediction.bands import band
@@ -191,7 +199,7 @@ def _write_bands(surface: HorizonFit, prediction: PredictionResult, stem: Path) 
     none: tuple[HorizonFit, ...] = ()
     for side, one in zip(("upper", "lower"), guarded(lambda: band(surface, prediction), none, without), strict=False):
         path = stem.with_name(f"{stem.name}_{side}90.step")
-        if guarded(partial(write_step, {one.name: one}, path), None, without) is None:
+        if guarded(partial(write_step, {one.name: one}, path, **signed.fields), None, without) is None:
             path.unlink(missing_ok=True)
     return tuple(missing)
 

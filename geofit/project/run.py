@@ -8,6 +8,9 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from geofit.data.errors import InputError
 from geofit.data.files import file_stems, folder_for, replacing
 from geofit.data.guard import guarded
@@ -18,6 +21,7 @@ from geofit.data.site import Section, Site
 from geofit.project.horizon_files import Made, section_profiles, storage_compared, write_horizon
 from geofit.project.side_by_side import Crew, crew
 from geofit.project.single_reports import BodyPart, write_body_part
+from geofit.project.step_files import Signed
 from geofit.report.result import HorizonResult
 from geofit.streaming.executors import HERE, Where
 
@@ -80,6 +84,7 @@ def run_horizons(
     scheduler: str | None = None,
     bodies: Sequence[str] = (),
     workers: int = 1,
+    signed: Signed | None = None,
 ) -> RunResult:
     """Fit horizons of a site, examine them, and write everything that belongs to them.
 
@@ -116,6 +121,8 @@ def run_horizons(
     workers : int
         Processes that fit (with a scheduler), examine and draw horizons side by side; 1: none, all is done here. A
         script that asks for more needs the guard ``if __name__ == "__main__"``.
+    signed : Signed, optional
+        What the STEP files state, and whether they get a certificate; by default author and organisation of the site.
 
     Raises
     ------
@@ -142,12 +149,20 @@ def run_horizons(
         # Horizons are examined side by side already; of one alone, and on other machines, the folds are.
         apart = scheduler is not None and (scheduler != "local" or len(fits.surfaces) == 1)
         where = Where(scheduler or "local", workers) if apart else HERE
-        return _write_results(site, fits, out, hands, progress, language, date, pdf, bands, bodies, where)
+        stated = signed or Signed(site.title.author, site.title.organisation)
+        stated = stated.about(_corners(site, fits))
+        return _write_results(site, fits, out, hands, progress, language, date, pdf, bands, bodies, where, stated)
+
+
+def _corners(site: Site, fits: SiteFit) -> list[NDArray[np.float64]]:
+    """Return the lowest coordinates of the surfaces, and of the holes in which bodies are logged."""
+    places = [surface.bounds[0] for surface in fits.surfaces.values()]
+    return places + [hole.xyz.min(axis=0) for hole in site.holes if len(hole.xyz)] or [np.zeros(3)]
 
 
 def _write_results(
     site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, date: str,
-    pdf: bool, bands: bool, bodies: Sequence[str], where: Where,
+    pdf: bool, bands: bool, bodies: Sequence[str], where: Where, signed: Signed,
 ) -> RunResult:  # fmt: skip
     """Examine, draw and write what was fitted."""
     from geofit.report.gather import accuracy_report
@@ -157,11 +172,11 @@ def _write_results(
 
     failures, warnings = dict(fits.failures), list(fits.warnings)
     sections = report_sections(site, [surface.points for surface in fits.surfaces.values()]) if fits.surfaces else ()
-    made, whole = _examined(site, fits, out, hands, progress, language, bands, sections, failures, where)
+    made, whole = _examined(site, fits, out, hands, progress, language, bands, sections, failures, where, signed)
     results = [one.result for one in made]
     images = {name: picture for one in made for name, picture in one.images.items()}
     warnings += [text for one in made for text in one.warnings]
-    parts = _bodies(site, bodies, fits, out, hands, progress, language, failures)
+    parts = _bodies(site, bodies, fits, out, hands, progress, language, failures, signed)
     images |= {name: picture for part in parts for name, picture in part.images.items()}
     orders: tuple[Order, ...] = ()
     report: AccuracyReport | None = None
@@ -194,11 +209,11 @@ def _write_results(
 
 def _bodies(
     site: Site, codes: Sequence[str], fits: SiteFit, out: Path, hands: Crew, progress: Progress | None,
-    language: Language, failures: dict[str, Message],
+    language: Language, failures: dict[str, Message], signed: Signed,
 ) -> list[BodyPart]:  # fmt: skip
     """Fit the bodies of a report and write their files; note those that failed."""
     surfaces = {name: surface.with_(model=None) for name, surface in fits.surfaces.items()}
-    tasks = [partial(write_body_part, site, code, surfaces, out, language.code) for code in codes]
+    tasks = [partial(write_body_part, site, code, surfaces, out, language.code, signed) for code in codes]
     found: dict[int, BodyPart] = {}
     for i, made in hands.do(tasks, _within(progress, 0.9, 0.9), "bodies"):
         if isinstance(made, Message):
@@ -210,7 +225,7 @@ def _bodies(
 
 def _examined(
     site: Site, fits: SiteFit, out: Path, hands: Crew, progress: Progress | None, language: Language, bands: bool,
-    sections: Sequence[Section], failures: dict[str, Message], where: Where,
+    sections: Sequence[Section], failures: dict[str, Message], where: Where, signed: Signed,
 ) -> tuple[list[Made], Pictures]:  # fmt: skip
     """Examine every surface and write its files, and draw them together, side by side; note those that failed."""
     from geofit.report.pictures import Pictures, draw_site
@@ -221,7 +236,7 @@ def _examined(
     tasks: list[Callable[[], Made | Message | Pictures]] = [
         partial(
             write_horizon, fits.surfaces[name], site, out / stems[name], language.code, fits.seconds[name], bands,
-            sections, where,
+            sections, where, signed,
         )
         for name in order
     ]  # fmt: skip

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from geofit.data.accuracy import ReadBack
 from geofit.data.languages import Language, translate
@@ -25,6 +26,9 @@ from geofit.report.document import (
 from geofit.report.gather import today, versions
 from geofit.report.pdf import write_pdf
 
+if TYPE_CHECKING:
+    from geofit.cad.solid_read_back import SolidReadBack
+
 __all__ = ["certificate", "write_certificate"]
 
 #: Horizons that fit on the page with their checks; of more, the failed checks alone are listed.
@@ -37,12 +41,13 @@ MOST_HORIZONS = 12
 
 def certificate(
     file: Path,
-    found: Mapping[str, ReadBack],
+    found: Mapping[str, ReadBack | SolidReadBack],
     epsilon: Mapping[str, float],
     t: Language,
     *,
     author: str = "",
     organisation: str = "",
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0),
     date: str = "",
 ) -> ReportDocument:
     """Lay out the certificate of a file that was read back.
@@ -51,14 +56,16 @@ def certificate(
     ----------
     file : Path
         The file; its size and name are on the page.
-    found : mapping of str to ReadBack
-        What the reader found, a horizon.
+    found : mapping of str to ReadBack or SolidReadBack
+        What the reader found, by horizon or body.
     epsilon : mapping of str to float
-        Control error of each horizon, metres.
+        Control error of each, metres.
     t : Language
         That of the words.
     author, organisation : str
         Who answers for the file.
+    offset : (3,) tuple of float
+        What is added to the file's coordinates for those of the map, metres; zeros: the file is in map coordinates.
     date : str
         ISO 8601; empty: :func:`geofit.report.gather.today`.
     """
@@ -74,6 +81,7 @@ def certificate(
                 ("SHA-256", first.sha256[:32]),
                 ("", first.sha256[32:]),
                 (t("Format"), "ISO 10303-242 (AP242)"),
+                *_coordinates(offset, t),
                 (t("Organisation"), organisation),
                 (t("Author"), author),
                 (t("Program"), program),
@@ -92,6 +100,11 @@ def certificate(
             t(
                 "The file was read by OpenCASCADE, and every data point was measured again against the surface in the "
                 "file. The certificate holds for the file with this hash alone."
+            )
+            if isinstance(first, ReadBack)
+            else t(
+                "The file was read by OpenCASCADE, and the solids in it were compared with the body. The certificate "
+                "holds for the file with this hash alone."
             ),
             "quiet",
         ),
@@ -106,12 +119,13 @@ def certificate(
 def write_certificate(
     path: Path,
     file: Path,
-    found: Mapping[str, ReadBack],
+    found: Mapping[str, ReadBack | SolidReadBack],
     epsilon: Mapping[str, float],
     t: Language,
     *,
     author: str = "",
     organisation: str = "",
+    offset: tuple[float, float, float] = (0.0, 0.0, 0.0),
 ) -> None:
     """Write the certificate of a file as PDF; parameters as :func:`certificate`.
 
@@ -120,12 +134,29 @@ def write_certificate(
     MissingDependencyError
         If the certificate is in Chinese and the machine has no font for it.
     """
-    write_pdf(certificate(file, found, epsilon, t, author=author, organisation=organisation), {}, path)
+    page = certificate(file, found, epsilon, t, author=author, organisation=organisation, offset=offset)
+    write_pdf(page, {}, path)
 
 
-def _horizons(found: Mapping[str, ReadBack], epsilon: Mapping[str, float], t: Language) -> ReportTable:
+def _kind(found: Mapping[str, ReadBack | SolidReadBack], t: Language) -> str:
+    """Head the column of names: a file holds horizons or bodies."""
+    return t("Horizon") if isinstance(next(iter(found.values())), ReadBack) else t("Body")
+
+
+def _coordinates(offset: tuple[float, float, float], t: Language) -> list[tuple[str, str]]:
+    """Say in which coordinates the file is; all lengths are metres."""
+    if not any(offset):
+        return [(t("Coordinates"), t("map coordinates"))]
+    easting, northing, elevation = (format(value, ".15g") for value in offset)
+    return [
+        (t("Coordinates"), t("local: map = file + offset")),
+        (t("Offset"), f"E {easting}, N {northing}, Z {elevation} m"),
+    ]
+
+
+def _horizons(found: Mapping[str, ReadBack | SolidReadBack], epsilon: Mapping[str, float], t: Language) -> ReportTable:
     columns = (
-        Column(t("Horizon"), "wide"),
+        Column(_kind(found, t), "wide"),
         Column(t("Result")),
         Column(t("Faces"), "number"),
         Column("σ, m", "number"),
@@ -151,7 +182,7 @@ def _horizons(found: Mapping[str, ReadBack], epsilon: Mapping[str, float], t: La
     return ReportTable(columns, tuple(rows), dense=True)
 
 
-def _checks(found: Mapping[str, ReadBack], t: Language) -> list[Block]:
+def _checks(found: Mapping[str, ReadBack | SolidReadBack], t: Language) -> list[Block]:
     """List every check of one or two horizons, or the failed ones of many."""
     few = len(found) <= MOST
     listed = [(name, check) for name, back in found.items() for check in back.checks if few or check.passed is False]
@@ -161,7 +192,7 @@ def _checks(found: Mapping[str, ReadBack], t: Language) -> list[Block]:
         return [Paragraph(t("All checks of all horizons passed."))]
     words = {True: t("passed"), False: t("failed"), None: t("not applicable")}
     columns = (
-        Column(t("Horizon")),
+        Column(_kind(found, t)),
         Column(t("Check"), "wide"),
         Column(t("Result")),
         Column(t("Found"), "number"),

@@ -12,7 +12,6 @@ from PySide6.QtCore import QSettings, QSize, Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import (
     QButtonGroup,
-    QCheckBox,
     QComboBox,
     QFileDialog,
     QFormLayout,
@@ -34,17 +33,17 @@ from geofit.data.messages import message
 from geofit.data.title_block import TitleBlock
 from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.gui.dialogs.step_fields import SignedFields
 from geofit.gui.dialogs.task_dialog import TaskDialog
 from geofit.gui.panels.marks import icon, level_mark, verdict_mark
 from geofit.gui.panels.tables import DataTable, TableColumn
-from geofit.gui.theme import missing_chinese
-from geofit.gui.translate import translated, user_language
-from geofit.project.step_files import Signed, StepFile, step_paths, write_step_files
+from geofit.gui.translate import translated
+from geofit.project.step_files import StepFile, step_paths, write_step_files
 from geofit.report import digits
 
 __all__ = ["ExportDialog"]
 
-_FOLDER, _AUTHOR, _ORGANISATION = "folder", "step/author", "step/organisation"
+_FOLDER = "folder"
 
 
 class ExportDialog(TaskDialog):
@@ -60,9 +59,10 @@ class ExportDialog(TaskDialog):
         verdicts: Mapping[str, Verdict] | None = None,
         folder: Path | None = None,
         title: TitleBlock | None = None,
+        datum: tuple[float, float, float] | None = None,
     ) -> None:
         super().__init__(parent)
-        self._verdicts, title = verdicts or {}, title or TitleBlock()
+        self._verdicts = verdicts or {}
         self.setWindowTitle(self.tr("Export STEP"))
         # The patches are all that a file holds; what stands behind them need not travel to the other process.
         self._surfaces = {name: surface.with_(model=None) for name, surface in surfaces.items()}
@@ -75,17 +75,9 @@ class ExportDialog(TaskDialog):
         self.unit.setToolTip(
             self.tr("The file states its unit, and CAD systems convert it. The surfaces are the same.")
         )
-        self.author, self.organisation = QLineEdit(), QLineEdit()
-        about = self.tr("It is written in the head of the file and on the certificate.")
-        for field, key, words in (
-            (self.author, _AUTHOR, title.author), (self.organisation, _ORGANISATION, title.organisation)
-        ):  # fmt: skip
-            field.setText(words or str(QSettings().value(key, "")))
-            field.setToolTip(about)
-        self.certificate = QCheckBox(self.tr("&Certificate: one page of PDF with what was read back"))
-        # A page in Chinese needs a font of it.
-        self._no_page = user_language().code == "zh" and missing_chinese()
-        self.certificate.setChecked(not self._no_page)
+        self.stated = SignedFields(self, title or TitleBlock(), datum)
+        self.author, self.organisation = self.stated.author, self.stated.organisation
+        self.origin, self.certificate = self.stated.origin, self.stated.certificate
         self.together, self.apart = QRadioButton(self.tr("&One file")), QRadioButton(self.tr("One file a &horizon"))
         self.table = DataTable()
         self.table.setAccessibleName(self.tr("What the reader found in the file"))
@@ -99,6 +91,8 @@ class ExportDialog(TaskDialog):
         self.horizons.itemChanged.connect(self.refresh)
         self.target.textChanged.connect(self.refresh)
         self.apart.toggled.connect(self.refresh)
+        self.origin.choice.currentIndexChanged.connect(self.refresh)
+        self.origin.datum.textChanged.connect(self.refresh)
         self.go.clicked.connect(self._write)
         self.folder.clicked.connect(self._open_folder)
         self.say(self.tr("After writing, OpenCASCADE reads the file back; what it finds is listed here."))
@@ -143,7 +137,7 @@ class ExportDialog(TaskDialog):
         self.together.setChecked(True)
         unit = QHBoxLayout()
         unit.addWidget(self.unit)
-        unit.addWidget(QLabel(self.tr("in map coordinates, ISO 10303-242 (AP242)")), 1)
+        unit.addWidget(QLabel(self.tr("ISO 10303-242 (AP242)")), 1)
         form = QFormLayout()
         form.addRow(self.tr("Hori&zons"), self.horizons)
         # A label before a layout has no buddy of its own.
@@ -152,19 +146,9 @@ class ExportDialog(TaskDialog):
             label.setBuddy(field)
             form.addRow(label, row)
         form.insertRow(2, "", choice)
-        signed = QHBoxLayout()
-        signed.addWidget(self.author, 1)
-        organisation = QLabel(self.tr("&Organisation"))
-        organisation.setBuddy(self.organisation)
-        signed.addWidget(organisation)
-        signed.addWidget(self.organisation, 1)
-        author = QLabel(self.tr("&Author"))
-        author.setBuddy(self.author)
-        form.addRow(author, signed)
-        form.addRow("", self.certificate)
+        self.stated.add_to(form)
         self.fields = (
-            self.horizons, self.target, browse, self.together, self.apart, self.unit, self.author, self.organisation,
-            self.certificate,
+            self.horizons, self.target, browse, self.together, self.apart, self.unit, *self.stated.widgets,
         )  # fmt: skip
         layout = QVBoxLayout(self)
         layout.addLayout(form)
@@ -189,19 +173,15 @@ class ExportDialog(TaskDialog):
         surfaces = {name: self._surfaces[name] for name in names}
         self.files = []
         self.say(self.tr("Writing, and reading back what was written…"))
-        page = user_language().code if self.certificate.isChecked() else ""
-        signed = Signed(self.author.text().strip(), self.organisation.text().strip(), page)
-        work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked(), signed)
+        work = (surfaces, self._path(), self.unit.currentData(), self.apart.isChecked(), self.stated.signed())
         paths = list(step_paths(names, work[1], separate=work[3]))
         self.begin(write_step_files, *work, on_done=self.show_files, on_stopped=partial(self._stopped, paths))
 
     def show_files(self, files: list[StepFile]) -> None:
         """Show what was written, and what reading it back gave."""
         self.files = files
-        store = QSettings()
-        store.setValue(_FOLDER, str(files[0].path.parent))
-        store.setValue(_AUTHOR, self.author.text().strip())
-        store.setValue(_ORGANISATION, self.organisation.text().strip())
+        QSettings().setValue(_FOLDER, str(files[0].path.parent))
+        self.stated.store()
         found = {name: back for file in files for name, back in file.read_back.items()}
         size = digits.kilobytes(sum(file.size for file in files))
         pages = [file.certificate for file in files if file.certificate is not None]
@@ -281,8 +261,9 @@ class ExportDialog(TaskDialog):
         super().refresh()
         names, idle = self.chosen(), not self.running
         self.apart.setEnabled(idle and len(names) > 1)
-        self.go.setEnabled(idle and bool(names) and bool(self.target.text().strip()))
-        self.certificate.setEnabled(idle and not self._no_page)
+        complete = bool(self.target.text().strip()) and self.origin.origin is not None
+        self.go.setEnabled(idle and bool(names) and complete)
+        self.certificate.setEnabled(idle and not self.stated.no_page)
         self.folder.setVisible(bool(self.files) and idle)
         self.table.setVisible(bool(self.files) and idle)
         files = [path.name for path in step_paths(names, self._path(), separate=self.apart.isChecked())]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import zip_longest
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor
@@ -26,13 +27,16 @@ from geofit.gui.theme import is_dark
 from geofit.gui.translate import failure
 from geofit.gui.wizard.draft import Draft
 from geofit.gui.wizard.words import kind_name, role_name
+from geofit.io.columns import plain_name
 from geofit.io.mapping import KINDS
+from geofit.io.preview import TablePreview
 from geofit.io.source import Source
+from geofit.io.units import unit_marked
 
 __all__ = ["TablePage"]
 
 ENCODINGS = ("utf-8", "gb18030", "cp1252", "utf-16")
-UNITS = ("m", "ft", "ft-us", "km", "cm", "mm")
+UNITS = ("", "m", "ft", "ft-us", "km", "cm", "mm")
 #: Ground of a cell that should hold a number and does not, on light and dark.
 BAD = {False: "#f6c5be", True: "#7c2f27"}
 
@@ -126,7 +130,20 @@ class TablePage(QWidget):
         }
         _fill(self.separator, tuple(names), source.sep or preview.sep, draft.named_kind and text, names)
         _fill(self.decimal, (".", ","), source.decimal or preview.decimal, draft.named_kind and text)
-        _fill(self.unit, UNITS, source.unit or "m", draft.named_kind)
+        _fill(self.unit, UNITS, source.unit or "", draft.named_kind, self._unit_names(preview))
+
+    def _unit_names(self, preview: TablePreview) -> dict[str, str]:
+        """Return what the units are called; left alone, a table has those that its headers mark."""
+        marks = [plain_name(name)[1] or unit for name, unit in zip_longest(preview.header, preview.units, fillvalue="")]
+        found = sorted({unit for mark in marks if (unit := unit_marked(mark)) is not None})
+        return {
+            "": self.tr("as the headers mark: {units}").format(units=", ".join(found))
+            if found
+            else self.tr("m (not marked)"),
+            "m": self.tr("metres"),
+            "ft": self.tr("feet (0.3048 m)"),
+            "ft-us": self.tr("US survey feet (1200/3937 m)"),
+        }
 
     def _show_rows(self, draft: Draft) -> None:
         preview = draft.preview
@@ -233,8 +250,7 @@ class TablePage(QWidget):
                 # What was found stays unstated: another file of this layout may be found to differ.
                 if box.currentData() != getattr(preview, key):
                     source = replace(source, **{key: box.currentData()})
-        unit = self.unit.currentData()
-        source = replace(source, unit=unit if unit != "m" or source.unit else None)
+        source = replace(source, unit=self.unit.currentData() or None)
         if source != draft.source or self.kind.currentData() != draft.kind:
             self.reading_changed.emit(_plain(source), self.kind.currentData())
 

@@ -18,10 +18,11 @@ from geofit.sampling.grids import deviation_grid, elevation_grid, thickness_grid
 from geofit.surfaces.protocol import Surface
 
 if TYPE_CHECKING:
+    from geofit.cad.step_origin import Origin
     from geofit.data.points import PointSet
     from geofit.data.site import Ground, Hole
 
-__all__ = ["FORMATS", "Format", "format_of", "untrimmed", "write_surface"]
+__all__ = ["FORMATS", "Format", "format_of", "need_patches", "untrimmed", "write_surface"]
 
 Surfaces = Mapping[str, Surface]
 
@@ -80,6 +81,7 @@ class _Options:
 
     tolerance: float
     unit: str
+    origin: Origin
     crs: str
     interval: float | None
     cell: float | None
@@ -96,6 +98,7 @@ def write_surface(
     format: str = "",
     tolerance: float = 0.05,
     unit: Literal["m", "mm"] = "m",
+    origin: Origin = "map",
     crs: str = "",
     interval: float | None = None,
     cell: float | None = None,
@@ -106,7 +109,8 @@ def write_surface(
 ) -> list[Path]:
     """Write surfaces in a format of :data:`FORMATS`.
 
-    Each keyword means the same in every format; a format that has no use for one ignores it, except ``unit``.
+    Each keyword means the same in every format; a format that has no use for one ignores it, except
+    ``unit`` and ``origin``.
 
     Parameters
     ----------
@@ -121,6 +125,9 @@ def write_surface(
         Largest distance of triangles and lines from the surface, metres.
     unit : {"m", "mm"}
         Unit of length in the file, for STEP. All other formats are in metres.
+    origin : {"map", "local"} or (3,) array_like
+        Zero of the file, for STEP: that of the map; a round place below the data; or the project datum in map
+        coordinates, metres. The file states the offset.
     crs : str
         Label of the coordinate system, for instance "EPSG:32648", for formats that state it.
     interval : float, optional
@@ -187,11 +194,19 @@ def write_surface(
                 format=to,
             )
         )
+    if not chosen.unit and not (isinstance(origin, str) and origin == "map"):
+        raise SettingsError(
+            message(
+                "io.origin-not-for-format",
+                "{format} files have no origin of their own: they are in map coordinates. Use STEP, or leave it out.",
+                format=to,
+            )
+        )
     if chosen.takes in ("surfaces", "site"):
-        _need_patches(given, to, out)
+        need_patches(given, to, out)
     options = _Options(
-        tolerance=tolerance, unit=unit, crs=crs, interval=interval, cell=cell, value=value, points=points or {},
-        holes=holes, site=site,
+        tolerance=tolerance, unit=unit, origin=origin, crs=crs, interval=interval, cell=cell, value=value,
+        points=points or {}, holes=holes, site=site,
     )  # fmt: skip
     out.parent.mkdir(parents=True, exist_ok=True)
     return _write(given, chosen, out, options)
@@ -285,7 +300,7 @@ def _write(surfaces: Surfaces, chosen: Format, out: Path, options: _Options) -> 
     write = getattr(import_module(f"geofit.{chosen.module}"), chosen.function)
     more: dict[str, Any] = {"crs": options.crs} if chosen.crs else {}
     if chosen.unit:
-        more["unit"] = options.unit
+        more |= {"unit": options.unit, "origin": options.origin}
     if chosen.takes == "grid":
         grids = _grids(surfaces, out, options)
         for file, grid in grids:
@@ -315,7 +330,7 @@ def _write(surfaces: Surfaces, chosen: Format, out: Path, options: _Options) -> 
     return list(files.values())
 
 
-def _need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
+def need_patches(surfaces: Surfaces, to: str, out: Path) -> None:
     """Refuse triangles where a format holds NURBS."""
     meshes = [name for name, surface in surfaces.items() if not surface.patches]
     if meshes:

@@ -390,3 +390,56 @@ def test_report_takes_chosen_horizons_and_its_title_block_from_options(tmp_path,
     assert all(word in page for word in ("P-7", "River Company", "D-1", "First issue"))
     code, _, err = run(monkeypatch, capsys, "report", picks, "--horizon", "T9", "--out", tmp_path / "p")
     assert (code, "T2/T1" in err) == (2, True)
+
+
+def test_step_files_state_origin_author_and_certificate(tmp_path, monkeypatch, capsys):
+    picks = write_picks(tmp_path / "picks.csv", names=("T3/T2", "T2/T1"))
+    site = tmp_path / "site.toml"
+    site.write_text(
+        '[site]\ndatum = [499000, 3099000, 100]\n\n[report]\nauthor = "Li Wen"\n\n[picks]\nfile = "picks.csv"\n',
+        encoding="utf-8",
+    )
+    from geofit.cad.step import read_shapes
+    from geofit.cad.step_origin import offset_at
+
+    def offset(path):
+        return offset_at(read_shapes(path)[0].attributes).tolist()
+
+    out = tmp_path / "o"
+    arguments = ("fit", site, "--out", out, "--horizon", "T3/T2", "--origin", "datum", "--certificate")
+    code, _, err = run(monkeypatch, capsys, *arguments, "--organisation", "Dam Office")
+    assert code == 0, err
+    step = out / "T3_T2.step"
+    assert offset(step) == [499_000.0, 3_099_000.0, 100.0]
+    head = step.read_text("ascii").split("ENDSEC;")[0].replace("\n", "")
+    assert "('Li Wen'),('Dam Office')" in head, "the author is that of the site's report"
+    assert (out / "T3_T2_certificate.pdf").read_bytes().startswith(b"%PDF")
+
+    # The same file about another zero; with the points, it states sigma as the fit did.
+    local = tmp_path / "local.step"
+    code, _, err = run(
+        monkeypatch, capsys, "export", step, "--to", "step", "--out", local, "--points", site, "--origin", "local",
+        "--certificate", "--lang", "en",
+    )  # fmt: skip
+    assert code == 0, err
+    (before,), (after,) = read_shapes(step), read_shapes(local)
+    assert offset(local) == [500_000.0, 3_100_000.0, 0.0]
+    assert float(after.attributes["sigma_m"]) == pytest.approx(float(before.attributes["sigma_m"]), rel=1e-4)
+    assert after.attributes["data_sha256"] == before.attributes["data_sha256"]
+    assert (tmp_path / "local_certificate.pdf").is_file()
+
+    # Measured against the points in map coordinates, both are one surface.
+    for path in (step, local):
+        code, text, _ = run(monkeypatch, capsys, "check", path, picks, "--horizon", "T3/T2", "--json")
+        assert json.loads(text)["sigma"] == pytest.approx(float(before.attributes["sigma_m"]), rel=1e-4)
+    for arguments, words in (
+        (("fit", picks, "--out", out, "--origin", "datum"), "states no project datum"),
+        (("fit", picks, "--out", out, "--origin", "1,2"), "The origin '1,2' is unknown"),
+        (
+            ("export", step, "--to", "obj", "--out", tmp_path / "x.obj", "--origin", "local"),
+            "--origin is for STEP files",
+        ),
+    ):
+        code, _, err = run(monkeypatch, capsys, *arguments)
+        assert code == 2
+        assert words in err

@@ -6,14 +6,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from panel_samples import FAULT, WITH_PERIPHERY, fitted
+from panel_samples import FAULT, WITH_PERIPHERY, fitted, sample_site
 from PySide6.QtCore import QSettings, Qt
 
-from geofit.cad.step import read_step
+from geofit.cad.step import read_shapes, read_step
+from geofit.cad.step_origin import offset_at
 from geofit.data.accuracy import Check
 from geofit.gui.dialogs import task_dialog
 from geofit.gui.dialogs.export_step import ExportDialog
-from geofit.project.step_files import step_paths
+from geofit.gui.dialogs.step_fields import BodyStepDialog
+from geofit.project.step_files import Signed, step_paths
 
 
 def opened(qtbot, *names):
@@ -139,3 +141,44 @@ def test_author_organisation_and_certificate(qtbot, tmp_path):
     press(qtbot, again, again.go)
     assert again.files[0].certificate is None
     assert not (tmp_path / "other_certificate.pdf").exists()
+
+
+@pytest.mark.usefixtures("own_settings")
+def test_the_origin_is_chosen_stated_and_remembered(qtbot, tmp_path):
+    dialog = ExportDialog({FAULT: fitted(FAULT)}, datum=(500_000.0, 3_100_000.0, 1000.0))
+    qtbot.addWidget(dialog)
+    dialog.show()
+    dialog.target.setText(str(tmp_path / "dam.step"))
+    dialog.origin.choice.setCurrentIndex(dialog.origin.choice.findData("datum"))
+    assert dialog.origin.datum.isVisible()
+    dialog.origin.datum.setText("500000, 3100000")
+    assert not dialog.go.isEnabled(), "a datum has three coordinates"
+    dialog.origin.datum.setText("500000, 3100000, 900")
+    assert dialog.go.isEnabled()
+    dialog.certificate.setChecked(False)
+    press(qtbot, dialog, dialog.go)
+    (shape,) = read_shapes(tmp_path / "dam.step")
+    assert offset_at(shape.attributes).tolist() == [500_000.0, 3_100_000.0, 900.0]
+    assert "The file passes every check" in dialog.message.text()
+    again = opened(qtbot, FAULT)
+    assert again.origin.origin == (500_000.0, 3_100_000.0, 900.0)
+    again.origin.choice.setCurrentIndex(again.origin.choice.findData("local"))
+    assert again.origin.origin == "local"
+    assert not again.origin.datum.isVisible()
+
+
+@pytest.mark.usefixtures("own_settings")
+def test_a_body_is_asked_for_the_same(qtbot):
+    dialog = BodyStepDialog("ORE", replace(sample_site(), datum=(1.0, 2.0, 3.0)))
+    qtbot.addWidget(dialog)
+    dialog.show()
+    fields = dialog.fields
+    fields.origin.choice.setCurrentIndex(fields.origin.choice.findData("datum"))
+    fields.origin.datum.setText("here")
+    assert not dialog.go.isEnabled()
+    fields.origin.datum.setText("1, 2, 3.5")
+    fields.author.setText("M. Weber")
+    fields.certificate.setChecked(False)
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    assert dialog.result() == 1
+    assert fields.signed() == Signed("M. Weber", fields.organisation.text(), "", (1.0, 2.0, 3.5))

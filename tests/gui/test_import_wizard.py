@@ -194,6 +194,21 @@ def test_lengths_in_feet_become_metres(qtbot, tmp_path):
     assert points.xyz[0] == pytest.approx([30.48, 60.96, 91.44])
 
 
+def test_feet_in_a_header_are_said_and_can_be_overruled(qtbot, tmp_path):
+    (tmp_path / "points.csv").write_text("x (ft),y (ft),z (ft)\n100,200,300\n400,500,600\n800,700,900\n")
+    wizard = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    assert wizard.page.unit.currentText() == "as the headers mark: ft"
+    press(qtbot, wizard, wizard.go)
+    points = next(iter(read_site(wizard.site_file).horizons.values()))
+    assert points.xyz[0] == pytest.approx([30.48, 60.96, 91.44])
+    again = opened(qtbot, tmp_path, tmp_path / "points.csv")
+    choose(again.page.unit, "m")
+    rested(qtbot, again)
+    press(qtbot, again, again.go)
+    points = next(iter(read_site(again.site_file).horizons.values()))
+    assert points.xyz[0] == pytest.approx([100, 200, 300])
+
+
 def test_a_table_is_left_out_and_said_so(qtbot, tmp_path):
     (tmp_path / "points.csv").write_text("x,y,z\n1,2,3\n4,5,6\n8,7,9\n")
     (tmp_path / "notes.csv").write_text("who,what\nme,nothing\nyou,less\n")
