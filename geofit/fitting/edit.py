@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from geofit.fitting.horizon_fit import HorizonFit
 
 
-__all__ = ["acted_on", "adjust", "move_to", "support", "weigh"]
+__all__ = ["acted_on", "adjust", "movable", "move_to", "support", "weigh"]
 
 Floats = NDArray[np.float64]
 
@@ -72,11 +72,7 @@ def adjust(surface: HorizonFit, patch: str, i: int, j: int, dz: float) -> Horizo
     """
     model = _model(surface)
     _finite(dz, "dz")
-    part = _part(model, patch)
-    index, share = _coefficient(model, part, i, j)
-    _refuse_exact(surface, model, index, patch, i, j)
-    if model.net.lines is not None and model.net.frozen[index]:
-        raise _straight()
+    index, share = movable(surface, patch, i, j)
     coefficients = model.net.coefficients.copy()
     coefficients[(index, 2) if coefficients.ndim == 2 else index] += dz / share
     return _changed(
@@ -273,6 +269,22 @@ def support(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[float, flo
     """Return the rectangle (u0, u1, v0, v1) of the frame, metres, outside of which :func:`adjust` moves nothing."""
     model = _model(surface)
     return _support(model, _coefficient(model, _part(model, patch), i, j)[0])
+
+
+def movable(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[int, float]:
+    """Return the coefficient of the net that :func:`adjust` changes, and by which share the control point follows it.
+
+    Raises
+    ------
+    FitError, ExactnessError
+        As :func:`adjust`: why the control point cannot move.
+    """
+    model = _model(surface)
+    index, share = _coefficient(model, _part(model, patch), i, j)
+    _refuse_exact(surface, model, index, patch, i, j)
+    if model.net.lines is not None and model.net.frozen[index]:
+        raise _straight()
+    return index, share
 
 
 def acted_on(surface: HorizonFit, patch: str, i: int, j: int) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QFrame, QPushButton, QScrollArea, QTabWidget, QVBo
 
 from geofit.data.accuracy import Accuracy
 from geofit.fitting.horizon_fit import HorizonFit
+from geofit.fitting.preview import MoveEffect
 from geofit.gui.panels.control_point import ControlPointPage
 from geofit.gui.panels.data_point import DataPointPage
 from geofit.gui.panels.effect import Effect
@@ -24,7 +25,8 @@ class AdjustPanel(QWidget):
     """One change at a time.
 
     ``adjust_requested`` and ``move_requested`` come from Apply, ``weigh_requested`` from Set; ``..._wanted`` a moment
-    after the last edit, for whoever can tell the effect by :meth:`show_effect`; ``control_chosen`` follows the boxes.
+    after the last edit, for whoever can tell the effect by :meth:`show_effect`; ``control_chosen`` follows the boxes,
+    ``control_moved(dz)`` every move at once, for whoever can tell its figures by :meth:`show_move`.
     """
 
     adjust_requested = Signal(str, int, int, float)
@@ -34,6 +36,7 @@ class AdjustPanel(QWidget):
     move_wanted = Signal(int, float)
     weigh_wanted = Signal(str, int, int, float)
     control_chosen = Signal(str, int, int)
+    control_moved = Signal(float)
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -67,10 +70,11 @@ class AdjustPanel(QWidget):
         self.setLayout(self.pages)
         self._pause = QTimer(self, singleShot=True, interval=PAUSE)
         self._pause.timeout.connect(self._want)
-        self.apply_button.clicked.connect(self._apply)
+        self.apply_button.clicked.connect(self.apply)
         self.zero_button.clicked.connect(lambda: self.control.dz.setValue(0.0))
         self.ways.currentChanged.connect(lambda _: self._edited())
         self.control.moved.connect(self._edited)
+        self.control.moved.connect(lambda: self.control_moved.emit(self.control.dz.value()))
         self.control.chosen.connect(self._tell_control)
         self.control.weigh_wanted.connect(lambda weight: self.weigh_wanted.emit(*self.control.target, weight))
         self.control.weigh_requested.connect(self._weigh)
@@ -111,6 +115,10 @@ class AdjustPanel(QWidget):
         """Show what the change would do to the check; None while nothing is known."""
         self.effect.show_effect(before, after)
 
+    def show_move(self, before: Accuracy, after: MoveEffect) -> None:
+        """Show the figures of a move of the control point, while it goes on."""
+        self.effect.show_move(before, after)
+
     def say(self, text: str) -> None:
         """Say why a change cannot be made, in place of its effect."""
         self.effect.say(text)
@@ -150,8 +158,11 @@ class AdjustPanel(QWidget):
         elif self.point.point is not None:
             self.move_wanted.emit(self.point.point, self.point.share.value() / 100)
 
-    def _apply(self) -> None:
+    def apply(self) -> None:
+        """Ask for the change that is shown, where there is one that can be made."""
         self._pause.stop()
+        if not self.apply_button.isEnabled():
+            return
         if self.ways.currentWidget() is self.control:
             self.adjust_requested.emit(*self.control.target, self.control.dz.value())
         elif self.point.point is not None and self._surface is not None:

@@ -6,6 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel
 
 from geofit.data.accuracy import Accuracy
+from geofit.fitting.preview import MoveEffect
 from geofit.report.digits import metres
 
 __all__ = ["Effect"]
@@ -21,14 +22,14 @@ class Effect(QFrame):
         self._grid.setContentsMargins(8, 6, 8, 6)
         self._grid.setHorizontalSpacing(10)
         self._grid.setVerticalSpacing(2)
-        self.cells = [[QLabel() for _ in range(3)] for _ in range(4)]
+        self.cells = [[QLabel() for _ in range(3)] for _ in range(5)]
         for k, row in enumerate(self.cells):
             for c, label in enumerate(row):
                 self._grid.addWidget(label, k, c, Qt.AlignmentFlag.AlignRight if c else Qt.AlignmentFlag.AlignLeft)
         self._grid.setColumnStretch(0, 1)
         self.words = QLabel()
         self.words.setWordWrap(True)
-        self._grid.addWidget(self.words, 4, 0, 1, 3)
+        self._grid.addWidget(self.words, 5, 0, 1, 3)
         self.clear()
 
     def clear(self) -> None:
@@ -47,6 +48,18 @@ class Effect(QFrame):
         if after is None:
             self.clear()
             return
+        self._show_rows(before, after)
+        verdict = self.tr("{before} → {after}").format(before=before.verdict, after=after.verdict)
+        self.words.setText(verdict)
+        self.words.setVisible(before.passed != after.passed)
+
+    def show_move(self, before: Accuracy, after: MoveEffect) -> None:
+        """Show the figures of a move that goes on; its verdict is not known yet."""
+        count = before.over["epsilon"].count if "epsilon" in before.over else 0
+        self._show_rows(before, after, (self.tr("points beyond ε"), str(count), str(after.beyond)))
+        self.words.hide()
+
+    def _show_rows(self, before: Accuracy, after: Accuracy | MoveEffect, *more: tuple[str, str, str]) -> None:
         worst = before.worst[0] if before.worst else None
         rows: list[tuple[str, str, str]] = [
             (self.tr("Effect"), self.tr("before"), self.tr("after")),
@@ -56,6 +69,7 @@ class Effect(QFrame):
         if worst is not None and worst < len(after.residuals):
             d0, d1 = before.residuals[worst], after.residuals[worst]
             rows.append((self.tr("worst point's d, m"), metres(d0), metres(d1)))
+        rows += more
         for k, row in enumerate(self.cells):
             for c, label in enumerate(row):
                 label.setVisible(k < len(rows))
@@ -64,6 +78,3 @@ class Effect(QFrame):
         font.setBold(True)
         for label in self.cells[0]:
             label.setFont(font)
-        verdict = self.tr("{before} → {after}").format(before=before.verdict, after=after.verdict)
-        self.words.setText(verdict)
-        self.words.setVisible(before.passed != after.passed)

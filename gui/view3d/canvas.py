@@ -53,8 +53,8 @@ class Canvas(QtInteractor):
     Left drag turns, middle or right drag (or Shift with left) moves sideways, the wheel comes nearer to what is under
     the pointer. ``clicked``, ``asked`` (the right button)
     and ``hovered`` tell the pointer's place in logical pixels. ``handle``, if set, is asked
-    first: ``press(pos) -> bool``, then ``drag(pos)`` and ``release()``. ``prepare`` is told of every frame before it is
-    drawn: how it is seen, and how many pixels it has.
+    first: ``press(pos) -> bool``, then ``drag(pos)`` and ``release()``, or ``cancel()`` where Escape is pressed.
+    ``prepare`` is told of every frame before it is drawn: how it is seen, and how many pixels it has.
     """
 
     clicked = Signal(QPointF)
@@ -283,8 +283,11 @@ class Canvas(QtInteractor):
         event.accept()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:  # noqa: N802
-        """Turn by the arrow keys, come nearer by plus and minus."""
-        if (turn := _KEYS.get(Qt.Key(event.key()))) is not None:
+        """Turn by the arrow keys, come nearer by plus and minus; Escape gives up a drag."""
+        if event.key() == Qt.Key.Key_Escape and self._held == "handle":
+            self._held = "cancelled"
+            self.handle.cancel()
+        elif (turn := _KEYS.get(Qt.Key(event.key()))) is not None:
             self.look(self.viewpoint.turned(*turn), moving=True)
         elif event.text() in ("+", "-"):
             self.look(self.viewpoint.nearer(NOTCH if event.text() == "+" else 1 / NOTCH), moving=True)

@@ -14,9 +14,17 @@ from geofit.data.site import Site
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.gui.view3d.cloud import PointCloud
 from geofit.gui.view3d.drawn import Drawn, drawn_of
-from geofit.gui.view3d.horizon_items import control_item, points_item, seams_item, shape_item, suggestions_item
+from geofit.gui.view3d.horizon_items import (
+    control_item,
+    place_control,
+    points_item,
+    seams_item,
+    shape_item,
+    suggestions_item,
+)
 from geofit.gui.view3d.item import Item, Look
 from geofit.gui.view3d.layers import Layer
+from geofit.gui.view3d.moved_region import MovedRegion
 from geofit.gui.view3d.shape import next_below, seam_lines, too_coarse
 from geofit.gui.view3d.sight import Sight
 from geofit.gui.view3d.site_items import boundary_item, dips_item, ground_item, holes_item, sections_item
@@ -46,6 +54,7 @@ class Contents:
         self.listed: dict[str, Listing] = {}
         self.faded = True
         self._clouds: list[PointCloud] = []
+        self._cut: dict[str, MovedRegion] = {}
 
     def set_faded(self, on: bool) -> None:
         """Fade what lies above the ground or beyond the points of its surface, or draw it in full."""
@@ -113,6 +122,7 @@ class Contents:
         name, layers = surface.name, self.stage.layers
         drawn = drawn or drawn_of(surface, uncertainty, None if self.site is None else self.site.ground)
         self.surfaces[name], self.drawn[name] = surface, drawn
+        self._cut.pop(name, None)
         self.points.setdefault(name, surface.points)
         colour = self.colour(name)
         choices = ["plain", "elevation", "dip", "thickness"] + ["standard deviation"] * (drawn.sd is not None)
@@ -124,6 +134,7 @@ class Contents:
                 layer,
                 look,
                 self.drawn[name].supported if self.faded else None,
+                self._cut.get(name),
             ),
         )
         for kind, bound in (("upper", drawn.upper), ("lower", drawn.lower)):
@@ -146,8 +157,8 @@ class Contents:
         return [name for name in shown if too_coarse(self.surfaces[name], sight, self.drawn[name].sight)]
 
     def sharpen(self, surface: HorizonFit, drawn: Drawn) -> None:
-        """Draw a surface that is shown with other triangles; another fit of it stays as it is."""
-        if self.surfaces.get(surface.name) is surface:
+        """Draw a surface that is shown with other triangles; another fit, or one being dragged, stays as it is."""
+        if self.surfaces.get(surface.name) is surface and surface.name not in self._cut:
             self.drawn[surface.name] = drawn
             self.stage.rebuild(f"surface:{surface.name}")
 
@@ -155,7 +166,7 @@ class Contents:
         """Take away a surface with all that belongs to it; its points stay if they are of the site."""
         for kind in ("surface", "upper", "lower", "seams", "control", "suggestions"):
             self.stage.layers.remove(f"{kind}:{name}")
-        for known in (self.surfaces, self.drawn, self.control):
+        for known in (self.surfaces, self.drawn, self.control, self._cut):
             known.pop(name, None)
         if self.site is not None and name in self.site.horizons:
             self._show_points(name)
@@ -167,7 +178,7 @@ class Contents:
     def clear(self) -> None:
         """Take everything away."""
         self.site = None
-        for known in (self.points, self.surfaces, self.drawn, self.control, self.listed):
+        for known in (self.points, self.surfaces, self.drawn, self.control, self.listed, self._cut):
             known.clear()
         self._clouds.clear()
         self.stage.layers.clear()
@@ -206,6 +217,21 @@ class Contents:
             return item
 
         self.stage.show(Layer(f"control:{name}", "control", name), build)
+
+    def cut_out(self, name: str, region: MovedRegion | None) -> None:
+        """Leave out of a surface what a control point moves just now; None: draw the whole surface."""
+        if region is not self._cut.get(name):
+            if region is None:
+                del self._cut[name]
+            else:
+                self._cut[name] = region
+            self.stage.rebuild(f"surface:{name}")
+
+    def place_control(self, name: str, xyz: Floats) -> None:
+        """Put the control points of a surface elsewhere, (n, 3) map coordinates, until it is shown anew."""
+        for layer, item in self.stage.items():
+            if layer.key == f"control:{name}":
+                place_control(item, xyz, self.stage.look)
 
     def show_suggestions(self, name: str, suggestions: tuple[Suggestion, ...]) -> None:
         """List where the next holes should stand; they are seen when somebody asks for them."""

@@ -1,4 +1,4 @@
-"""Handles in the scene that are dragged: of the section plane and of the clip box."""
+"""Handles in the scene that are dragged: of the section plane, of the clip box, and of a control point."""
 
 from __future__ import annotations
 
@@ -17,25 +17,31 @@ Floats = NDArray[np.float64]
 
 #: How far from the pointer a handle may be, logical pixels.
 REACH = 11.0
+#: A press that moves less than this moves no handle, logical pixels.
+CLICK = 4.0
 
 
 @dataclass(frozen=True, eq=False)
 class Handle:
-    """A handle at ``xyz`` (map coordinates): moved on its level, or along ``way`` (3,); ``moved`` hears where to."""
+    """A handle at ``xyz`` (map coordinates): moved on its level, or along ``way`` (3,); ``moved`` hears where to.
+
+    ``dropped`` hears that it was let go. A handle that is not ``drawn`` has a sign of its own.
+    """
 
     xyz: Floats
     moved: Callable[[Floats], None]
     way: Floats | None = None
+    dropped: Callable[[], None] = lambda: None
+    drawn: bool = True
 
 
 class Handles:
     """The handles of the scene; ``places`` gives them anew at every press."""
 
-    def __init__(
-        self, places: Callable[[], list[Handle]], view: Callable[[], Projector], done: Callable[[], None]
-    ) -> None:
-        self._places, self._view, self._done = places, view, done
+    def __init__(self, places: Callable[[], list[Handle]], view: Callable[[], Projector]) -> None:
+        self._places, self._view = places, view
         self._held: Handle | None = None
+        self._pressed, self._begun = QPointF(), False
 
     def at(self, pos: QPointF) -> Handle | None:
         """Return the handle under the pointer."""
@@ -48,23 +54,32 @@ class Handles:
 
     def press(self, pos: QPointF) -> bool:
         """Take the handle under the pointer; False if there is none."""
-        self._held = self.at(pos)
+        self._held, self._pressed, self._begun = self.at(pos), pos, False
         return self._held is not None
 
     def drag(self, pos: QPointF) -> None:
         """Move the handle that is held."""
-        if self._held is None:
+        self._begun |= (pos - self._pressed).manhattanLength() >= CLICK
+        if self._held is None or not self._begun:
             return
         view, handle = self._view(), self._held
         if handle.way is None:
             target = view.on_level(pos.x(), pos.y(), float(handle.xyz[2]))
         else:
-            share = view.along(pos.x(), pos.y(), handle.xyz, handle.way)
+            by = pos - self._pressed
+            share = view.pulled(handle.xyz, handle.way, (by.x(), by.y()))
             target = None if share is None else handle.xyz + share * handle.way
         if target is not None:
             handle.moved(target)
 
     def release(self) -> None:
         """Let go."""
-        self._held = None
-        self._done()
+        held, self._held = self._held, None
+        if held is not None and self._begun:
+            held.dropped()
+
+    def cancel(self) -> None:
+        """Put the handle that is held back to where it was, and let go."""
+        if self._held is not None:
+            self._held.moved(self._held.xyz)
+            self.release()

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkFiltersCore import vtkContourFilter
 
@@ -22,11 +25,12 @@ from geofit.gui.view3d.colouring import SIZE, points_by, ramp, seam_colours
 from geofit.gui.view3d.crowd import GHOSTLY, Crowd
 from geofit.gui.view3d.item import Item, Look, corners_of
 from geofit.gui.view3d.layers import Layer
+from geofit.gui.view3d.moved_region import MovedRegion
 from geofit.gui.view3d.shape import Shape
 from geofit.report.style import rgb
 from geofit.sampling.contours import interval_for
 
-__all__ = ["control_item", "points_item", "seams_item", "shape_item", "suggestions_item"]
+__all__ = ["control_item", "place_control", "points_item", "seams_item", "shape_item", "suggestions_item"]
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -77,21 +81,24 @@ def shape_item(
     layer: Layer,
     look: Look,
     supported: tuple[Bools, Bools] | None = None,
+    cut: MovedRegion | None = None,
 ) -> Item:
     """Return triangles coloured by a value at their corners (fine, coarse), or plain; isolines if wanted.
 
-    Triangles that are not ``supported`` (fine, coarse) are drawn translucent; None: all are.
+    Triangles that are not ``supported`` (fine, coarse) are drawn translucent; None: all are. What a control point moves
+    just now is ``cut`` out.
     """
-    coarse = shape.coarse or shape
+    coarse = shape.coarse or shape if cut is None else shape
     details = (("both", shape, 0),) if coarse is shape else (("full", shape, 0), ("coarse", coarse, 1))
     made = ramp(layer.colour_by, values[0]) if values is not None else None
     parts = []
     for detail, one, k in details:
         held = np.ones(len(one.triangles), bool) if supported is None else supported[k]
-        for faces, opacity in ((one.triangles[held], 1.0), (one.triangles[~held], FADED)):
+        there = np.ones(len(one.triangles), bool) if cut is None else ~cut.touched
+        for faces, opacity in ((one.triangles[held & there], 1.0), (one.triangles[~held & there], FADED)):
             if not len(faces):
                 continue
-            data = poly(one.xyz - look.origin, faces=faces, normals=one.normals)
+            data = _data(replace(one, triangles=faces), look)
             if detail == "coarse":
                 flat = np.tile(np.array(rgb(layer.colour), np.uint8), (len(one.xyz), 1))
                 shades = made.of(values[k]) if made is not None and values is not None else flat
@@ -101,9 +108,18 @@ def shape_item(
                 if made is not None and values is not None:
                     ramped(actor, values[k], made)
             parts.append(ActorPart(actor, detail, opacity=opacity))
+        if cut is not None and len(cut.beside.triangles):
+            actor = triangles(_data(cut.beside, look), layer.colour)
+            if made is not None and values is not None:
+                ramped(actor, values[k][cKDTree(one.xyz).query(cut.beside.xyz)[1]], made)
+            parts.append(ActorPart(actor, detail, opacity=1.0 if held[cut.touched].all() else FADED))
         if layer.isolines:
-            parts += _isolines(one, shape, detail, look)
+            parts += _isolines(replace(one, triangles=one.triangles[there]), shape, detail, look)
     return Item(parts, corners_of(shape.xyz), shape=shape, legend=made.legend if made else None)
+
+
+def _data(shape: Shape, look: Look) -> Any:
+    return poly(shape.xyz - look.origin, faces=shape.triangles, normals=shape.normals)
 
 
 def _isolines(one: Shape, whole: Shape, detail: str, look: Look) -> list[ActorPart]:
@@ -161,6 +177,14 @@ def control_item(surface: HorizonFit, layer: Layer, look: Look) -> tuple[Item, l
         ActorPart(dots(poly(xyz - look.origin), look.text, balls=False), size=CONTROL, opacity=0.9, spacing=mesh),
     ]
     return Item(parts, corners_of(xyz), targets=xyz), known
+
+
+def place_control(item: Item, xyz: Floats, look: Look) -> None:
+    """Put the points of a control net elsewhere, (n, 3) map coordinates."""
+    item.targets = xyz
+    for part in item.parts:
+        points = part.actor.GetMapper().GetInput().GetPoints()
+        points.SetData(numpy_to_vtk(np.ascontiguousarray(xyz - look.origin, np.float32), deep=True))
 
 
 def _spacing(control: Floats) -> float:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPen, QPolygonF
 
 from geofit.gui.view3d.axes import Mark, grouped, nice
 from geofit.gui.view3d.layer_names import word
@@ -28,6 +28,8 @@ MARGIN = 12.0
 CELL = 14.0
 #: Arms of the sign of directions; widest scale bar; width of a legend's ramp.
 ARM, BAR, RAMP = 30.0, 160.0, 150.0
+#: Length of the arrows along which something is dragged; longest line beside a place.
+PULL, LINE = 34.0, 380.0
 
 
 @dataclass(frozen=True)
@@ -42,11 +44,15 @@ class Theme:
 
 @dataclass(frozen=True, eq=False)
 class Ring:
-    """A ring about a place, and a text beside it; ``solid`` for something small that was taken hold of."""
+    """A ring about a place, and a text beside it; ``solid`` for something small that was taken hold of.
+
+    Arrows along ``way`` (3,) show that it can be dragged.
+    """
 
     xyz: Floats
     text: str
     solid: bool = False
+    way: Floats | None = None
 
 
 @dataclass(eq=False)
@@ -158,22 +164,44 @@ def _ring(painter: QPainter, view: Projector, ring: Ring, theme: Theme) -> None:
         painter.setPen(QPen(theme.paper, 1.5))
         painter.setBrush(theme.mark)
         painter.drawEllipse(QPointF(x, y), 4.5, 4.5)
+    if ring.way is not None:
+        _arrows(painter, view, ring, theme)
     if ring.text:
-        _tag(painter, view, QPointF(x, y - 24), ring.text, theme)
+        _tag(painter, view, QPointF(x, y - (24 if ring.way is None else PULL + 14)), ring.text, theme)
+
+
+def _arrows(painter: QPainter, view: Projector, ring: Ring, theme: Theme) -> None:
+    """Draw an arrow to either side of a ring, along the way that it can be dragged."""
+    assert ring.way is not None
+    here, there = view.screen(np.stack([ring.xyz, ring.xyz + ring.way]))[:, :2]
+    step = there - here
+    length = float(np.linalg.norm(step))
+    # Seen along its way, it is dragged up and down in the picture.
+    step = step / length if np.isfinite(length) and length > 1e-3 else np.array([0.0, -1.0])
+    along, across = QPointF(*step.tolist()), QPointF(-float(step[1]), float(step[0]))
+    centre = QPointF(*here.tolist())
+    for sign in (1.0, -1.0):
+        tip, neck = centre + along * (sign * PULL), centre + along * (sign * (PULL - 9))
+        head = QPolygonF([tip, neck + across * 5.5, neck - across * 5.5])
+        for pen in (QPen(theme.paper, 5), QPen(theme.mark, 2.2)):
+            painter.setPen(pen)
+            painter.drawLine(centre + along * (sign * 11.0), neck)
+        painter.setPen(QPen(theme.paper, 1.2))
+        painter.setBrush(theme.mark)
+        painter.drawPolygon(head)
 
 
 def _tag(painter: QPainter, view: Projector, at: QPointF, text: str, theme: Theme) -> None:
     """Write a text on a plate about a place, moved so that it stays inside the picture."""
-    metrics = QFontMetricsF(painter.font())
-    rows = text.split("\n")
-    wide = max(metrics.horizontalAdvance(row) for row in rows) + 14
-    high = metrics.height() * len(rows) + 6
+    flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+    least = QFontMetricsF(painter.font()).boundingRect(QRectF(0, 0, LINE, 4000), int(flags), text)
+    wide, high = least.width() + 14, least.height() + 6
     x = min(max(at.x() - wide / 2, MARGIN), view.width - wide - MARGIN)
     y = min(max(at.y() - high, MARGIN), view.height - high - MARGIN)
     box = QRectF(x, y, wide, high)
     _plate(painter, box, theme, 235, theme.mark)
     painter.setPen(theme.text)
-    painter.drawText(box, Qt.AlignmentFlag.AlignCenter, text)
+    painter.drawText(box.adjusted(6, 0, -6, 0), int(flags), text)
 
 
 def _handle(painter: QPainter, view: Projector, at: Floats, theme: Theme) -> None:

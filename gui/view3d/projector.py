@@ -11,6 +11,9 @@ __all__ = ["Projector"]
 
 Floats = NDArray[np.float64]
 
+#: A way that is drawn shorter than this share of its length runs along the line of sight.
+STEEP = 0.2
+
 
 @dataclass(frozen=True, eq=False)
 class Projector:
@@ -61,13 +64,18 @@ class Projector:
         share = (z - near[2]) / drop
         return None if share < 0 else np.asarray(near + share * (far - near))
 
-    def along(self, column: float, row: float, start: Floats, way: Floats) -> float | None:
-        """Return how far along ``start + t * way`` the line of sight passes nearest, None if they are parallel."""
-        near, far = self.ray(column, row)
-        sight = (far - near) / np.linalg.norm(far - near)
-        between = start - near
-        cross = float(way @ sight)
-        lean = float(way @ way) - cross**2
-        if lean < 1e-9 * float(way @ way):
+    def pulled(self, start: Floats, way: Floats, by: tuple[float, float]) -> float | None:
+        """Return how far along ``way`` (3,) from ``start`` a hand that moves ``by`` pixels pulls something, in lengths.
+
+        Seen along the way itself, up in the picture pulls forward along it. None behind the viewpoint.
+        """
+        stretched = np.array([1.0, 1.0, self.stretch])
+        near, far = self.ray(*self.screen(start)[0, :2].tolist())
+        side = np.linalg.svd(((far - near) * stretched)[None])[2][1] / stretched * np.linalg.norm(way * stretched)
+        drawn = self.screen(np.stack([start, start + way, start + side]))[:, :2]
+        if not np.isfinite(drawn).all():
             return None
-        return float((cross * (between @ sight) - between @ way) / lean)
+        step, across = drawn[1] - drawn[0], float(np.linalg.norm(drawn[2] - drawn[0]))
+        if np.linalg.norm(step) < STEEP * across:
+            return -by[1] / across
+        return float(np.dot(by, step) / (step @ step))

@@ -106,6 +106,10 @@ class Stage:
         self.clip = planes
         self._apply_all()
 
+    def redraw(self) -> None:
+        """Draw once more: what an actor is made of has changed."""
+        self._render()
+
     def set_extra(self, name: str, parts: list[ActorPart]) -> None:
         """Draw something that is not a layer (axes, a tool) in place of what it was; it is never clipped."""
         self._take(self._extras.pop(name, []))

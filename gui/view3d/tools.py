@@ -60,10 +60,10 @@ class Measure:
 class SectionTool:
     """A vertical plane along a line of the plan, (k, 2) map coordinates, with a thickness in metres."""
 
-    def __init__(self, changed: Callable[[], None]) -> None:
+    def __init__(self, changed: Callable[[], None], dropped: Callable[[], None]) -> None:
         self.line: Floats | None = None
         self.thickness = 0.0
-        self._changed = changed
+        self._changed, self._dropped = changed, dropped
 
     def parts(self, box: Floats, look: Look) -> list[ActorPart]:
         """Return what is drawn: the plane, its rim, and the two sides of the slice."""
@@ -104,8 +104,9 @@ class SectionTool:
 
             return moved
 
-        handles = [Handle(np.append(line[k], top), corner(k)) for k in range(len(line))]
-        return [*handles, Handle(np.append(middle, top), lambda xyz: self._set(line + xyz[:2] - middle))]
+        handles = [Handle(np.append(line[k], top), corner(k), dropped=self._dropped) for k in range(len(line))]
+        whole = Handle(np.append(middle, top), lambda xyz: self._set(line + xyz[:2] - middle), dropped=self._dropped)
+        return [*handles, whole]
 
     def _set(self, line: Floats) -> None:
         self.line = line

@@ -22,6 +22,7 @@ from geofit.gui.view3d.body_items import BodyScene, MorphScene
 from geofit.gui.view3d.camera import Viewpoint, framed
 from geofit.gui.view3d.canvas import Canvas
 from geofit.gui.view3d.contents import Contents
+from geofit.gui.view3d.control_move import ControlMove
 from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.view3d.handles import Handle, Handles
 from geofit.gui.view3d.layers import Layers
@@ -58,9 +59,10 @@ class SceneView(QWidget):
     Call :meth:`close` before the window that holds it is destroyed: it stops the timers and frees OpenGL's memory.
 
     Signals: ``point_picked(horizon, row)``, ``control_picked(horizon, patch, i, j)``, ``hole_picked(name)``,
-    ``pointer_moved(x, y, z)`` (nan off every surface), ``measured(text)``, ``section_changed(line)`` with a (k, 2)
-    array, ``sharper_wanted(horizon, sight)`` where the view has come to rest so near to a surface that its triangles
-    show: answer by :meth:`sharpen`.
+    ``control_dragged(dz)``, ``control_dropped()`` and ``control_refused(reason)`` while the chosen control point is
+    dragged, ``pointer_moved(x, y, z)`` (nan off every surface), ``measured(text)``, ``section_changed(line)`` with a
+    (k, 2) array, ``sharper_wanted(horizon, sight)`` where the view has come to rest so near to a surface that its
+    triangles show: answer by :meth:`sharpen`.
 
     Raises
     ------
@@ -70,6 +72,9 @@ class SceneView(QWidget):
 
     point_picked = Signal(str, object)
     control_picked = Signal(str, str, int, int)
+    control_dragged = Signal(float)
+    control_dropped = Signal()
+    control_refused = Signal(str)
     hole_picked = Signal(str)
     pointer_moved = Signal(float, float, float)
     measured = Signal(str)
@@ -85,8 +90,11 @@ class SceneView(QWidget):
         self._stage = Stage(self.layers, self.canvas.renderer, self.canvas.ren_win, self._changed)
         self.contents, self.bodies = Contents(self._stage), BodyScene(self._stage)
         self.morph = MorphScene(self._stage)
-        self._section, self._clip = SectionTool(self._section_moved), ClipBox(self._clip_moved)
+        self._section, self._clip = SectionTool(self._section_moved, self._tell_section), ClipBox(self._clip_moved)
         self.pointer = Pointer(self.canvas, self._stage, self.contents, self._clip, self)
+        self.control_move = ControlMove(
+            self._stage, self.contents, self._control_pulled, self.control_dropped.emit, self.control_refused.emit
+        )
         self._step, self._framed, self._closed = 0.0, False, False
         self._annotations = Annotations(self, self.canvas.projector, self.content)
         layout = QVBoxLayout(self)
@@ -104,7 +112,7 @@ class SceneView(QWidget):
 
     def _connect(self) -> None:
         canvas = self.canvas
-        canvas.handle = Handles(self.handles, canvas.projector, self._tell_section)
+        canvas.handle = Handles(self.handles, canvas.projector)
         canvas.viewpoint_changed.connect(self._viewpoint_moved)
         canvas.detail_changed.connect(self._set_detail)
         canvas.pixels_changed.connect(self._stage.set_pixels)
@@ -115,7 +123,7 @@ class SceneView(QWidget):
         pointer.hole_picked.connect(self.hole_picked)
         pointer.moved.connect(self.pointer_moved)
         pointer.measured.connect(self.measured)
-        pointer.changed.connect(self._annotations.update)
+        pointer.changed.connect(self._ring_changed)
 
     # What is shown -------------------------------------------------------------------------------------------
 
@@ -134,6 +142,8 @@ class SceneView(QWidget):
     ) -> None:
         """Show a surface or its new fit; ``drawn`` (:func:`drawn_of`, in a worker) spares the window 0.3 s."""
         self.contents.show_surface(surface, uncertainty, drawn)
+        if self.control_move.horizon == surface.name:
+            self.control_move.show("", None)
         self._placed()
         self.pointer.renew()
 
@@ -145,6 +155,8 @@ class SceneView(QWidget):
     def remove_surface(self, name: str) -> None:
         """Take a surface away; its points stay."""
         self.contents.remove_surface(name)
+        if self.control_move.horizon == name:
+            self.control_move.show("", None)
         self.pointer.renew()
 
     def show_suggestions(self, horizon: str, suggestions: tuple[Suggestion, ...]) -> None:
@@ -171,6 +183,7 @@ class SceneView(QWidget):
     def clear(self) -> None:
         """Take everything away."""
         self.contents.clear()
+        self.control_move.show("", None)
         self._framed = False
         self.pointer.clear()
         self.set_section(None, 0.0)
@@ -244,6 +257,22 @@ class SceneView(QWidget):
         """Put a mark and its elevation on a control point."""
         self.pointer.choose_control(horizon, patch, i, j)
 
+    def _control_pulled(self, dz: float) -> None:
+        """Let the surface follow the hand; as while the viewpoint moves, less detail is drawn."""
+        self.canvas.look(self.canvas.viewpoint, moving=True)
+        self.control_dragged.emit(dz)
+
+    def _ring_changed(self) -> None:
+        """Something else was chosen, or nothing: no control point can be dragged any more."""
+        if self.control_move.shown and not self.control_marked:
+            self.control_move.show("", None)
+        self._annotations.update()
+
+    @property
+    def control_marked(self) -> bool:
+        """Whether the mark is on a control point."""
+        return self.pointer.ring is not None and self.pointer.ring.solid
+
     def set_dark(self, dark: bool) -> None:
         """Follow the theme: a dark or a light background."""
         self._annotations.dark = dark
@@ -315,6 +344,7 @@ class SceneView(QWidget):
         box = self._stage.box()
         self._stage.set_extra("section", [] if box is None else self._section.parts(box, self._stage.look))
         self._stage.set_extra("clip", self._clip.parts(self._stage.look))
+        self.control_move.follow()
         self._changes.stop()
         self.canvas.render()
         self._annotations.update()
@@ -371,10 +401,10 @@ class SceneView(QWidget):
         seen, pointer = list(self._stage.items()), self.pointer
         return Content(
             names=[(item.places, item.names) for _, item in seen],
-            rings=[pointer.ring] if pointer.ring is not None else [],
+            rings=[self.control_move.dressed(pointer.ring)] if pointer.ring is not None else [],
             path=np.array(pointer.measure.places) if pointer.measure.places else None,
             path_text=pointer.measure_text(),
-            handles=[handle.xyz for handle in self.handles()],
+            handles=[handle.xyz for handle in self.handles() if handle.drawn],
             legends=merged([(layer.horizon, layer.legend) for layer, _ in seen if layer.legend is not None]),
             marks=marks(self._padded(box), self._step, view) if box is not None and self._step else [],
             note=self.tr("Vertical {factor}×").format(factor=f"{self.canvas.stretch:g}"),
@@ -383,9 +413,14 @@ class SceneView(QWidget):
         )
 
     def handles(self) -> list[Handle]:
-        """Return what can be dragged: the ends of the section first, then the sides of the clip box."""
-        box = self._stage.box()
-        return [] if box is None else [*self._section.handles(box), *self._clip.handles()]
+        """Return what can be dragged: the control point, the ends of the section, the sides of the clip box."""
+        box, ring = self._stage.box(), self.pointer.ring
+        chosen = (
+            self.control_move.handles()
+            if ring is None
+            else [*self.control_move.handles(), *self.control_move.held(ring)]
+        )
+        return [] if box is None else [*chosen, *self._section.handles(box), *self._clip.handles()]
 
     def _section_moved(self) -> None:
         self._changed()
