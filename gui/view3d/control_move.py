@@ -14,6 +14,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk
 from geofit.fitting.preview import MovePreview
 from geofit.gui.view3d.actors import ActorPart, coloured, lines, poly, triangles
 from geofit.gui.view3d.contents import Contents
+from geofit.gui.view3d.drawn import Drawn
 from geofit.gui.view3d.handles import Handle
 from geofit.gui.view3d.item import Look
 from geofit.gui.view3d.moved_region import MovedRegion, moved_region
@@ -52,6 +53,7 @@ class ControlMove:
         self._dragged, self._dropped, self._refused = dragged, dropped, refused
         self._horizon = ""
         self._control: tuple[Floats, Floats] | None = None
+        self._whole: Drawn | None = None
         self._region: MovedRegion | None = None
         self._look: Look | None = None
         self._data: tuple[Any, Any] | None = None
@@ -63,8 +65,7 @@ class ControlMove:
         self._put_back()
         self._horizon, self._preview, self.reason = horizon, preview, reason
         self.dz, self.figures, self.waits = 0.0, "", False
-        drawn = self._contents.drawn.get(horizon)
-        self._region = None if preview is None or drawn is None else moved_region(drawn.shape, preview)
+        self._find_region()
         self._control = None if preview is None else _control_of(preview)
         self._draw()
 
@@ -74,6 +75,10 @@ class ControlMove:
             return
         cut, self.dz, self.figures = bool(dz) != bool(self.dz), dz, figures
         if cut:
+            # Near by, the surface may have got other triangles since the control point was chosen.
+            if dz and self._whole is not self._contents.drawn.get(self._horizon):
+                self._find_region()
+                self._data = None
             self._contents.cut_out(self._horizon, self._region if dz else None)
         self._place_control()
         if self._data is None or self._look is not self._stage.look:
@@ -138,6 +143,12 @@ class ControlMove:
     def _place_control(self) -> None:
         if self._control is not None:
             self._contents.place_control(self._horizon, self._control[0] + self.dz * self._control[1])
+
+    def _find_region(self) -> None:
+        """Cut what the control point moves out of the triangles that are drawn."""
+        self._whole = self._contents.drawn.get(self._horizon)
+        drawn, preview = self._whole, self._preview
+        self._region = None if drawn is None or preview is None else moved_region(drawn.shape, preview)
 
     def _draw(self) -> None:
         """Make the actors: what moves, its border, and the way that the control point has gone."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import numpy as np
 import pytest
 from panel_samples import SITE, fitted, item_of, sample_site
@@ -16,6 +14,8 @@ from geofit.data.points import PointSet
 from geofit.data.settings import FitSettings
 from geofit.data.site import Site
 from geofit.fitting.edit import acted_on, adjust, movable
+from geofit.gui.view3d.drawn import drawn_of
+from geofit.gui.view3d.sight import Sight
 from geofit.project.commands import SetSurface
 
 FAR = np.array([512_000.0, 3_455_000.0, 1_400.0])
@@ -227,12 +227,20 @@ def test_exact_points_hold_a_control_point_and_the_scene_says_so(cored):
     assert cored.document.surface("T3-T2") is surface
 
 
-def test_it_follows_a_hand_twenty_times_a_second(far):
-    """Everything but drawing the pixels, of 600 points; process time, because others share the machine."""
-    choose(far, movable_near_a_point(far.document.surface("H")))
-    box = far.window.panels.adjust.control.dz
-    box.setValue(0.1)
-    began = time.process_time()
-    for k in range(40):
-        box.setValue(0.2 + 0.05 * k)
-    assert (time.process_time() - began) / 40 < 1 / 20
+def test_a_surface_that_got_finer_triangles_is_cut_by_these(far):
+    surface, control = far.document.surface("H"), movable_near_a_point(far.document.surface("H"))
+    view = choose(far, control)
+    sight = Sight(view.canvas.projector(), 1.0)
+    finer = drawn_of(surface, sight=sight)
+    assert len(finer.shape.triangles) != len(view.contents.drawn["H"].shape.triangles)
+    view.sharpen(surface, finer)
+    at = press_and_pull(view, -50)
+    dz = far.window.panels.adjust.control.dz.value()
+    assert dz > 0.1
+    # Triangles that come while the control point is held wait for its release.
+    view.sharpen(surface, drawn_of(surface))
+    assert view.contents.drawn["H"] is finer
+    shape = view.control_move.drawn
+    off = adjust(surface, *control, dz).elevation(*shape.xyz[:, :2].T) - shape.xyz[:, 2]
+    assert np.nanmax(np.abs(off)) < 0.2 + 0.02 * dz
+    drop(far, at)
