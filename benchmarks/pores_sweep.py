@@ -25,8 +25,8 @@ R_MIN = (0.0, 1.0, 1.25, 1.75, 2.0, 2.5, 3.0, 4.0)
 TITLE = "## How tau and the smallest pore change the network"
 _TEXT = """
 Written by `python benchmarks/pores_sweep.py --page`. Two pores part where the passage between them is narrower than tau
-times the radius of the smaller one; a ball of a radius below `r_min` voxels is not a pore of its own. Each was swept while
-the other kept its default (tau {tau:g}, r_min {r_min:g}). K is the network's permeability along the three axes.
+times the radius of the smaller one; a ball of a radius below `r_min` voxels is not a pore of its own. Each was swept
+while the other kept its default (tau {tau:g}, r_min {r_min:g}). K is the network's permeability along the three axes.
 
 ![Pores, throats, coordination and permeability against tau and r_min](images/pores_sweep.png)
 
