@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 from numpy.typing import NDArray
 
 from geofit.data.errors import InputError
 from geofit.data.messages import message
-from geofit.data.site import Orientations
+from geofit.data.site import ImportIssue, Orientations
 from geofit.geometry.attitudes import attitudes
 from geofit.io.axes import Region, check_axes
 from geofit.io.columns import ORIENTATIONS
@@ -16,9 +19,37 @@ from geofit.io.rows import Rows, read_rows
 from geofit.io.source import Source
 from geofit.io.tables import first_names
 
-__all__ = ["load_orientations"]
+__all__ = ["load_orientations", "read_orientations"]
 
 Floats = NDArray[np.float64]
+
+
+def read_orientations(path: str | Path, horizon: str = "") -> tuple[Orientations, tuple[ImportIssue, ...]]:
+    """Read a table of measured dips that belongs to no site file.
+
+    Parameters
+    ----------
+    path : path
+        The table: x, y, z (m), and dip with azimuth or strike, or a normal.
+    horizon : str
+        Horizon of the measurements that name none.
+
+    Returns
+    -------
+    orientations : Orientations
+        The measurements.
+    issues : tuple of ImportIssue
+        What was listed of the table.
+
+    Raises
+    ------
+    InputError
+        If the file is missing, no columns hold an attitude, or no row can be used.
+    """
+    journal = Journal()
+    found = load_orientations(Source(path=Path(path)), journal)
+    named = np.where(found.horizon == "", horizon, found.horizon).astype(np.str_)
+    return replace(found, horizon=named), tuple(journal.issues)
 
 
 def load_orientations(source: Source, journal: Journal, region: Region | None = None) -> Orientations:

@@ -28,11 +28,13 @@ def fit_cloud_file(
     workers: int | None,
     as_json: bool,
     signed: Signed,
+    orientations: Path | None,
 ) -> int:
     """Fit one surface to a file of points that need not fit into the memory; return the exit code."""
     from geofit.io.boundary import read_boundary
     from geofit.io.clouds import open_cloud
-    from geofit.project.cloud_run import run_cloud
+    from geofit.io.orientations import read_orientations
+    from geofit.project.cloud_run import cloud_name, run_cloud
 
     if refused or len(horizons or ()) > 1:
         raise InputError(
@@ -44,8 +46,12 @@ def fit_cloud_file(
     name = horizons[0] if horizons else None
     cloud = open_cloud(source, roles, name, columns.get("sep"), columns.get("decimal"), columns.get("unit"))
     area = None if boundary is None else read_boundary(boundary)
+    dips, listed = (None, ()) if orientations is None else read_orientations(orientations, cloud_name(cloud))
     with listening() as progress:
-        done = run_cloud(cloud, out, changes, area, progress, scheduler=scheduler, workers=workers, signed=signed)
+        done = run_cloud(
+            cloud, out, changes, area, progress, scheduler=scheduler, workers=workers, signed=signed, orientations=dips
+        )
+    print_issues(tuple(listed))
     print_issues(cloud.issues, str(out / f"{done.files[0].stem}_import_issues.csv"))
     accuracy = done.accuracy
     if as_json:
@@ -63,5 +69,7 @@ def fit_cloud_file(
             verdict="PASS" if accuracy.passed else "FAIL",
         )
     )
+    if done.dips is not None:
+        say(done.dips.text)
     say(message("cli.cloud-files", "Surface, figures, grid of deviations and distances are in {folder}", folder=out))
     return done.exit_code

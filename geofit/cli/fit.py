@@ -97,6 +97,10 @@ def fit(
     max_iterations: Annotated[int | None, typer.Option(help=_help("max_iterations", "20"))] = None,
     max_control_points: Annotated[int | None, typer.Option(help=_help("max_control_points", "automatic"))] = None,
     dips: Annotated[DipsChoice | None, typer.Option(help=_help("dips", "check"))] = None,
+    orientations: Annotated[
+        Path | None,
+        typer.Option(help="Tables and clouds: measured dips to compare with the surface (x, y, z, dip, azimuth)."),
+    ] = None,
     dip_accuracy: Annotated[float | None, typer.Option(help=_help("dip_accuracy", "5"))] = None,
     coincidence_distance: Annotated[float | None, typer.Option(help=_help("coincidence_distance", "0.01"))] = None,
     separate: Annotated[
@@ -153,10 +157,21 @@ def fit(
         only = [word for word, given in used if given]
         signed = signed_by(None, author, organisation, origin, certificate="en" if certificate else "")
         return fit_cloud_file(
-            source, out, columns, horizon, boundary, changes, only, scheduler or "local", workers, as_json, signed
+            source,
+            out,
+            columns,
+            horizon,
+            boundary,
+            changes,
+            only,
+            scheduler or "local",
+            workers,
+            as_json,
+            signed,
+            orientations,
         )
     with listening() as progress:
-        site = read_source(source, columns, boundary)
+        site = read_source(source, columns, boundary, orientations)
         where = scheduler or ("local" if workers else None)
         names = tuple(horizon or ())
         return run_site(

@@ -15,19 +15,23 @@ if TYPE_CHECKING:
 __all__ = ["pick", "read_source"]
 
 
-def read_source(source: Path, columns: dict[str, str | None], boundary: Path | None) -> Site:
-    """Read a site file, or a table of points with the columns that the user names (None: guessed)."""
+def read_source(
+    source: Path, columns: dict[str, str | None], boundary: Path | None, orientations: Path | None = None
+) -> Site:
+    """Read a site file, or a table of points with the columns that the user names (None: guessed) and one of dips."""
     from dataclasses import replace
 
     from geofit.data.legible import legible
     from geofit.data.site import Site
     from geofit.io.boundary import read_boundary
+    from geofit.io.orientations import read_orientations
     from geofit.io.picks import read_points
     from geofit.io.site_file import read_site
 
     area = None if boundary is None else read_boundary(boundary)
     if source.suffix.casefold() == ".toml":
         given = [f"--{name}" for name, value in columns.items() if value is not None]
+        given += ["--orientations"] if orientations is not None else []
         if given:
             raise InputError(
                 message("cli.option-for-tables", "{option} is for tables of points", option=given[0]),
@@ -48,11 +52,14 @@ def read_source(source: Path, columns: dict[str, str | None], boundary: Path | N
         crs=columns.get("crs"),
         unit=columns.get("unit"),
     )
+    only = next(iter(picks.horizons)) if len(picks.horizons) == 1 else ""
+    dips, listed = (None, ()) if orientations is None else read_orientations(orientations, only)
     return Site(
         name=legible(source.stem),
         horizons=picks.horizons,
         boundary=area,
-        issues=picks.issues,
+        issues=(*picks.issues, *listed),
+        orientations=dips,
         counts=picks.counts,
         inputs=picks.inputs,
     )

@@ -18,13 +18,14 @@ from geofit.data.progress import Progress, tell
 from geofit.data.settings import FitSettings
 
 if TYPE_CHECKING:
-    from geofit.data.accuracy import ReadBack
+    from geofit.data.accuracy import Check, ReadBack
+    from geofit.data.site import Orientations
     from geofit.io.clouds import Cloud
     from geofit.project.step_files import Signed
     from geofit.streaming.fit import CloudFit
     from geofit.streaming.residuals import CloudAccuracy
 
-__all__ = ["CloudResult", "run_cloud"]
+__all__ = ["CloudResult", "cloud_name", "run_cloud"]
 
 #: Shares of a run after which the points are read, and the surface is fitted.
 READ, FITTED = 0.3, 0.6
@@ -32,13 +33,14 @@ READ, FITTED = 0.3, 0.6
 
 @dataclass(frozen=True, eq=False)
 class CloudResult:
-    """What a run over a cloud made: the fit, how far the points lie from it, the figures of its JSON, and the files."""
+    """What a run over a cloud made: the fit, distances of the points, figures for JSON, files, the check of dips."""
 
     fit: CloudFit
     accuracy: CloudAccuracy
     readback: ReadBack
     figures: Mapping[str, Any]
     files: tuple[Path, ...]
+    dips: Check | None = None
 
     @property
     def exit_code(self) -> int:
@@ -56,6 +58,7 @@ def run_cloud(
     scheduler: str = "local",
     workers: int | None = None,
     signed: Signed | None = None,
+    orientations: Orientations | None = None,
 ) -> CloudResult:
     """Fit a cloud and write its surface, its figures and its distances.
 
@@ -80,6 +83,8 @@ def run_cloud(
         See :func:`geofit.streaming.executors.run_tasks`.
     signed : Signed, optional
         What the STEP file states, and whether it gets a certificate.
+    orientations : Orientations, optional
+        Measured dips; those that name the cloud's horizon (:func:`cloud_name`) are compared with its surface.
 
     Raises
     ------
@@ -95,12 +100,13 @@ def run_cloud(
     from geofit.cad.step import write_step
     from geofit.fitting.horizon_fit import HorizonFit
     from geofit.project.step_files import Signed, certified
+    from geofit.site.dips import check_dips
     from geofit.streaming.fit import fit_cloud
     from geofit.streaming.residuals import measure
     from geofit.streaming.spool import spooled
 
     settings = FitSettings(**(changes or {}))
-    name = cloud.horizon or legible(cloud.path.stem)
+    name = cloud_name(cloud)
     stem = out / file_stems([name])[name]
     state = folder_for(stem.with_name(stem.name + "_state"))
     spool = spooled(cloud.chunks(), state, cloud.key, cloud.total, _within(progress, 0.0, READ))
@@ -123,7 +129,10 @@ def run_cloud(
     stated = (signed or Signed()).about([fit.surface.bounds[0]])
     back = write_step({name: HorizonFit(fit.surface, settings=settings, name=name)}, step, **stated.fields)
     readback, page = back[name], certified(step, back, {name: settings.epsilon}, stated)
+    compared, check = check_dips(HorizonFit(fit.surface, settings=settings, name=name), orientations)
     found = figures(cloud.path.name, rows, fit, accuracy, readback)
+    if check is not None:
+        found |= {"dips": {"check": plain(check), "measured": plain(compared)}}
     tables = _write(found, accuracy, stem)
     for file in ("points.f64", "points.json", "rows.json"):
         (state / file).unlink(missing_ok=True)
@@ -131,7 +140,12 @@ def run_cloud(
     tell(progress, "done", 1.0)
     pages = () if page is None else (page,)
     files = (step, *tables, *pages, *sorted(distances.glob("*.parquet")))
-    return CloudResult(fit, accuracy, readback, found, files)
+    return CloudResult(fit, accuracy, readback, found, files, check)
+
+
+def cloud_name(cloud: Cloud) -> str:
+    """Return the name of a cloud's surface: its horizon's, or its file's."""
+    return cloud.horizon or legible(cloud.path.stem)
 
 
 def _within(progress: Progress | None, low: float, high: float) -> Progress:

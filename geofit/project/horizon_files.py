@@ -46,6 +46,7 @@ def write_horizon(
     sections: Sequence[Section],
     where: Where = HERE,
     signed: Signed | None = None,
+    horizon: str = "",
     progress: Progress | None = None,
 ) -> Made | Message:
     """Examine a surface, and write what belongs to it: ``.step``, ``.png``, ``.json`` and ``_residuals.csv``.
@@ -70,6 +71,8 @@ def write_horizon(
         Where fits without a fold of the cross-validation are made.
     signed : Signed, optional
         What the STEP files state, and whether they get a certificate.
+    horizon : str
+        Name of the horizon where the surface is one fault block of it.
     progress : callable, optional
         ``progress(stage, fraction)``; False stops.
 
@@ -82,7 +85,7 @@ def write_horizon(
     t = language(code)
     made = guarded(
         lambda: _written(
-            surface, site, stem, progress or _deaf, t, seconds, bands, sections, where, signed or Signed()
+            surface, site, stem, progress or _deaf, t, seconds, bands, sections, where, signed or Signed(), horizon
         ),
         None,
         failed.append,
@@ -97,6 +100,7 @@ def _deaf(stage: str | Message, fraction: float, /) -> None:
 def _written(
     surface: HorizonFit, site: Site, stem: Path, progress: Progress, t: Language, fit: float, bands: bool,
     sections: Sequence[Section], where: Where, signed: Signed,
+    horizon: str,
 ) -> Made:  # fmt: skip
     from geofit.cad.step import write_step
     from geofit.prediction.examine import examine
@@ -118,7 +122,7 @@ def _written(
     clock.stop("STEP and read-back")
     progress("pictures", 0.7)
     storage, missing = storage_compared(surface)
-    result = HorizonResult(surface, site, back, storage, path.stat().st_size, prediction=prediction)
+    result = HorizonResult(surface, site, back, storage, path.stat().st_size, prediction=prediction, horizon=horizon)
     profiles, uncut = section_profiles(result, sections)
     result = replace(result, profiles=profiles)
     pictures = draw_pictures(result, t)

@@ -236,7 +236,7 @@ def _examined(
     tasks: list[Callable[[], Made | Message | Pictures]] = [
         partial(
             write_horizon, fits.surfaces[name], site, out / stems[name], language.code, fits.seconds[name], bands,
-            sections, where, signed,
+            sections, where, signed, fits.horizon[name],
         )
         for name in order
     ]  # fmt: skip
@@ -346,6 +346,8 @@ def write_reports(
             warnings += missing
         profiles, uncut = section_profiles(result, sections)
         result = replace(result, profiles=profiles)
+        if fits is not None:
+            result = replace(result, horizon=fits.horizon.get(result.name, ""))
         warnings += uncut
         if pictured:
             part("pictures", 0.6)

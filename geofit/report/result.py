@@ -19,6 +19,7 @@ from geofit.data.verdict import Verdict, verdict_of
 from geofit.fitting.horizon_fit import HorizonFit
 from geofit.report.profile import Profile
 from geofit.site.dips import DipDeviation, check_dips
+from geofit.site.site_checks import measured_on
 from geofit.site.states import Comparison
 
 __all__ = ["HorizonResult", "sigma_of"]
@@ -54,6 +55,8 @@ class HorizonResult:
         How the horizon lies to its neighbours (:meth:`geofit.site.order.Order.check`).
     change : Comparison or None
         How the horizon moved since its data changed; None: no earlier state is known.
+    horizon : str
+        Name of the horizon where the surface is one fault block of it; else empty or the surface's own.
     """
 
     surface: HorizonFit
@@ -68,6 +71,7 @@ class HorizonResult:
     edits: tuple[Message, ...] = ()
     orders: tuple[Check, ...] = ()
     change: Comparison | None = None
+    horizon: str = ""
 
     @property
     def verdict(self) -> Verdict:
@@ -88,8 +92,11 @@ class HorizonResult:
 
     @cached_property
     def dips(self) -> tuple[DipDeviation, ...]:
-        """The dips that were measured on the horizon, compared with its surface."""
-        return check_dips(self.surface, self.site.orientations)[0]
+        """The dips that were measured on the horizon, of a fault block those within it, compared with its surface."""
+        measured = self.site.orientations
+        if self.horizon not in ("", self.name):
+            measured = measured_on(measured, self.surface, self.horizon)
+        return check_dips(self.surface, measured)[0]
 
     @property
     def core(self) -> NDArray[np.bool_]:

@@ -1,8 +1,9 @@
-"""A first user's work on real drilling, through the windows alone: Copper Creek from three tables to section sheet
-and STEP."""
+"""A first user's work on real drilling, through the windows alone: Copper Creek from three tables to section sheet,
+STEP and report."""
 
 from __future__ import annotations
 
+import json
 import os
 import shutil
 from pathlib import Path
@@ -14,6 +15,7 @@ from PySide6.QtGui import QDesktopServices
 from geofit.cad.step import read_step
 from geofit.gui.dialogs.export_step import ExportDialog
 from geofit.gui.dialogs.horizon_builder import HorizonBuilder
+from geofit.gui.dialogs.report import ReportDialog
 from geofit.gui.dialogs.section_sheet import SectionSheetDialog
 from geofit.gui.wizard.import_wizard import ImportWizard
 
@@ -66,7 +68,20 @@ def written(qtbot, dialog, path, words):
     dialog.close()
 
 
-def test_copper_creek_from_tables_to_section_sheet_and_step(app, qtbot, tmp_path, monkeypatch):
+def reported(qtbot, dialog, folder):
+    """Write HTML, PDF and the plain data, without the examination away from the data, which takes minutes."""
+    dialog.show()
+    dialog.language.setCurrentIndex(dialog.language.findData("en"))
+    for box in dialog.forms.values():
+        box.setChecked(True)
+    dialog.examine.setChecked(False)
+    dialog.folder.setText(str(folder))
+    qtbot.mouseClick(dialog.go, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: not dialog.running, timeout=600_000)
+    dialog.close()
+
+
+def test_copper_creek_from_tables_to_section_sheet_step_and_report(app, qtbot, tmp_path, monkeypatch):
     window, document, panels = app.window, app.document, app.window.panels
     tables = tmp_path / "tables"
     shutil.copytree(FOLDER, tables, ignore=lambda _, names: [name for name in names if not name.endswith(".csv")])
@@ -133,3 +148,24 @@ def test_copper_creek_from_tables_to_section_sheet_and_step(app, qtbot, tmp_path
     app.idle()
     assert {COVER, BASEMENT} <= {*read_step(tmp_path / "creek.step")}
     assert (tmp_path / "creek_certificate.pdf").is_file()
+
+    # The report: pages, and plain data that say what the windows say.
+    monkeypatch.setattr(ReportDialog, "exec", lambda dialog: reported(qtbot, dialog, tmp_path / "report"))
+    app.trigger("report")
+    app.idle()
+    folder = tmp_path / "report"
+    page = (folder / "report.html").read_text("utf-8")
+    assert all(name in page for name in (COVER, BASEMENT, BODY))
+    assert (folder / "report.pdf").read_bytes().startswith(b"%PDF")
+    data = json.loads((folder / "report.json").read_text("utf-8"))
+    horizons = {one["horizon"]: one for one in data["horizons"]}
+    assert set(horizons) == {COVER, BASEMENT}
+    for name, one in horizons.items():
+        accuracy = document.surface(name).accuracy
+        assert one["n_points"] == accuracy.n
+        assert one["sigma"] == pytest.approx(accuracy.sigma)
+        assert one["max_abs"] == pytest.approx(accuracy.max_abs)
+        assert one["read_back"] is not None, "the STEP file was written of this very surface"
+    excluded = {name: len(one["excluded"]) for name, one in horizons.items()}
+    assert excluded == {COVER: 0, BASEMENT: 1}, "the point that was left out is listed"
+    assert {one["file"].split(" ")[0] for one in data["inputs"]} >= {path.name for path in FOLDER.glob("*.csv")}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -63,6 +64,43 @@ def test_the_chapter_says_whether_the_fit_used_them(result):
     said = [next(b.text for b in dip_blocks(one, EN) if isinstance(b, Paragraph)) for one in (report, used)]
     assert "did not use them" in said[0]
     assert "accuracy of 4°" in said[1]
+
+
+def test_blocks_of_a_faulted_horizon_list_the_dips_within_them(tmp_path):
+    import faulted
+
+    from geofit.project.run import run_horizons
+
+    rng = np.random.default_rng(5)
+    xy = rng.uniform(60, 940, (40, 2)) + faulted.ORIGIN
+    step = 1.0
+    z = faulted.truth(*xy.T)
+    west = faulted.off(*xy.T, z) > 0
+    clear = np.abs(faulted.off(*xy.T, z)) > 15
+    gx, gy = (
+        (faulted.HEIGHT(xy[:, 0] + dx, xy[:, 1] + dy) - faulted.HEIGHT(xy[:, 0] - dx, xy[:, 1] - dy)) / (2 * step)
+        for dx, dy in ((step, 0), (0, step))
+    )
+    azimuth, dip = np.degrees(np.arctan2(-gx, -gy)) % 360, np.degrees(np.arctan(np.hypot(gx, gy)))
+    n = len(xy)
+    every = Orientations(
+        np.column_stack([xy, z]), azimuth, dip, np.array(["T2"] * n), np.array(["dips.csv"] * n), np.arange(n) + 2
+    )
+    site = replace(faulted.faulted_site(), orientations=every)
+    run = run_horizons(site, tmp_path, ("T2", "F1"), date="2026-01-01")
+    written = {one["horizon"]: one for one in json.loads((tmp_path / "report.json").read_text("utf-8"))["horizons"]}
+    blocks = {name: one for name, one in written.items() if name.startswith("T2")}
+    assert len(blocks) == 2, "the fault parts the horizon"
+    rows = [{line["row"] for line in one["dips"]} for one in blocks.values()]
+    assert not rows[0] & rows[1]
+    assert rows[0] | rows[1] >= set((np.flatnonzero(clear) + 2).tolist())
+    sides = [{int(row) - 2 for row in one} & set(np.flatnonzero(clear).tolist()) for one in rows]
+    assert all(len(set(west[sorted(side)].tolist())) == 1 for side in sides), "no dip is in the block of the other side"
+    assert np.median([line["angle"] for one in blocks.values() for line in one["dips"]]) < 3.0
+    for result in run.results:
+        if result.name.startswith("T2"):
+            assert any(isinstance(block, ReportTable) for block in dip_blocks(horizon_report(result), EN))
+    assert not written["F1"]["dips"]
 
 
 def test_no_dips_no_chapter():

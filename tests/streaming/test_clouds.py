@@ -259,3 +259,54 @@ def test_a_cloud_in_memory_is_examined_and_can_have_a_core(monkeypatch):
     drawn = fit_horizon(PointSet(xyz), FitSettings(core=core))
     assert drawn.core.any()
     assert np.abs(drawn.accuracy.residuals[drawn.core]).max() < 1e-6
+
+
+def test_dips_are_compared_with_the_surface_of_a_cloud(tmp_path, monkeypatch, capsys):
+    from geofit.cli.main import main
+
+    rng = np.random.default_rng(4)
+    xy = rng.uniform(0, 400, (3000, 2))
+
+    def plane(x, y):
+        return 100 + 0.3 * x - 0.1 * y
+
+    z = plane(*xy.T) + rng.normal(0, 0.02, len(xy))
+    rows = (f"{x:.3f},{y:.3f},{h:.4f}\n" for (x, y), h in zip(xy, z, strict=True))
+    (tmp_path / "scan.csv").write_text("x,y,z\n" + "".join(rows))
+    dip, azimuth = np.degrees(np.arctan(np.hypot(0.3, 0.1))), np.degrees(np.arctan2(-0.3, 0.1)) % 360
+    places = rng.uniform(50, 350, (6, 2))
+    steep = [dip] * 5 + [dip + 45]
+    (tmp_path / "dips.csv").write_text(
+        "x,y,z,dip,azimuth\n"
+        + "".join(
+            f"{x:.2f},{y:.2f},{plane(x, y):.2f},{d:.2f},{azimuth:.2f}\n"
+            for (x, y), d in zip(places, steep, strict=True)
+        )
+    )
+    arguments = [
+        "fit",
+        tmp_path / "scan.csv",
+        "--stream",
+        "--out",
+        tmp_path / "o",
+        "--orientations",
+        tmp_path / "dips.csv",
+    ]
+    monkeypatch.setattr("sys.argv", ["geofit", *map(str, arguments)])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert not stop.value.code
+    assert "dip" in capsys.readouterr().err
+    found = json.loads((tmp_path / "o" / "scan.json").read_text("utf-8"))["dips"]
+    angles = [one["angle"] for one in found["measured"]]
+    assert max(angles[:5]) < 1.5
+    assert angles[5] == pytest.approx(45, abs=1.5)
+    assert found["check"]["passed"] is False
+    assert found["check"]["value"] == pytest.approx(angles[5])
+
+    # Dips as data of the fit need the points in the memory; that is refused, not ignored.
+    monkeypatch.setattr("sys.argv", ["geofit", *map(str, arguments), "--dips", "fit"])
+    with pytest.raises(SystemExit) as stop:
+        main()
+    assert stop.value.code == 2
+    assert "--dips is not for clouds" in capsys.readouterr().err
