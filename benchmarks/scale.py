@@ -26,6 +26,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[1]
 KEPT = ROOT / "build" / "scale.json"
 sys.path.append(str(ROOT / "tests"))
+from drawing import drawing_section, with_section  # noqa: E402
 from truth import EASTING, NORTHING, hills  # noqa: E402
 
 NOISE, SIZE, CHUNK = 0.05, 2000.0, 100_000
@@ -373,7 +374,9 @@ def main() -> None:
     missing = [task for task in TASKS if task not in found]
     if missing:
         sys.exit(f"The page needs figures of {', '.join(missing)}, too.")
-    (ROOT / "docs" / "scale.md").write_text(page(found), encoding="utf-8")
+    path = ROOT / "docs" / "scale.md"
+    # The last section is that of benchmarks/drawing.py.
+    path.write_text(with_section(page(found), drawing_section(path.read_text(encoding="utf-8"))), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -25,7 +25,7 @@ def load(monkeypatch):
     before = set(sys.modules)
     yield importlib.import_module
     for name in set(sys.modules) - before:
-        if name.split(".")[0] in {"real", "field", "fit", "distance", "realdata", "peers"}:
+        if name.split(".")[0] in {"real", "field", "fit", "distance", "realdata", "peers", "drawing"}:
             del sys.modules[name]
 
 
@@ -190,3 +190,35 @@ def test_without_data_real_says_so_and_exits_with_2(tmp_path):
     assert run.returncode == 2
     assert "GEOFIT_DATA" in run.stderr
     assert "Traceback" not in run.stderr
+
+
+def test_the_section_on_drawing_takes_the_place_of_the_last_one(load):
+    drawing = load("drawing")
+    view = {"moving": 9e3, "frame": 25, "rate": 30, "still": 8e5, "rest": 0.4, "pick": 2, "slowest pick": 5}
+    view |= {"first surface": 3, "surface": 1, "slowest surface": 3, "same": 10}
+    frames = {f"{name} {key}": value for name in ("all", "near") for key, value in view.items()}
+    frames |= {"shown": 1.5, "before": 800, "after": 840, "drawn": 1200, "input": 229, "load": 1}
+    triangles = {"count": 1e6, "cpu": 0.5, "tolerance": 0.01, "error": 0.009}
+    found = {
+        "triangles": {"waves": triangles, "rough": triangles, "outline": triangles},
+        "frames": {"even": frames, "stations": {**frames, "near frame": 40}},
+    }
+    text = drawing.section(found, 10_000_000)
+    assert "25 frames/s" in text
+    assert "10 of 10" in text
+    page = drawing.with_section("# Scale\n\nText.\n", text)
+    assert drawing.with_section(page, text) == page
+    assert drawing.drawing_section(page).rstrip() == text.rstrip()
+    assert drawing.with_section("# Scale\n\nText.\n", "") == "# Scale\n\nText.\n"
+
+
+@pytest.mark.parametrize("kind", ["even", "stations"])
+def test_made_clouds_lie_on_the_outcrop(load, kind):
+    drawing = load("drawing")
+    local = drawing.scan(20_000, kind) - drawing.ORIGIN
+    assert np.abs(local[:, :2]).max() <= drawing.HALF
+    assert np.std(local[:, 2] - 40 * np.sin(local[:, 0] / 240) * np.cos(local[:, 1] / 300)) == pytest.approx(
+        0.5, rel=0.1
+    )
+    cells = np.histogram2d(local[:, 0], local[:, 1], bins=20)[0]
+    assert (cells.max() > 20 * cells.mean()) == (kind == "stations")

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from geofit.data.errors import SettingsError
 from geofit.data.messages import message
 from geofit.data.numbers import is_finite, shown
+from geofit.geometry.cells import Place, tabulate
 from geofit.geometry.clip import clip
 from geofit.geometry.elevation import plan_map
 from geofit.splines.patch import Patch
@@ -173,24 +174,27 @@ def _in_cells(patch: Patch, origin: Floats, tolerance: Tolerance) -> Floats:
 def _lines(patch: Patch, tolerance: Floats) -> tuple[Floats, Floats]:
     """Choose the parameter lines in u and v: every knot, and between as many as bend and tolerance (nu, nv) ask."""
     breaks = np.unique(patch.knots_u), np.unique(patch.knots_v)
-    # Both ends of each span, from its inside: at double knots the second derivative jumps.
-    u, v = (np.stack([b[:-1] + 1e-9 * np.diff(b), b[1:] - 1e-9 * np.diff(b)], axis=1).ravel() for b in breaks)
-    u, v = u[:, None], v[None, :]
-    su, sv = patch.evaluate(u, v, 1, 0), patch.evaluate(u, v, 0, 1)
-    cross = np.cross(su, sv)
-    normal = cross / np.maximum(np.linalg.norm(cross, axis=-1, keepdims=True), 1e-300)
-    uu, uv, vv = (
-        np.abs(np.einsum("abk,abk->ab", patch.evaluate(u, v, *order), normal)) for order in ((2, 0), (1, 1), (0, 2))
-    )
-    length_u, length_v = (np.maximum(np.linalg.norm(s, axis=-1), 1e-300) for s in (su, sv))
-    along_u, along_v = uu + uv * length_u / length_v, vv + uv * length_v / length_u
-    cells = (len(breaks[0]) - 1, 2, len(breaks[1]) - 1, 2)
-    asked = [along.reshape(cells).max(axis=(1, 3)) / (4 * tolerance) for along in (along_u, along_v)]
+    asked = [bend / tolerance for bend in patch.prepared(_bends)]
     return _cut(breaks[0], asked[0].max(axis=1)), _cut(breaks[1], asked[1].max(axis=0))
 
 
+def _bends(patch: Patch) -> tuple[Floats, Floats]:
+    """Return the tolerance in metres for which a cell (nu, nv) stays whole along u, and along v; k^2 of it make k."""
+    cells = tabulate((patch,))
+    # The corners of each cell, from its inside: at double knots the second derivative jumps.
+    s, t = (np.repeat(np.array(ends) * (1 - 2e-9), len(cells.patch)) for ends in ((-1, 1, -1, 1), (-1, -1, 1, 1)))
+    _, ds, dt, dss, dst, dtt = cells.jets(Place(np.tile(np.arange(len(cells.patch)), 4), np.stack([s, t])))
+    cross = np.stack([ds[i] * dt[j] - ds[j] * dt[i] for i, j in ((1, 2), (2, 0), (0, 1))])
+    normal = cross / np.maximum(np.linalg.norm(cross, axis=0), 1e-300)
+    ss, st, tt = (np.abs((second * normal).sum(axis=0)) for second in (dss, dst, dtt))
+    length_s, length_t = (np.maximum(np.linalg.norm(first, axis=0), 1e-300) for first in (ds, dt))
+    along = ss + st * length_s / length_t, tt + st * length_t / length_s
+    bend_u, bend_v = (bend.reshape(4, *cells.shape[0]).max(axis=0) for bend in along)
+    return bend_u, bend_v
+
+
 def _cut(breaks: Floats, asked: Floats) -> Floats:
-    pieces = np.ceil(np.diff(breaks) * np.sqrt(asked)).clip(1, FINEST).astype(int)
+    pieces = np.ceil(np.sqrt(asked)).clip(1, FINEST).astype(int)
     if pieces.sum() == 1:
         pieces[0] = 2  # the triangles between edge and inside need one line inside
     spans = zip(breaks[:-1], breaks[1:], pieces, strict=True)

@@ -7,6 +7,7 @@ point is held twice. What is picked is looked for among all points, in the few b
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -106,16 +107,25 @@ class PointCloud:
         number = np.arange(ends[-1] if len(ends) else 0) - np.repeat(ends - counts, counts)
         return np.asarray(self.order[np.repeat(starts, counts) + step * number], np.int64)
 
-    def under(self, view: Projector, column: float, row: float, reach: float) -> Ints:
-        """Return the indices, ascending, of all points that can be drawn within ``reach`` pixels of a pixel."""
+    def under(self, view: Projector, column: float, row: float, reach: float) -> Iterator[tuple[float, Ints]]:
+        """Yield the points that can be drawn within ``reach`` pixels of a pixel, some at a time from front to back.
+
+        Each time: the least depth that these or later ones can have, and their indices.
+        """
         size = np.array([view.width, view.height])
         here = (2 * np.array([column, row]) / size - 1) * (1, -1)
         near = 2 * (reach + 1e-6) / size
         block = np.flatnonzero(_within(_corners(self.boxes, view), here, near))
-        met = _within(_corners(self.parts[block].reshape(-1, 2, 3), view), here, near).reshape(-1, PARTS)
-        known, part = np.nonzero(met)
-        place = (block[known] * BLOCK + part)[:, None] + np.arange(0, BLOCK, PARTS)
-        return np.sort(self.order[place[place < len(self)]]).astype(np.int64)
+        corners = _corners(self.parts[block].reshape(-1, 2, 3), view)
+        met = np.flatnonzero(_within(corners, here, near))
+        depth = _least_depth(self.parts[block].reshape(-1, 2, 3)[met], view)
+        order = np.argsort(depth, kind="stable")
+        start = block[met[order] // PARTS] * BLOCK + met[order] % PARTS
+        first, count = 0, PARTS
+        while first < len(start):
+            place = start[first : first + count, None] + np.arange(0, BLOCK, PARTS)
+            yield float(depth[order[first]]), np.asarray(self.order[place[place < len(self)]], np.int64)
+            first, count = first + count, 2 * count
 
     @property
     def sizes(self) -> Ints:
@@ -125,13 +135,25 @@ class PointCloud:
         return sizes
 
 
-def _corners(boxes: Floats, view: Projector) -> Floats:
-    """Return x, y and w (k, 3, 8) of the corners of boxes (k, 2, 3); they are drawn at x / w and y / w, -1 to 1."""
-    turn = view.matrix[[0, 1, 3], :3] * (1.0, 1.0, view.stretch)
+def _least_depth(boxes: Floats, view: Projector) -> Floats:
+    """Return the least depth (k,) at which a place of boxes (k, 2, 3) can be drawn; it is at a corner."""
+    corners = _corners(boxes, view, (2, 3))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = ((corners[:, 0] / corners[:, 1] + 1) / 2).min(axis=1) - 1e-9
+    return np.where(np.any(corners[:, 1] <= 1e-6, axis=1), -np.inf, depth)
+
+
+def _corners(boxes: Floats, view: Projector, rows: tuple[int, ...] = (0, 1, 3)) -> Floats:
+    """Return x, y and w (k, 3, 8) of the corners of boxes (k, 2, 3); they are drawn at x / w and y / w, -1 to 1.
+
+    Other ``rows`` of the camera's matrix give others of x, y, z and w; z / w is the depth, -1 to 1.
+    """
+    matrix = view.matrix[list(rows)]
+    turn = matrix[:, :3] * (1.0, 1.0, view.stretch)
     ends = (boxes - view.origin)[:, :, None, :] * turn
     x, y, z = (ends[..., axis].transpose(0, 2, 1) for axis in range(3))
     whole = x[..., :, None, None] + y[..., None, :, None] + z[..., None, None, :]
-    return np.asarray(whole.reshape(len(whole), 3, 8) + view.matrix[[0, 1, 3], 3, None])
+    return np.asarray(whole.reshape(len(whole), len(matrix), 8) + matrix[:, 3, None])
 
 
 def _pixels(boxes: Floats, view: Projector) -> Floats:

@@ -13,6 +13,7 @@ from vtkmodules.vtkCommonCore import mutable
 from vtkmodules.vtkCommonDataModel import vtkStaticCellLocator
 
 from geofit.gui.view3d.actors import poly
+from geofit.gui.view3d.cloud import PointCloud
 from geofit.gui.view3d.item import Item
 from geofit.gui.view3d.layers import Layer
 from geofit.gui.view3d.projector import Projector
@@ -21,6 +22,7 @@ from geofit.gui.view3d.shape import Shape
 __all__ = ["Hit", "Sights", "nearest_target", "nearest_way"]
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 #: How far from the pointer a thing may be drawn and still be meant, logical pixels; within EXACT it is meant first.
 REACH, EXACT = 8.0, 3.0
@@ -48,18 +50,52 @@ def nearest_target(
     for layer, item in items:
         if item.targets is None:
             continue
-        some = slice(None) if item.crowd is None else item.crowd.cloud.under(view, column, row, REACH)
-        targets = item.targets[some]
-        seen = view.screen(targets)
-        away = np.hypot(seen[:, 0] - column, seen[:, 1] - row)
-        near = np.flatnonzero(away <= REACH)
-        if box is not None:
-            near = near[((targets[near] >= box[0]) & (targets[near] <= box[1])).all(axis=1)]
-        if near.size:
-            best = near[np.lexsort([seen[near, 2], away[near] > EXACT])[0]]
-            which = int(best) if isinstance(some, slice) else int(some[best])
-            hits.append(Hit(layer, which, targets[best], float(seen[best, 2]), float(away[best])))
+        if item.crowd is None:
+            hit = _nearest(layer, item.targets, np.arange(len(item.targets)), view, column, row, box, REACH)
+        else:
+            hit = _nearest_of_many(layer, item.targets, item.crowd.cloud, view, column, row, box)
+        if hit is not None:
+            hits.append(hit)
     return min(hits, key=lambda hit: (hit.away > EXACT, hit.depth), default=None)
+
+
+def _nearest_of_many(
+    layer: Layer, targets: Floats, cloud: PointCloud, view: Projector, column: float, row: float, box: Floats | None
+) -> Hit | None:
+    """Return what a search of all points finds: from front to back, first of those drawn right there."""
+    for reach in (EXACT, REACH):
+        best: Hit | None = None
+        for least, some in cloud.under(view, column, row, reach):
+            if best is not None and best.depth < least:
+                break
+            hit = _nearest(layer, targets[some], some, view, column, row, box, reach)
+            if hit is not None and (best is None or (hit.depth, hit.which) < (best.depth, best.which)):
+                best = hit
+        if best is not None:
+            return best
+    return None
+
+
+def _nearest(
+    layer: Layer,
+    places: Floats,
+    which: Ints,
+    view: Projector,
+    column: float,
+    row: float,
+    box: Floats | None,
+    reach: float,
+) -> Hit | None:
+    """Return the one of some places, known by the numbers ``which``, that is meant by a pixel."""
+    seen = view.screen(places)
+    away = np.hypot(seen[:, 0] - column, seen[:, 1] - row)
+    near = np.flatnonzero(away <= reach)
+    if box is not None:
+        near = near[((places[near] >= box[0]) & (places[near] <= box[1])).all(axis=1)]
+    if not near.size:
+        return None
+    best = near[np.lexsort([which[near], seen[near, 2], away[near] > EXACT])[0]]
+    return Hit(layer, int(which[best]), places[best], float(seen[best, 2]), float(away[best]))
 
 
 def nearest_way(items: Iterable[tuple[Layer, Item]], view: Projector, column: float, row: float) -> Hit | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,17 +18,18 @@ from geofit.geometry.mesh import Mesh, Tolerance, cell_boxes, triangle_count
 from geofit.gui.view3d.sight import Sight
 from geofit.report.view import trimmed
 from geofit.splines.patch import Patch
+from geofit.surfaces.patch_surface import PatchSurface
 
 __all__ = ["Shape", "next_below", "sd_at", "sd_direction", "seam_lines", "shape_of", "split", "thinned", "too_coarse"]
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-#: Chordal tolerance of the still picture as a share of the surface's width, and of what the moving one is made from;
-#: triangles of the moving one, at most about: software draws some 20,000 in the time of a frame.
-FINE, ROUGH, FEW = 1 / 8_000, 1 / 500, 1_000
-#: More triangles than these are not thinned: to make rough ones takes less.
-MANY = 10_000
+#: Chordal tolerance of the still picture as a share of the surface's width; triangles of the moving one, at most
+#: about: software draws some 20,000 in the time of a frame.
+FINE, FEW = 1 / 8_000, 1_000
+#: Of more triangles than these the moving ones are not thinned, but made anew from about so many.
+MANY = 4_000
 #: Where a view asks for more triangles of one surface its tolerance is doubled, at most to so many times.
 MOST, LAST = 300_000, 2.0**20
 #: Vertices at which two horizons are compared to find the one below.
@@ -69,9 +70,21 @@ def shape_of(surface: HorizonFit, sight: Sight | None = None, fine: float = FINE
             times *= 2
             tolerance = _looked_at(sight, times, most)
     shape = rough = _shape(surface, surface.triangulate(tolerance))
-    if len(shape.triangles) > MANY and surface.patches:
-        rough = _shape(surface, surface.triangulate(ROUGH * _width(surface)))
+    if len(shape.triangles) > MANY and isinstance(surface.surface, PatchSurface):
+        lines = max(int((MANY / 2 / len(surface.patches)) ** 0.5), 3)
+        straight = replace(surface.surface, patches=tuple(_straight(patch, lines) for patch in surface.patches))
+        rough = _shape(surface, straight.triangulate(_width(surface)))
     return Shape(shape.xyz, shape.triangles, shape.normals, thinned(rough))
+
+
+def _straight(patch: Patch, lines: int) -> Patch:
+    """Return what is bilinear between so many lines of a patch each way, with the same parameters."""
+    u, v = (
+        np.interp(np.linspace(0, len(breaks) - 1, lines), np.arange(len(breaks)), breaks)
+        for breaks in (np.unique(patch.knots_u), np.unique(patch.knots_v))
+    )
+    knots_u, knots_v = (np.concatenate([[t[0]], t, [t[-1]]]) for t in (u, v))
+    return Patch(patch.name, (1, 1), knots_u, knots_v, patch.evaluate(u[:, None], v[None]))
 
 
 def _looked_at(sight: Sight, times: float, most: float) -> Tolerance:

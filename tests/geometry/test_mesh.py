@@ -11,6 +11,7 @@ from surfaces import ORIGIN, fold, height_field, horizon, nine, wave
 
 from geofit.data.errors import SettingsError
 from geofit.geometry.clip import inside
+from geofit.geometry.mesh import cell_boxes, triangle_count
 
 #: Concave, with corners between the mesh's vertices and one (500, -20) outside the surface.
 OUTLINE = np.array([[100, 80], [500, -20], [900, 100], [950, 600], [500, 400], [80, 650]], float)
@@ -123,6 +124,48 @@ def test_an_outline_outside_leaves_all_and_a_plane_is_two_pieces_a_span():
     around = surface.with_(outline=np.array([[-1, -1], [1001, -1], [1001, 701], [-1, 701]]) + ORIGIN[:2])
     same = around.triangulate(0.05)
     assert len(mesh.triangles) == len(same.triangles) == 8
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_a_tolerance_that_changes_over_the_map_is_kept_everywhere(name):
+    surface = SURFACES[name]()
+    middle = surface.triangulate(5.0).xyz.mean(axis=0)
+
+    def allowed(xyz):
+        return 0.02 + 0.002 * np.linalg.norm(xyz[..., :2] - middle[:2], axis=-1)
+
+    def tolerance(low, high):
+        nearest = np.clip(middle, low, high)
+        return allowed(nearest)
+
+    mesh = surface.triangulate(tolerance)
+    places = samples(mesh)
+    share = np.abs(surface.distance(places)) / allowed(places)
+    assert 0.2 < share.max() <= 1.0
+    finest = surface.triangulate(0.02)
+    assert len(mesh.triangles) < 0.7 * len(finest.triangles)
+    _, count = edges(mesh)
+    assert count.max() == 2
+
+
+def test_boxes_of_cells_hold_the_surface():
+    for patch in (fold(), *nine()[1]):
+        low, high = cell_boxes(patch, ORIGIN)
+        u, v = (np.unique(knots) for knots in (patch.knots_u, patch.knots_v))
+        rng = np.random.default_rng(0)
+        i, j = rng.integers(len(u) - 1, size=500), rng.integers(len(v) - 1, size=500)
+        places = patch.evaluate(rng.uniform(u[i], u[i + 1]), rng.uniform(v[j], v[j + 1])) + ORIGIN
+        assert (places >= low[i, j] - 1e-9).all()
+        assert (places <= high[i, j] + 1e-9).all()
+        assert low.shape == (len(u) - 1, len(v) - 1, 3)
+
+
+@pytest.mark.parametrize("tolerance", [2.0, 0.1])
+def test_the_count_is_told_before_triangles_are_made(tolerance):
+    patches = nine()[1]
+    count = triangle_count(patches, ORIGIN, tolerance)
+    # The strips along the seams have more: both neighbours' lines.
+    assert count <= len(horizon(patches).triangulate(tolerance).triangles) <= 1.3 * count
 
 
 def test_refuses_a_tolerance_of_zero():
